@@ -1,0 +1,1 @@
+"""The domain core: what a robot installs."""

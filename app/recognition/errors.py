@@ -1,0 +1,42 @@
+"""The exceptions of the domain core: one tree, so that callers can catch as widely as they mean."""
+
+
+class RecognitionError(ValueError):
+    """Base of every error the core raises on purpose.
+
+    Its message is one line for a person: what is wrong (with the value seen), why that
+    matters where it is not obvious, and what to do next.
+    """
+
+
+class PoseError(RecognitionError):
+    """Raised when a pose sequence is malformed or cannot be used for what was asked."""
+
+
+class VideoError(RecognitionError):
+    """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
+
+
+class GestureError(RecognitionError):
+    """Raised when a demonstration cannot become a gesture, for instance because nothing moves."""
+
+
+class LanguageError(RecognitionError):
+    """Raised when a language file or a language is invalid.
+
+    Parameters
+    ----------
+    message
+        What is wrong and what to do.
+    pointer
+        JSON pointer (RFC 6901) to the fault, ``""`` for the whole document.
+
+    """
+
+    def __init__(self, message: str, pointer: str = "") -> None:
+        super().__init__(f"{pointer}: {message}" if pointer else message)
+        self.pointer = pointer
+
+
+class ModelError(RecognitionError):
+    """Raised when a pose or hand model file is missing, truncated or not the pinned one."""

@@ -1,0 +1,1 @@
+"""Pose and hand landmarks from images: one protocol, two backends."""

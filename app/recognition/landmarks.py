@@ -1,0 +1,118 @@
+"""Names of the landmarks: MediaPipe's 33 of the body and 21 of a hand, and the groups OSG uses.
+
+Names are MediaPipe's own in snake_case. "Left" and "right" are the person's, not the image's.
+"""
+
+from typing import Final
+
+POSE_LANDMARKS: Final = (
+    "nose",
+    "left_eye_inner",
+    "left_eye",
+    "left_eye_outer",
+    "right_eye_inner",
+    "right_eye",
+    "right_eye_outer",
+    "left_ear",
+    "right_ear",
+    "mouth_left",
+    "mouth_right",
+    "left_shoulder",
+    "right_shoulder",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist",
+    "right_wrist",
+    "left_pinky",
+    "right_pinky",
+    "left_index",
+    "right_index",
+    "left_thumb",
+    "right_thumb",
+    "left_hip",
+    "right_hip",
+    "left_knee",
+    "right_knee",
+    "left_ankle",
+    "right_ankle",
+    "left_heel",
+    "right_heel",
+    "left_foot_index",
+    "right_foot_index",
+)
+"""BlazePose's 33 body landmarks in the order of the model's output (Bazarevsky et al. 2020)."""
+
+HAND_LANDMARKS: Final = (
+    "wrist",
+    "thumb_cmc",
+    "thumb_mcp",
+    "thumb_ip",
+    "thumb_tip",
+    "index_finger_mcp",
+    "index_finger_pip",
+    "index_finger_dip",
+    "index_finger_tip",
+    "middle_finger_mcp",
+    "middle_finger_pip",
+    "middle_finger_dip",
+    "middle_finger_tip",
+    "ring_finger_mcp",
+    "ring_finger_pip",
+    "ring_finger_dip",
+    "ring_finger_tip",
+    "pinky_mcp",
+    "pinky_pip",
+    "pinky_dip",
+    "pinky_tip",
+)
+"""The 21 landmarks of one hand in the order of the model's output (Zhang et al. 2020)."""
+
+SHOULDERS: Final = ("left_shoulder", "right_shoulder")
+HIPS: Final = ("left_hip", "right_hip")
+
+LANDMARK_GROUPS: Final[dict[str, tuple[str, ...]]] = {
+    "right_hand": ("right_wrist", "right_index", "right_pinky", "right_thumb"),
+    "left_hand": ("left_wrist", "left_index", "left_pinky", "left_thumb"),
+    "head": (
+        "nose",
+        "left_eye_inner",
+        "left_eye",
+        "left_eye_outer",
+        "right_eye_inner",
+        "right_eye",
+        "right_eye_outer",
+        "left_ear",
+        "right_ear",
+        "mouth_left",
+        "mouth_right",
+    ),
+}
+"""Landmarks that move as one; a gesture is described by at most one of each (paper, Sec. IV-A).
+
+The first name of a group is its usual representative: of the hand's four, the wrist is the one
+the pose model places most steadily; of the head's eleven, the nose.
+"""
+
+SKELETON: Final = (
+    ("left_shoulder", "right_shoulder"),
+    ("left_shoulder", "left_elbow"),
+    ("left_elbow", "left_wrist"),
+    ("right_shoulder", "right_elbow"),
+    ("right_elbow", "right_wrist"),
+    ("left_wrist", "left_index"),
+    ("left_wrist", "left_pinky"),
+    ("left_wrist", "left_thumb"),
+    ("right_wrist", "right_index"),
+    ("right_wrist", "right_pinky"),
+    ("right_wrist", "right_thumb"),
+    ("left_shoulder", "left_hip"),
+    ("right_shoulder", "right_hip"),
+    ("left_hip", "right_hip"),
+    ("left_hip", "left_knee"),
+    ("left_knee", "left_ankle"),
+    ("right_hip", "right_knee"),
+    ("right_knee", "right_ankle"),
+    ("left_ankle", "left_foot_index"),
+    ("right_ankle", "right_foot_index"),
+)
+"""Pairs of landmarks joined by a bone in drawings; the ten face landmarks are left out."""

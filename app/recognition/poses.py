@@ -1,0 +1,249 @@
+"""A recording of body landmarks over time, as a pose estimator gives it: pixels and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.errors import PoseError
+from app.recognition.landmarks import HIPS, SHOULDERS
+
+FloatArray = npt.NDArray[np.float64]
+
+SHOULDER_WIDTHS_PER_TORSO = 1.5
+"""Torso length over shoulder width, for a diver whose hips are not in view.
+
+Torso: mid-shoulders to mid-hips; width: between the shoulder joints. Adult body proportions
+(Winter 2009, table 4.1: trunk 0.288 of stature, biacromial half-width 0.129, joints lie inside)
+put the ratio at 1.3 to 1.7; it only stands in until the hips are seen.
+"""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PoseSequence:
+    """T poses of K landmarks in the pixels of the camera, with the container's own timestamps.
+
+    Parameters
+    ----------
+    landmarks
+        K distinct landmark names. MediaPipe's 33 (`POSE_LANDMARKS`) or any other set.
+    xy
+        ``(T, K, 2)`` pixels, x to the right, y down, origin at the image's top left corner.
+        NaN: not seen in this frame. Infinite values are refused.
+    confidence
+        ``(T, K)`` in [0, 1], or None where the source gives none.
+    time
+        ``(T,)`` seconds, strictly increasing: timestamps, never frame number over rate.
+    frame_size
+        Width and height of the image in pixels.
+
+    Raises
+    ------
+    PoseError
+        When a shape, a value or a name breaks the rules above; the message names it.
+
+    """
+
+    landmarks: tuple[str, ...]
+    xy: FloatArray
+    confidence: FloatArray | None = None
+    time: FloatArray
+    frame_size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        """Validate, and freeze private copies of the arrays."""
+        object.__setattr__(self, "landmarks", _checked_names(self.landmarks))
+        xy = _frozen(self.xy, "xy")
+        count = len(self.landmarks)
+        if xy.ndim != 3 or xy.shape[1:] != (count, 2):
+            raise PoseError(f"xy has shape {xy.shape}, expected (frames, {count} landmarks, 2)")
+        if np.isinf(xy).any():
+            raise PoseError("xy holds infinite values; mark what was not seen with NaN")
+        time = _frozen(self.time, "time")
+        if time.shape != (len(xy),):
+            raise PoseError(f"time has shape {time.shape}, expected ({len(xy)},), one per frame")
+        if not np.isfinite(time).all():
+            raise PoseError("time holds NaN or infinite values")
+        if (steps := np.diff(time)).size and steps.min() <= 0:
+            at = int(np.argmin(steps)) + 1
+            raise PoseError(
+                f"time does not increase at frame {at} ({time[at - 1]:g} s, then {time[at]:g} s)"
+            )
+        object.__setattr__(self, "xy", xy)
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "confidence", _checked_confidence(self.confidence, xy))
+        object.__setattr__(self, "frame_size", _checked_size(self.frame_size))
+
+    def __len__(self) -> int:
+        """Count the frames, T."""
+        return len(self.time)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether two recordings hold the same values; NaN equals NaN."""
+        if not isinstance(other, PoseSequence):
+            return NotImplemented
+        return (
+            self.landmarks == other.landmarks
+            and self.frame_size == other.frame_size
+            and np.array_equal(self.xy, other.xy, equal_nan=True)
+            and np.array_equal(self.time, other.time)
+            and _same_confidence(self.confidence, other.confidence)
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # arrays inside: equality without a hash
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first to the last frame; 0 for fewer than two frames."""
+        return float(self.time[-1] - self.time[0]) if len(self) > 1 else 0.0
+
+    @property
+    def seen(self) -> npt.NDArray[np.bool_]:
+        """Tell ``(T, K)`` which landmark was found in which frame."""
+        return np.isfinite(self.xy).all(axis=2)
+
+    def column(self, name: str) -> FloatArray:
+        """Return one landmark's path.
+
+        Returns
+        -------
+        ``(T, 2)`` pixels, NaN where not seen.
+
+        Raises
+        ------
+        PoseError
+            When the recording has no landmark of that name.
+
+        """
+        if name not in self.landmarks:
+            raise PoseError(f"no landmark {name!r} in this recording; it has {self.landmarks}")
+        return self.xy[:, self.landmarks.index(name)]
+
+    def select(self, names: Sequence[str]) -> PoseSequence:
+        """Keep the named landmarks, in the order given.
+
+        Raises
+        ------
+        PoseError
+            When a name is not among the recording's landmarks.
+
+        """
+        missing = [name for name in names if name not in self.landmarks]
+        if missing:
+            raise PoseError(f"no landmarks {missing} in this recording; it has {self.landmarks}")
+        columns = [self.landmarks.index(name) for name in names]
+        confidence = None if self.confidence is None else self.confidence[:, columns]
+        return replace(self, landmarks=tuple(names), xy=self.xy[:, columns], confidence=confidence)
+
+    def between(self, start: float, end: float) -> PoseSequence:
+        """Keep the frames with ``start <= time <= end`` (seconds, as in `time`)."""
+        inside = (self.time >= start) & (self.time <= end)
+        confidence = None if self.confidence is None else self.confidence[inside]
+        return replace(self, xy=self.xy[inside], time=self.time[inside], confidence=confidence)
+
+    def torso_centre(self) -> FloatArray | None:
+        """Return the middle of the torso: the mean of mid-shoulders and mid-hips.
+
+        In a frame where one of the pairs is not seen, the other one is carried over by the
+        median torso vector; frames in which neither is seen are interpolated in time.
+
+        Returns
+        -------
+        ``(T, 2)`` pixels without NaN, or None when no frame shows shoulders.
+
+        """
+        shoulders, hips = self._middle(SHOULDERS), self._middle(HIPS)
+        if not np.isfinite(shoulders).any():
+            return None
+        torso = hips - shoulders
+        both = np.isfinite(torso).all(axis=1)
+        half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
+        centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
+        centre = np.where(np.isfinite(centre), centre, hips - half)
+        return _interpolated(centre, self.time)
+
+    def torso_length(self) -> float | None:
+        """Return the distance from mid-shoulders to mid-hips, the median over the recording.
+
+        The median of the whole recording, not a value per frame: a body does not change its
+        size while it gestures, the detector's error does. Where hips are never seen together
+        with shoulders, it is estimated from the shoulder width (`SHOULDER_WIDTHS_PER_TORSO`).
+
+        Returns
+        -------
+        Pixels, or None when no frame shows both shoulders.
+
+        """
+        lengths = np.linalg.norm(self._middle(HIPS) - self._middle(SHOULDERS), axis=1)
+        if not np.isfinite(lengths).any():
+            if not set(SHOULDERS) <= set(self.landmarks):
+                return None
+            left, right = (self.column(name) for name in SHOULDERS)
+            lengths = SHOULDER_WIDTHS_PER_TORSO * np.linalg.norm(left - right, axis=1)
+            if not np.isfinite(lengths).any():
+                return None
+        length = float(np.nanmedian(lengths))
+        return length if length > 0 else None
+
+    def _middle(self, pair: tuple[str, str]) -> FloatArray:
+        """``(T, 2)`` middle of two landmarks; all NaN where the set lacks one of them."""
+        if not set(pair) <= set(self.landmarks):
+            return np.full((len(self), 2), np.nan)
+        return (self.column(pair[0]) + self.column(pair[1])) / 2
+
+
+def _checked_names(names: Any) -> tuple[str, ...]:
+    if isinstance(names, str) or not all(isinstance(name, str) and name for name in names):
+        raise PoseError(f"landmarks must be non-empty names, got {names!r}")
+    checked: tuple[str, ...] = tuple(names)
+    if not checked:
+        raise PoseError("landmarks is empty; at least one name is needed")
+    if len(set(checked)) < len(checked):
+        twice = sorted({name for name in checked if checked.count(name) > 1})
+        raise PoseError(f"landmark names occur twice: {twice}")
+    return checked
+
+
+def _frozen(values: Any, name: str) -> FloatArray:
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise PoseError(f"{name} is not an array of numbers: {error}") from error
+    array.setflags(write=False)
+    return array
+
+
+def _checked_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
+    if values is None:
+        return None
+    confidence = _frozen(values, "confidence")
+    if confidence.shape != xy.shape[:2]:
+        raise PoseError(f"confidence has shape {confidence.shape}, expected {xy.shape[:2]}")
+    if not ((confidence >= 0) & (confidence <= 1)).all():
+        raise PoseError("confidence holds values outside [0, 1]")
+    return confidence
+
+
+def _checked_size(size: Any) -> tuple[int, int]:
+    if len(size) != 2 or not all(float(side) > 0 for side in size):
+        raise PoseError(f"frame_size is {size!r}, expected (width, height) in pixels, both > 0")
+    return int(size[0]), int(size[1])
+
+
+def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return np.array_equal(one, other)
+
+
+def _interpolated(path: FloatArray, time: FloatArray) -> FloatArray:
+    """Fill NaN rows of ``(T, 2)`` linearly in time, the nearest value beyond the ends."""
+    known = np.isfinite(path).all(axis=1)
+    if known.all():
+        return path
+    filled = [np.interp(time, time[known], path[known, axis]) for axis in range(2)]
+    return np.stack(filled, axis=1)

@@ -1,0 +1,177 @@
+"""Trajectories of landmarks, freed from where the diver floats and how far away the camera is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from app.recognition.errors import PoseError
+from app.recognition.poses import FloatArray, PoseSequence
+
+Unit = Literal["torso_length", "extent"]
+
+MAX_GAP_SECONDS = 0.5
+"""Longest gap bridged by a straight line.
+
+The minimum-jerk reaches that gestures are made of last 0.5 s and more (Flash and Hogan 1985); over
+half a second a straight line may replace a whole stroke, and an invented stroke is worse than a
+gap.
+"""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trajectory:
+    """Paths of K landmarks over T moments, relative to the diver's own torso.
+
+    Attributes
+    ----------
+    landmarks
+        K landmark names.
+    xy
+        ``(T, K, 2)`` in `unit`, x to the image's right, y down, origin at the torso's centre (or
+        at the centroid after `recentred`). NaN: not seen and not bridged.
+    time
+        ``(T,)`` seconds since the first moment, strictly increasing.
+    unit
+        ``"torso_length"``, or ``"extent"`` where the recording shows no torso: then the longest
+        diagonal of any landmark's bounding box is 1 and no translation is taken out per frame.
+
+    """
+
+    landmarks: tuple[str, ...]
+    xy: FloatArray
+    time: FloatArray
+    unit: Unit
+
+    @classmethod
+    def from_poses(cls, poses: PoseSequence) -> Trajectory:
+        """Normalise a recording: torso-centre translation per frame, one scale for all.
+
+        Translating or uniformly scaling the recording, and shifting its clock, leave the
+        trajectory as it is (paper, Sec. IV-C; the published code never does this).
+
+        Raises
+        ------
+        PoseError
+            When the recording has no frames, or no landmark is seen in any of them.
+
+        """
+        if not poses.seen.any():
+            raise PoseError(f"none of the {len(poses)} frames shows a landmark: nothing to follow")
+        time = poses.time - poses.time[0]
+        centre, length = poses.torso_centre(), poses.torso_length()
+        if centre is None or length is None:
+            scale = _extent(poses.xy) or float(max(poses.frame_size))
+            xy = (poses.xy - np.nanmean(poses.xy, axis=(0, 1))) / scale
+            return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="extent")
+        xy = (poses.xy - centre[:, None]) / length
+        return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="torso_length")
+
+    def __len__(self) -> int:
+        """Count the moments, T."""
+        return len(self.time)
+
+    def select(self, names: Sequence[str]) -> Trajectory:
+        """Keep the named landmarks, in the order given.
+
+        Raises
+        ------
+        PoseError
+            When a name is not among the trajectory's landmarks.
+
+        """
+        missing = [name for name in names if name not in self.landmarks]
+        if missing:
+            raise PoseError(f"no landmarks {missing} in this trajectory; it has {self.landmarks}")
+        columns = [self.landmarks.index(name) for name in names]
+        return replace(self, landmarks=tuple(names), xy=self.xy[:, columns])
+
+    def between(self, start: float, end: float) -> Trajectory:
+        """Keep the moments with ``start <= time <= end`` (seconds since the first moment)."""
+        inside = (self.time >= start) & (self.time <= end)
+        return replace(self, xy=self.xy[inside], time=self.time[inside])
+
+    def recentred(self) -> Trajectory:
+        """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""
+        if not np.isfinite(self.xy).any():
+            return self
+        return replace(self, xy=self.xy - np.nanmean(self.xy, axis=(0, 1)))
+
+    def filled(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
+        """Bridge gaps of at most `max_gap` seconds by straight lines; longer ones stay NaN.
+
+        A gap lasts from the last moment a landmark is seen to the next one. Before the first
+        and after the last of them there is nothing to bridge to.
+        """
+        xy = self.xy.copy()
+        for path in np.moveaxis(xy, 1, 0):
+            known = np.flatnonzero(np.isfinite(path).all(axis=1))
+            for before, after in pairwise(known):
+                span = self.time[after] - self.time[before]
+                if after - before > 1 and span <= max_gap:
+                    inside = slice(before + 1, after)
+                    share = (self.time[inside] - self.time[before]) / span
+                    path[inside] = path[before] + share[:, None] * (path[after] - path[before])
+        return replace(self, xy=xy)
+
+    def resampled_in_time(self, count: int) -> Trajectory:
+        """Resample to `count` moments at equal times, linearly.
+
+        A moment between two samples of which one is NaN becomes NaN: gaps stay gaps.
+
+        Raises
+        ------
+        PoseError
+            When `count` is below 2 or the trajectory has fewer than two moments.
+
+        """
+        self._require_two(count)
+        return self._at(np.linspace(self.time[0], self.time[-1], count))
+
+    def resampled_in_arc_length(self, count: int) -> Trajectory:
+        """Resample to `count` moments at equal steps along the joint path of all landmarks.
+
+        The step is the root of the summed squared steps of all landmarks, so they stay in step
+        with each other; `time` keeps when each point was reached. A trajectory without motion
+        is resampled in time instead. Steps into or out of a gap have no length.
+
+        Raises
+        ------
+        PoseError
+            When `count` is below 2 or the trajectory has fewer than two moments.
+
+        """
+        self._require_two(count)
+        steps = np.sqrt(np.nansum(np.diff(self.xy, axis=0) ** 2, axis=(1, 2)))
+        travelled = np.concatenate([[0.0], np.cumsum(steps)])
+        if travelled[-1] == 0:
+            return self.resampled_in_time(count)
+        # A rest makes `travelled` flat; the tiny share of time keeps it strictly increasing.
+        travelled += 1e-9 * travelled[-1] * (self.time / self.time[-1])
+        return self._at(np.interp(np.linspace(0, travelled[-1], count), travelled, self.time))
+
+    def _require_two(self, count: int) -> None:
+        if count < 2 or len(self) < 2:
+            raise PoseError(f"cannot resample {len(self)} moments to {count}; both must be >= 2")
+
+    def _at(self, moments: FloatArray) -> Trajectory:
+        """Interpolate linearly at strictly increasing `moments` inside the time range."""
+        after = np.clip(np.searchsorted(self.time, moments), 1, len(self) - 1)
+        before = after - 1
+        share = (moments - self.time[before]) / (self.time[after] - self.time[before])
+        share = np.clip(share, 0.0, 1.0)[:, None, None]
+        low, high = self.xy[before], self.xy[after]
+        # At a sample itself its neighbour's NaN must not leak in.
+        xy = np.where(share == 0, low, np.where(share == 1, high, low + share * (high - low)))
+        return replace(self, xy=xy, time=moments)
+
+
+def _extent(xy: FloatArray) -> float:
+    """Longest bounding-box diagonal of any landmark's path, in the unit of `xy`."""
+    seen = np.isfinite(xy).any(axis=(0, 2))
+    span = np.nanmax(xy[:, seen], axis=0) - np.nanmin(xy[:, seen], axis=0)
+    return float(np.linalg.norm(span, axis=1).max())
