@@ -104,7 +104,7 @@ class PoseSequence:
     @property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Tell ``(T, K)`` which landmark was found in which frame."""
-        return np.isfinite(self.xy).all(axis=2)
+        return np.asarray(np.isfinite(self.xy).all(axis=2), dtype=np.bool_)
 
     def column(self, name: str) -> FloatArray:
         """Return one landmark's path.
