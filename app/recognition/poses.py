@@ -104,7 +104,7 @@ class PoseSequence:
     @property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Tell ``(T, K)`` which landmark was found in which frame."""
-        return np.asarray(np.isfinite(self.xy).all(axis=2), dtype=np.bool_)
+        return _all_finite(self.xy)
 
     def column(self, name: str) -> FloatArray:
         """Return one landmark's path.
@@ -160,7 +160,7 @@ class PoseSequence:
         if not np.isfinite(shoulders).any():
             return None
         torso = hips - shoulders
-        both = np.isfinite(torso).all(axis=1)
+        both = _all_finite(torso)
         half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
         centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
         centre = np.where(np.isfinite(centre), centre, hips - half)
@@ -240,9 +240,14 @@ def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
     return np.array_equal(one, other)
 
 
+def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:
+    """Tell which of the points ``(..., 2)`` have both coordinates."""
+    return np.asarray(np.isfinite(points).all(axis=-1), dtype=np.bool_)
+
+
 def _interpolated(path: FloatArray, time: FloatArray) -> FloatArray:
     """Fill NaN rows of ``(T, 2)`` linearly in time, the nearest value beyond the ends."""
-    known = np.isfinite(path).all(axis=1)
+    known = _all_finite(path)
     if known.all():
         return path
     filled = [np.interp(time, time[known], path[known, axis]) for axis in range(2)]
