@@ -1,0 +1,25 @@
+"""Where the files that are not Python lie: the page's static files and the sample languages.
+
+In a checkout they are folders beside the package, where the people who work on them look for
+them; a wheel has nothing beside the package, so there they are inside it (the mapping stands in
+``pyproject.toml`` under ``tool.hatch.build.targets.wheel``).
+"""
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def static_dir() -> Path:
+    """Return the folder of the page's files: HTML, style sheets, scripts, icons."""
+    return _installed_or_checked_out("static", "static")
+
+
+def samples_dir() -> Path:
+    """Return the folder of the sample languages (``*.json``) and of their clips (``clips/``)."""
+    return _installed_or_checked_out("samples", "languages")
+
+
+def _installed_or_checked_out(in_wheel: str, in_checkout: str) -> Path:
+    installed = _PACKAGE / in_wheel
+    return installed if installed.is_dir() else _PACKAGE.parent / in_checkout
