@@ -1,0 +1,118 @@
+"""What can be set about a running OSG Studio: by argument, or by environment as ``OSG_<NAME>``."""
+
+from __future__ import annotations
+
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Annotated, Self
+
+from platformdirs import user_data_path
+from pydantic import Field, SecretStr, model_validator
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+from app import resources
+
+MEBIBYTE = 1024 * 1024
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether `host` names this machine only."""
+    if host == "localhost":
+        return True
+    try:
+        return ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+class Settings(BaseSettings):
+    """Settings of one server; every field can be given as ``OSG_<FIELD>`` in the environment."""
+
+    model_config = SettingsConfigDict(env_prefix="OSG_", frozen=True, extra="forbid")
+
+    data_dir: Path = Field(default_factory=lambda: user_data_path("osg-studio") / "studio")
+    """Folder of the database and the clips; made when missing."""
+
+    database_url: str | None = None
+    """SQLAlchemy URL of another database; ``None`` is SQLite inside `data_dir`."""
+
+    samples_dir: Path = Field(default_factory=resources.samples_dir)
+    """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
+
+    host: str = "127.0.0.1"
+    """Address to listen on."""
+
+    port: Annotated[int, Field(ge=0, le=65535)] = 8000
+    """Port to listen on; 0 lets the system choose."""
+
+    token: SecretStr | None = None
+    """Secret that every caller must show; needed as soon as others can reach `host`."""
+
+    allowed_hosts: Annotated[tuple[str, ...], NoDecode] = ()
+    """More host names (comma separated in the environment) under which the app may be reached."""
+
+    max_clip_bytes: Annotated[int, Field(gt=0)] = 512 * MEBIBYTE
+    """Largest clip accepted. Ten minutes of a dive camera's 1080p at 6 Mbit/s are 450 MB."""
+
+    max_body_bytes: Annotated[int, Field(gt=0)] = MEBIBYTE
+    """Largest JSON body accepted; the largest one the page sends is below 10 kB."""
+
+    max_language_bytes: Annotated[int, Field(gt=0)] = 64 * MEBIBYTE
+    """Largest language file accepted. The published format takes 0.85 MB a gesture."""
+
+    free_disk_bytes: Annotated[int, Field(ge=0)] = 256 * MEBIBYTE
+    """Space that an upload must leave free, so that the database can still write."""
+
+    upload_bytes_per_second: Annotated[int, Field(ge=0)] = 8 * 1024
+    """Slowest upload tolerated after the grace of `upload_grace_seconds`; 0 tolerates any."""
+
+    upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
+    """Seconds before the rate of an upload counts, and the longest silence within one."""
+
+    workers: Annotated[int, Field(ge=1, le=64)] = 1
+    """Clips extracted at the same time, each in its own process (the models use all cores)."""
+
+    max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
+    """Jobs that one address may have waiting: more than a language's clips, less than a flood."""
+
+    worker_memory_bytes: Annotated[int, Field(ge=0)] = 6 * 1024 * MEBIBYTE
+    """Address space of one worker; 0 is no limit, which GPU execution providers need."""
+
+    worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
+    """Processor time of one job; 0 is no limit. Ten minutes of video take about half of it."""
+
+    worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
+    """A worker that reports no progress for so long hangs, and is ended."""
+
+    undo_hours: Annotated[float, Field(ge=0)] = 24.0
+    """How long something deleted can be restored before its files are removed."""
+
+    @property
+    def public(self) -> bool:
+        """Whether others than this machine can reach the server."""
+        return not is_loopback(self.host)
+
+    @property
+    def database(self) -> str:
+        """SQLAlchemy URL of the database in use."""
+        return self.database_url or f"sqlite:///{self.data_dir / 'studio.db'}"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _split_hosts(cls, values: object) -> object:
+        if isinstance(values, dict) and isinstance(hosts := values.get("allowed_hosts"), str):
+            names = tuple(name.strip() for name in hosts.split(",") if name.strip())
+            return {**values, "allowed_hosts": names}
+        return values
+
+    @model_validator(mode="after")
+    def _public_needs_token(self) -> Self:
+        if self.token is not None and not self.token.get_secret_value().strip():
+            raise ValueError("the token is empty; give a long random one or none at all")
+        if self.public and self.token is None:
+            raise ValueError(
+                f"host {self.host!r} can be reached from other machines and no token is set, so "
+                "anyone there could read and delete clips; set a token (--token or OSG_TOKEN) or "
+                "stay on 127.0.0.1"
+            )
+        return self

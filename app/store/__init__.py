@@ -1,0 +1,34 @@
+"""Where clips, languages, jobs and recognitions are kept: a database and files beside it."""
+
+from app.store.clips import ClipStore
+from app.store.database import Database
+from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
+from app.store.jobs import JobStore
+from app.store.languages import LanguageStore
+from app.store.models import (
+    Clip,
+    Job,
+    JobStatus,
+    LanguageRecord,
+    LanguageRevision,
+    RecognitionRecord,
+)
+from app.store.recognitions import RecognitionStore
+
+__all__ = [
+    "Clip",
+    "ClipStore",
+    "Conflict",
+    "Database",
+    "Job",
+    "JobStatus",
+    "JobStore",
+    "LanguageRecord",
+    "LanguageRevision",
+    "LanguageStore",
+    "NotFound",
+    "RecognitionRecord",
+    "RecognitionStore",
+    "StoreError",
+    "StoreUnavailable",
+]

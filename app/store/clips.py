@@ -1,0 +1,181 @@
+"""Clips: a row each, and a folder of files named by our own id."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from sqlmodel import Session, col, select
+
+from app.store.database import Database
+from app.store.errors import NotFound
+from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.models import Clip, Job, new_id, now
+
+
+@dataclass(frozen=True)
+class ClipWithJob:
+    """A clip and the job that extracts its poses."""
+
+    clip: Clip
+    job: Job
+
+
+class ClipStore:
+    """Keeps clips.
+
+    Parameters
+    ----------
+    database
+        Where the rows are.
+    folder
+        Where the files are: ``<folder>/<clip id>/video``, ``recording.npz`` and ``poster.jpg``,
+        and uploads under way as ``<folder>/<id>.part``.
+
+    """
+
+    def __init__(self, database: Database, folder: Path) -> None:
+        self._database = database
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def new_partial(self) -> Path:
+        """Return a fresh path for a file that is still being received."""
+        return self.folder / f"{new_id()}{PARTIAL_SUFFIX}"
+
+    def add(self, clip: Clip, partial: Path, client: str) -> ClipWithJob:
+        """Take over the received file `partial` as `clip` and queue its extraction.
+
+        The file gets its place first: a row never refers to what is not on disk.
+        """
+        target = self.video(clip.id)
+        target.parent.mkdir()
+        try:
+            publish(partial, target)
+            sync_directory(self.folder)
+            job = Job(clip_id=clip.id, client=client)
+            with self._database.writing() as session:
+                session.add(clip)
+                session.flush()
+                session.add(job)
+        except BaseException:
+            shutil.rmtree(target.parent, ignore_errors=True)
+            raise
+        return ClipWithJob(clip, job)
+
+    def get(self, clip_id: str) -> ClipWithJob:
+        """Return a clip that is not deleted.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        with self._database.reading() as session:
+            clip = session.get(Clip, clip_id)
+            if clip is None or clip.deleted is not None:
+                raise NotFound(f"there is no clip {clip_id!r}")
+            return ClipWithJob(clip, _newest_jobs([clip_id], session)[clip_id])
+
+    def all(self) -> list[ClipWithJob]:
+        """Return the clips that are not deleted, newest first."""
+        with self._database.reading() as session:
+            query = select(Clip).where(col(Clip.deleted).is_(None))
+            clips = session.exec(query.order_by(col(Clip.created).desc(), col(Clip.id))).all()
+            jobs = _newest_jobs([clip.id for clip in clips], session)
+            return [ClipWithJob(clip, jobs[clip.id]) for clip in clips]
+
+    def by_idempotency_key(self, key: str) -> ClipWithJob | None:
+        """Return the clip that an upload with this key made, also when deleted since."""
+        with self._database.reading() as session:
+            clip = session.exec(select(Clip).where(Clip.idempotency_key == key)).first()
+            if clip is None:
+                return None
+            return ClipWithJob(clip, _newest_jobs([clip.id], session)[clip.id])
+
+    def set_frames(self, clip_id: str, frames: int) -> None:
+        """Note how many frames were decoded."""
+        with self._database.writing() as session:
+            if clip := session.get(Clip, clip_id):
+                clip.frames = frames
+                session.add(clip)
+
+    def delete(self, clip_id: str) -> None:
+        """Hide a clip; its files stay until `purge`.
+
+        Raises
+        ------
+        NotFound
+            When there is none, or it is deleted already.
+
+        """
+        with self._database.writing() as session:
+            clip = session.get(Clip, clip_id)
+            if clip is None or clip.deleted is not None:
+                raise NotFound(f"there is no clip {clip_id!r}")
+            clip.deleted = now()
+            session.add(clip)
+
+    def restore(self, clip_id: str) -> None:
+        """Bring a deleted clip back; nothing happens to one that is not deleted.
+
+        Raises
+        ------
+        NotFound
+            When it never existed or is purged.
+
+        """
+        with self._database.writing() as session:
+            if (clip := session.get(Clip, clip_id)) is None:
+                raise NotFound(f"there is no clip {clip_id!r} to restore")
+            clip.deleted = None
+            session.add(clip)
+
+    def purge(self, before: datetime) -> int:
+        """Remove for good what was deleted `before` that moment; return how many clips went."""
+        with self._database.writing() as session:
+            gone = session.exec(select(Clip).where(col(Clip.deleted) < before)).all()
+            for clip in gone:
+                session.delete(clip)
+        for clip in gone:
+            shutil.rmtree(self._home(clip.id), ignore_errors=True)
+        return len(gone)
+
+    def sweep(self) -> int:
+        """Remove files that no row refers to, left by a crash; return how many went."""
+        with self._database.reading() as session:
+            known = set(session.exec(select(Clip.id)).all())
+        orphans = [path for path in self.folder.iterdir() if path.name not in known]
+        orphans += self.folder.glob(f"*/*{PARTIAL_SUFFIX}")
+        for path in orphans:
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                with suppress(OSError):
+                    path.unlink()
+        return len(orphans)
+
+    def video(self, clip_id: str) -> Path:
+        """Return where the clip's own bytes are."""
+        return self._home(clip_id) / "video"
+
+    def recording(self, clip_id: str) -> Path:
+        """Return where the landmarks found in the clip are, once its job is done."""
+        return self._home(clip_id) / "recording.npz"
+
+    def poster(self, clip_id: str) -> Path:
+        """Return where the clip's still picture is, once its job is done."""
+        return self._home(clip_id) / "poster.jpg"
+
+    def _home(self, clip_id: str) -> Path:
+        return self.folder / clip_id
+
+
+def _newest_jobs(clip_ids: list[str], session: Session) -> dict[str, Job]:
+    """Return the newest job of each clip."""
+    query = select(Job).where(col(Job.clip_id).in_(clip_ids)).order_by(col(Job.created))
+    return {job.clip_id: job for job in session.exec(query)}

@@ -1,0 +1,111 @@
+"""Jobs: what is to be extracted, what is being extracted, and how it ended."""
+
+from __future__ import annotations
+
+from sqlmodel import col, func, select
+
+from app.store.database import Database
+from app.store.errors import NotFound
+from app.store.models import Clip, Job, JobStatus, now
+
+MAX_ATTEMPTS = 3
+"""Starts after which a job that never came to an end is given up: it may be what ends us."""
+
+_OPEN = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
+
+
+class JobStore:
+    """Keeps jobs in `database`; every change of status is one transaction."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def get(self, job_id: str) -> Job:
+        """Return a job whose clip is not deleted.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        with self._database.reading() as session:
+            query = select(Job).join(Clip).where(Job.id == job_id, col(Clip.deleted).is_(None))
+            if (job := session.exec(query).first()) is None:
+                raise NotFound(f"there is no job {job_id!r}")
+            return job
+
+    def count_open(self, client: str) -> int:
+        """Count the jobs of `client` that wait or run."""
+        with self._database.reading() as session:
+            query = select(func.count()).select_from(Job)
+            query = query.where(Job.client == client, col(Job.status).in_(_OPEN))
+            return session.exec(query).one()
+
+    def resume(self) -> list[Job]:
+        """Queue again what was running when the server ended; return all that waits, oldest first.
+
+        A job that was started `MAX_ATTEMPTS` times without coming to an end fails instead.
+        """
+        with self._database.writing() as session:
+            jobs = session.exec(
+                select(Job).where(col(Job.status).in_(_OPEN)).order_by(col(Job.created))
+            ).all()
+            for job in jobs:
+                if job.attempts >= MAX_ATTEMPTS:
+                    job.status, job.finished = JobStatus.FAILED.value, now()
+                    job.error_code = "interrupted"
+                    job.error = (
+                        f"the server ended {job.attempts} times while it read this clip; "
+                        "delete the clip, or convert it to another format and try again"
+                    )
+                else:
+                    job.status = JobStatus.QUEUED.value
+                session.add(job)
+        return [job for job in jobs if job.status == JobStatus.QUEUED]
+
+    def start(self, job_id: str) -> Job | None:
+        """Mark a waiting job as running; ``None`` when it was cancelled or removed meanwhile."""
+        with self._database.writing() as session:
+            job = session.get(Job, job_id)
+            if job is None or job.status != JobStatus.QUEUED:
+                return None
+            job.status, job.started = JobStatus.RUNNING.value, now()
+            job.attempts += 1
+            session.add(job)
+            return job
+
+    def requeue(self, job_id: str) -> None:
+        """Put a running job back, because the server stops in good order."""
+        with self._database.writing() as session:
+            job = session.get(Job, job_id)
+            if job is not None and job.status == JobStatus.RUNNING:
+                job.status = JobStatus.QUEUED.value
+                job.attempts -= 1
+                session.add(job)
+
+    def finish(
+        self, job_id: str, status: JobStatus, *, code: str | None = None, error: str | None = None
+    ) -> bool:
+        """End a job that is still open; return whether it was.
+
+        Parameters
+        ----------
+        job_id
+            Which one.
+        status
+            A final status.
+        code
+            Stable word for why it failed.
+        error
+            The same as one line for a person.
+
+        """
+        with self._database.writing() as session:
+            job = session.get(Job, job_id)
+            if job is None or JobStatus(job.status).final:
+                return False
+            job.status, job.finished = status.value, now()
+            job.error_code, job.error = code, error
+            session.add(job)
+            return True

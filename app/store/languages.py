@@ -1,0 +1,222 @@
+"""Languages: immutable revisions, the newest of which is the head."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlmodel import Session, col, select
+
+from app.store.database import Database
+from app.store.errors import Conflict, NotFound
+from app.store.models import LanguageRecord, LanguageRevision, SeededSample, now
+
+
+@dataclass(frozen=True, kw_only=True)
+class Draft:
+    """What a new revision says, before it has its number's row."""
+
+    name: str
+    labels: Sequence[str]
+    change: str
+    document: str
+
+
+@dataclass(frozen=True)
+class LanguageState:
+    """A language and one of its revisions."""
+
+    record: LanguageRecord
+    revision: LanguageRevision
+
+
+class LanguageStore:
+    """Keeps languages in `database`; documents are opaque text here."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def create(
+        self, draft: Draft, revision: int = 1, *, sample: str | None = None
+    ) -> LanguageState:
+        """Add a language whose first revision is `draft` under the number `revision`.
+
+        Parameters
+        ----------
+        draft
+            What it says.
+        revision
+            The number its document carries.
+        sample
+            Name under which we brought it, so that it is brought only once.
+
+        """
+        with self._database.writing() as session:
+            record = LanguageRecord(head=revision, sample=sample is not None)
+            session.add(record)
+            session.flush()
+            row = _row(record.id, revision, draft)
+            session.add(row)
+            if sample is not None:
+                session.add(SeededSample(name=sample))
+        return LanguageState(record, row)
+
+    def seeded(self) -> set[str]:
+        """Return the names of the samples that were brought before, deleted or not."""
+        with self._database.reading() as session:
+            return set(session.exec(select(SeededSample.name)).all())
+
+    def get(self, language_id: str, revision: int | None = None) -> LanguageState:
+        """Return a language that is not deleted, in its newest or the given revision.
+
+        Raises
+        ------
+        NotFound
+            When there is no such language or revision.
+
+        """
+        with self._database.reading() as session:
+            return _load(session, language_id, revision)
+
+    def all(self) -> list[LanguageState]:
+        """Return the languages that are not deleted in their newest revisions, oldest first."""
+        with self._database.reading() as session:
+            query = (
+                select(LanguageRecord, LanguageRevision)
+                .join(LanguageRevision)
+                .where(
+                    col(LanguageRecord.deleted).is_(None),
+                    LanguageRevision.revision == LanguageRecord.head,
+                )
+                .order_by(col(LanguageRecord.created), col(LanguageRecord.id))
+            )
+            return [LanguageState(record, row) for record, row in session.exec(query)]
+
+    def revisions(self, language_id: str) -> list[LanguageRevision]:
+        """Return every revision, newest first.
+
+        Raises
+        ------
+        NotFound
+            When there is no such language.
+
+        """
+        with self._database.reading() as session:
+            _load(session, language_id, None)
+            query = select(LanguageRevision).where(LanguageRevision.language_id == language_id)
+            return list(session.exec(query.order_by(col(LanguageRevision.revision).desc())))
+
+    def edit(
+        self,
+        language_id: str,
+        change: Callable[[LanguageRevision, int], Draft],
+        expected: int | None = None,
+    ) -> LanguageState:
+        """Add a revision made from the newest one.
+
+        Reading, changing and writing happen under the write lock: no edit gets lost.
+
+        Parameters
+        ----------
+        language_id
+            Which one.
+        change
+            Makes the draft from the newest revision and the number that the draft will get.
+        expected
+            The revision the caller saw; ``None`` accepts any.
+
+        Raises
+        ------
+        NotFound
+            When there is no such language.
+        Conflict
+            When the newest revision is not the `expected` one.
+
+        """
+        with self._database.writing() as session:
+            state = _load(session, language_id, None)
+            record, head = state.record, state.record.head
+            if expected is not None and expected != head:
+                raise Conflict(
+                    f"the language is at revision {head} and the change was made from revision "
+                    f"{expected}; load it again and repeat the change",
+                    current=head,
+                )
+            row = _row(language_id, head + 1, change(state.revision, head + 1))
+            session.add(row)
+            record.head = head + 1
+            session.add(record)
+        return LanguageState(record, row)
+
+    def delete(self, language_id: str, expected: int | None = None) -> None:
+        """Hide a language until `purge`.
+
+        Raises
+        ------
+        NotFound
+            When there is no such language.
+        Conflict
+            When the newest revision is not the `expected` one.
+
+        """
+        with self._database.writing() as session:
+            record = _load(session, language_id, None).record
+            if expected is not None and expected != record.head:
+                raise Conflict(
+                    f"the language is at revision {record.head}, not {expected}; look at what "
+                    "changed before deleting it",
+                    current=record.head,
+                )
+            record.deleted = now()
+            session.add(record)
+
+    def restore(self, language_id: str) -> LanguageState:
+        """Bring a deleted language back; nothing happens to one that is not deleted.
+
+        Raises
+        ------
+        NotFound
+            When it never existed or is purged.
+
+        """
+        with self._database.writing() as session:
+            record = session.get(LanguageRecord, language_id)
+            if record is None:
+                raise NotFound(f"there is no language {language_id!r} to restore")
+            record.deleted = None
+            session.add(record)
+            session.flush()
+            return _load(session, language_id, None)
+
+    def purge(self, before: datetime) -> int:
+        """Remove for good what was deleted `before` that moment; return how many went."""
+        with self._database.writing() as session:
+            query = select(LanguageRecord).where(col(LanguageRecord.deleted) < before)
+            gone = session.exec(query).all()
+            for record in gone:
+                session.delete(record)
+        return len(gone)
+
+
+def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
+    return LanguageRevision(
+        language_id=language_id,
+        revision=revision,
+        name=draft.name,
+        labels=json.dumps(list(draft.labels), ensure_ascii=False),
+        change=draft.change,
+        document=draft.document,
+    )
+
+
+def _load(session: Session, language_id: str, revision: int | None) -> LanguageState:
+    record = session.get(LanguageRecord, language_id)
+    if record is None or record.deleted is not None:
+        raise NotFound(f"there is no language {language_id!r}")
+    number = record.head if revision is None else revision
+    row = session.get(LanguageRevision, (language_id, number))
+    if row is None:
+        raise NotFound(f"language {language_id!r} has no revision {number}")
+    return LanguageState(record, row)

@@ -1,0 +1,163 @@
+"""The tables. Rows leave the store as detached, read-only values."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from enum import StrEnum
+from uuid import uuid4
+
+from sqlalchemy import CheckConstraint, Column, DateTime, Text
+from sqlalchemy.types import TypeDecorator
+from sqlmodel import Field, SQLModel
+
+
+def now() -> datetime:
+    """Return the present moment in UTC."""
+    return datetime.now(UTC)
+
+
+def new_id() -> str:
+    """Return a fresh id: 32 hex digits, never derived from what a user typed."""
+    return uuid4().hex
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A moment in UTC; SQLite keeps no time zone, so it is put back when read."""
+
+    impl = DateTime
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: object) -> datetime | None:
+        """Store UTC without a zone."""
+        return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
+
+    def process_result_value(self, value: datetime | None, dialect: object) -> datetime | None:
+        """Put the zone back."""
+        return None if value is None else value.replace(tzinfo=UTC)
+
+
+class JobStatus(StrEnum):
+    """Where a job stands; the last three are final."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+    @property
+    def final(self) -> bool:
+        """Whether nothing happens to the job any more."""
+        return self in (JobStatus.DONE, JobStatus.FAILED, JobStatus.CANCELLED)
+
+
+class Clip(SQLModel, table=True):
+    """One video the user gave us; its file and its recording lie under `id` in the clip folder."""
+
+    __tablename__ = "clip"
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    name: str = Field(max_length=200)
+    """The name shown; never used as a path."""
+    media_type: str = Field(max_length=64)
+    size: int
+    """Bytes."""
+    width: int
+    """Pixels, upright."""
+    height: int
+    duration: float
+    """Seconds."""
+    frames: int | None = None
+    """Frames the container states, then those decoded; ``None`` while unknown."""
+    idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
+    deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+
+class Job(SQLModel, table=True):
+    """The extraction of poses and hands from one clip."""
+
+    __tablename__ = "job"
+    __table_args__ = (
+        CheckConstraint(
+            "status IN ('queued', 'running', 'done', 'failed', 'cancelled')", name="job_status"
+        ),
+    )
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    client: str = Field(max_length=64)
+    """Address that asked for it: a queue limit counts per client."""
+    status: str = Field(default=JobStatus.QUEUED.value, max_length=16, index=True)
+    attempts: int = 0
+    """How often it was started; a job that ended the server several times is given up."""
+    error_code: str | None = Field(default=None, max_length=64)
+    error: str | None = Field(default=None, sa_column=Column(Text))
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
+    started: datetime | None = Field(default=None, sa_type=UtcDateTime)
+    finished: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+
+class LanguageRecord(SQLModel, table=True):
+    """A language's identity; what it says lies in its revisions."""
+
+    __tablename__ = "language"
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    head: int
+    """Number of the newest revision."""
+    sample: bool = False
+    """Whether we brought it."""
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
+    deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+
+class LanguageRevision(SQLModel, table=True):
+    """One state of a language, written once and never changed."""
+
+    __tablename__ = "language_revision"
+
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", primary_key=True, max_length=32
+    )
+    revision: int = Field(primary_key=True)
+    name: str = Field(max_length=200)
+    """The language's name in this revision, for lists."""
+    labels: str = Field(sa_column=Column(Text, nullable=False))
+    """The gestures' labels as a JSON array, for lists."""
+    change: str = Field(max_length=300)
+    """What this revision did, for the history."""
+    document: str = Field(sa_column=Column(Text, nullable=False))
+    """The whole language file."""
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
+class RecognitionRecord(SQLModel, table=True):
+    """One recognition as it was answered, kept even when its language moves on."""
+
+    __tablename__ = "recognition"
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    revision: int
+    start: float
+    """Seconds in the clip."""
+    end: float
+    profile: str = Field(max_length=32)
+    expected: str | None = Field(default=None, max_length=200)
+    """The label the user meant, when known."""
+    result: str = Field(sa_column=Column(Text, nullable=False))
+    """`Recognition.to_dict` as JSON."""
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
+
+
+class SeededSample(SQLModel, table=True):
+    """A sample language that was offered once; deleting it does not bring it back."""
+
+    __tablename__ = "seeded_sample"
+
+    name: str = Field(primary_key=True, max_length=200)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)

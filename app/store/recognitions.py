@@ -1,0 +1,53 @@
+"""Recognitions: answers kept as they were given."""
+
+from __future__ import annotations
+
+from sqlmodel import col, select
+
+from app.store.database import Database
+from app.store.errors import NotFound
+from app.store.models import Clip, LanguageRecord, RecognitionRecord
+
+_VISIBLE = (col(Clip.deleted).is_(None), col(LanguageRecord.deleted).is_(None))
+
+
+class RecognitionStore:
+    """Keeps recognitions in `database`; those of deleted clips and languages are hidden."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def add(self, record: RecognitionRecord) -> RecognitionRecord:
+        """Keep `record`."""
+        with self._database.writing() as session:
+            session.add(record)
+        return record
+
+    def get(self, recognition_id: str) -> RecognitionRecord:
+        """Return one.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        with self._database.reading() as session:
+            query = select(RecognitionRecord).join(Clip).join(LanguageRecord)
+            query = query.where(RecognitionRecord.id == recognition_id, *_VISIBLE)
+            if (record := session.exec(query).first()) is None:
+                raise NotFound(f"there is no recognition {recognition_id!r}")
+            return record
+
+    def all(
+        self, *, clip_id: str | None = None, language_id: str | None = None, limit: int
+    ) -> list[RecognitionRecord]:
+        """Return the newest `limit` ones of a clip, of a language, or of all."""
+        with self._database.reading() as session:
+            query = select(RecognitionRecord).join(Clip).join(LanguageRecord).where(*_VISIBLE)
+            if clip_id is not None:
+                query = query.where(RecognitionRecord.clip_id == clip_id)
+            if language_id is not None:
+                query = query.where(RecognitionRecord.language_id == language_id)
+            query = query.order_by(col(RecognitionRecord.created).desc()).limit(limit)
+            return list(session.exec(query))
