@@ -1,0 +1,93 @@
+"""Seconds of the frames of a video: the container's timestamps, repaired where they are broken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+FALLBACK_STEP = 1 / 25
+"""Seconds between frames while nothing in the file says otherwise: the slowest rate that
+cameras record moving pictures at by default (PAL), so that repaired time rather lags than runs."""
+
+SHORTEST_STEP, LONGEST_STEP = 1 / 1000, 0.5
+"""Believable seconds between neighbouring frames: from a high-speed camera's 1000 frames a second
+to the longest gap that a trajectory bridges (`app.recognition.trajectory.MAX_GAP_SECONDS`).
+A container's nominal rate is often wrong (a WebM recorded by a browser says 1000 per second)."""
+
+DISCONTINUITY = 1.0
+"""Seconds back from which a jump is a restart of the clock (joined files, a camera's counter that
+wraps) and not a frame out of order: B-frames reorder by at most a few frames."""
+
+
+@dataclass
+class FrameClock:
+    """Gives every frame, in display order, a time later than that of the frame before it.
+
+    The first frame is at 0 s and every other one where the container puts it, whatever the
+    nominal rate. Three faults are repaired and counted:
+
+    - no timestamp: one step after the frame before;
+    - not later than the frame before (duplicates, frames out of order): half a step after it,
+      so that the next good timestamp is usually still ahead and time is not stretched;
+    - more than `DISCONTINUITY` back: the clock restarted; this frame comes one step after the
+      one before, and all later ones are moved along with it.
+
+    A step is the last believable difference of two timestamps.
+
+    Attributes
+    ----------
+    step
+        Seconds between frames as far as known: the nominal value first, then as seen.
+    repaired
+        Count of frames whose timestamp was missing or not usable.
+
+    """
+
+    step: float = FALLBACK_STEP
+    repaired: int = 0
+    _last: float | None = field(default=None, init=False)
+    _last_stamp: float | None = field(default=None, init=False)
+    _shift: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        """Replace a nominal step that cannot be true."""
+        if not SHORTEST_STEP <= self.step <= LONGEST_STEP:
+            self.step = FALLBACK_STEP
+
+    def seconds(self, stamp: float | None) -> float:
+        """Return the time of the next frame.
+
+        Parameters
+        ----------
+        stamp
+            What the container says, in seconds from any fixed moment; None: nothing.
+
+        Returns
+        -------
+        Seconds after the first frame, greater than at every call before.
+
+        """
+        if self._last is None:
+            self._shift = -(stamp or 0.0)
+            self.repaired += stamp is None
+            now = 0.0
+        else:
+            now = self._following(stamp, self._last)
+        self._last, self._last_stamp = now, stamp
+        return now
+
+    def _following(self, stamp: float | None, last: float) -> float:
+        if stamp is None:
+            self.repaired += 1
+            return last + self.step
+        now = stamp + self._shift
+        if self._last_stamp is not None:
+            gap = stamp - self._last_stamp
+            if SHORTEST_STEP <= gap <= LONGEST_STEP:
+                self.step = gap
+        if now > last:
+            return now
+        self.repaired += 1
+        if last - now > DISCONTINUITY:
+            self._shift += last + self.step - now
+            return last + self.step
+        return last + self.step / 2

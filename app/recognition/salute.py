@@ -1,0 +1,261 @@
+"""The Vulcan salute that brackets a gesture: a test on one hand's landmarks, and its hold in time.
+
+Fingers straight, index with middle and ring with little finger together, a V between the two
+pairs. The published rule compares three gaps between finger tips only and therefore also fires on
+a victory sign, on two fingers held together and on loosely curled hands; the test here asks for
+the whole shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.recognition.errors import PoseError
+from app.recognition.estimation.base import Hand
+from app.recognition.landmarks import HAND_LANDMARKS
+from app.recognition.poses import FloatArray
+
+FINGERS = ("index_finger", "middle_finger", "ring_finger", "pinky")
+_JOINTS = np.array(
+    [
+        [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
+        for finger in FINGERS
+    ]
+)
+"""``(4 fingers, 4 joints)`` positions in `HAND_LANDMARKS`, knuckle to tip."""
+
+PUBLISHED_RATIO = 1.2
+"""How many times wider the middle gap must be in the published rule (OSG's reference code)."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A soft threshold: 0.5 at `middle`, 0.98 half a `width` above, 0.02 half a `width` below.
+
+    The logistic slope ``8 / width`` makes `width` the range in which the answer is in doubt.
+    """
+
+    middle: float
+    width: float
+
+    def fulfilment(self, value: float) -> float:
+        """Tell in [0, 1] how far `value` is above the threshold."""
+        slope = np.clip(8 * (value - self.middle) / self.width, -50, 50)
+        return float(1 / (1 + np.exp(-slope)))
+
+
+# Chosen on rendered hands with known pose, checked on photographs (`benchmarks/salute.py`).
+STRAIGHT = Condition(0.87, 0.2)
+"""Distance knuckle to tip over the finger's length along its joints; 1 is straight."""
+
+LONG = Condition(0.42, 0.32)
+"""Distance knuckle to tip of index, middle and ring finger, in palms: curled fingers are short."""
+
+LONG_LITTLE_FINGER = Condition(0.30, 0.28)
+"""The same of the little finger, which is a quarter shorter."""
+
+STRETCHED_OUT = Condition(0.18, 0.32)
+"""How much farther than its middle joint the tip is from the wrist, in palms."""
+
+SPREAD = Condition(10.0, 12.0)
+"""Degrees between middle and ring finger: the V."""
+
+SPREAD_EXCESS = Condition(0.0, 12.0)
+"""Degrees by which the V is wider than `PAIR_MARGIN` times the wider gap inside the pairs."""
+
+PAIR_MARGIN = 1.1
+"""How many times the V must exceed the angle inside a pair; the fingers of a pair need not touch,
+but a fan of evenly spread fingers is an open hand."""
+
+TIP_GAP_RATIO = Condition(1.15, 0.6)
+"""Gap between the tips of middle and ring finger over the wider gap inside the pairs."""
+
+PALM_WIDTH = Condition(0.38, 0.4)
+"""Index to little finger knuckle, in palms: seen edge-on the angles mean nothing."""
+
+KNUCKLES_PER_PALM = 1.2
+"""Palm length (wrist to middle knuckle) over the width of the knuckles, for foreshortened palms."""
+
+ENTER_SCORE = 0.5
+"""A salute begins where the test itself says so."""
+
+LEAVE_SCORE = 0.3
+"""A salute goes on while the score stays above this: a hand that trembles around the threshold is
+still saluting, one that has closed or opened scores below 0.1."""
+
+HOLD_SECONDS = 0.3
+"""A salute counts once it was held for this long: longer than the hand takes the shape in passing,
+shorter than anyone gets impatient. In seconds, since the published code's 30 frames on the desk
+and 5 on the robot are different times."""
+
+DROPOUT_SECONDS = 0.5
+"""A salute is over when it was not seen for this long. Under water the hand detector loses a still
+hand for up to half a second; nobody draws a gesture in that time."""
+
+
+def salute_score(hand_xy: FloatArray) -> float:
+    """Tell how much one hand looks like a Vulcan salute.
+
+    The least fulfilled of eight conditions: four straight, long, stretched-out fingers, the V
+    between middle and ring finger, wide in degrees and against the pairs, and a palm not seen
+    edge-on. Invariant to translation, rotation, mirroring (left or right hand) and uniform scale.
+
+    Parameters
+    ----------
+    hand_xy
+        ``(21, 2)`` pixels, in the order of `HAND_LANDMARKS`. NaN: not seen.
+
+    Returns
+    -------
+    In [0, 1]; above 0.5 is a salute. 0 where a landmark is not seen.
+
+    Raises
+    ------
+    PoseError
+        When `hand_xy` has another shape.
+
+    """
+    points = _checked(hand_xy)
+    if not np.isfinite(points).all():
+        return 0.0
+    points = _upright_hand(points)
+    joints = points[_JOINTS]
+    fingers = joints[:, 3] - joints[:, 0]
+    lengths = np.linalg.norm(fingers, axis=1)
+    bones = np.linalg.norm(np.diff(joints, axis=1), axis=2).sum(axis=1)
+    reach = np.linalg.norm(joints[:, 3], axis=1) - np.linalg.norm(joints[:, 1], axis=1)
+    directions = np.degrees(np.arctan2(fingers[:, 0], fingers[:, 1]))
+    within_index, spread, within_little = directions[:-1] - directions[1:]
+    pair_angle = max(abs(within_index), abs(within_little))
+    gaps = np.linalg.norm(np.diff(joints[:, 3], axis=0), axis=1)
+    pair_gap = max(gaps[0], gaps[2], 1e-6)
+    return min(
+        STRAIGHT.fulfilment(float((lengths / np.maximum(bones, 1e-9)).min())),
+        LONG.fulfilment(lengths[:3].min()),
+        LONG_LITTLE_FINGER.fulfilment(lengths[3]),
+        STRETCHED_OUT.fulfilment(reach.min()),
+        SPREAD.fulfilment(spread),
+        SPREAD_EXCESS.fulfilment(spread - PAIR_MARGIN * pair_angle),
+        TIP_GAP_RATIO.fulfilment(gaps[1] / pair_gap),
+        PALM_WIDTH.fulfilment(float(np.linalg.norm(joints[0, 0] - joints[3, 0]))),
+    )
+
+
+def published_rule(hand_xy: FloatArray) -> bool:
+    """Tell what the published implementation calls a salute, to compare with.
+
+    The gap between the tips of middle and ring finger is `PUBLISHED_RATIO` times wider than the
+    gap between index and middle finger, and than the one between ring and little finger.
+
+    Parameters
+    ----------
+    hand_xy
+        ``(21, 2)`` pixels, in the order of `HAND_LANDMARKS`.
+
+    Raises
+    ------
+    PoseError
+        When `hand_xy` has another shape.
+
+    """
+    tips = _checked(hand_xy)[_JOINTS[:, 3]]
+    index, middle, little = np.linalg.norm(np.diff(tips, axis=0), axis=1)
+    return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
+
+
+def best_salute(hands: Iterable[Hand]) -> float:
+    """Return the score of the hand that salutes most, left or right; 0 without a hand."""
+    return max((salute_score(hand.xy) for hand in hands), default=0.0)
+
+
+@dataclass
+class SaluteTrigger:
+    """Turns the salute scores of a stream into salutes that were meant.
+
+    What counts is time between two neighbouring frames that both show the salute, so a detection
+    in a single frame counts for nothing, at any frame rate. Of one such step at most
+    half of `hold` counts: a salute needs at least three frames, also where a camera stalls.
+
+    Attributes
+    ----------
+    hold
+        Seconds of salute until it counts.
+    dropout
+        Seconds without salute until it is over.
+    enter, leave
+        Scores from which it begins, and down to which it goes on.
+    held
+        Whether a salute counts now.
+    since, until
+        Seconds: first and last moment of the salute that builds up, is held or was just released;
+        None before any.
+
+    """
+
+    hold: float = HOLD_SECONDS
+    dropout: float = DROPOUT_SECONDS
+    enter: float = ENTER_SCORE
+    leave: float = LEAVE_SCORE
+    held: bool = field(default=False, init=False)
+    since: float | None = field(default=None, init=False)
+    until: float | None = field(default=None, init=False)
+    _collected: float = field(default=0.0, init=False)
+    _previous: tuple[float, float] | None = field(default=None, init=False)
+
+    def update(self, time: float, score: float) -> bool:
+        """Take the next frame's score.
+
+        Parameters
+        ----------
+        time
+            Seconds, later than in every call before.
+        score
+            See `salute_score`.
+
+        Returns
+        -------
+        Whether a salute is held now.
+
+        """
+        active = self._collected > 0
+        previous, self._previous = self._previous, (time, score)
+        if previous is not None:
+            before, score_before = previous
+            if min(score_before, score) >= (self.leave if active else self.enter):
+                if not active:
+                    self.since = before
+                self._collected += min(time - before, self.hold / 2)
+                self.until = time
+        if self.until is not None and time - self.until > self.dropout:
+            self.held, self._collected = False, 0.0
+        # The tolerance only forgives that a sum of floats misses `hold` by the last bit.
+        elif self._collected >= self.hold - 1e-9:
+            self.held = True
+        return self.held
+
+
+def _checked(hand_xy: FloatArray) -> FloatArray:
+    points = np.asarray(hand_xy, dtype=np.float64)
+    if points.shape != (len(HAND_LANDMARKS), 2):
+        raise PoseError(f"a hand has shape {points.shape}, expected (21, 2): x and y of 21 points")
+    return points
+
+
+def _upright_hand(points: FloatArray) -> FloatArray:
+    """Move the wrist to 0, turn the middle knuckle to +y, index to +x, and scale by the palm."""
+    points = points - points[0]
+    middle_knuckle = points[_JOINTS[1, 0]]
+    palm = float(np.linalg.norm(middle_knuckle))
+    cosine, sine = middle_knuckle / max(palm, 1e-9)
+    turned = np.stack(
+        [points[:, 0] * sine - points[:, 1] * cosine, points[:, 0] * cosine + points[:, 1] * sine],
+        axis=1,
+    )
+    knuckles = turned[_JOINTS[0, 0]] - turned[_JOINTS[3, 0]]
+    if knuckles[0] < 0:
+        turned[:, 0] *= -1
+    size = max(palm, KNUCKLES_PER_PALM * float(np.linalg.norm(knuckles)), 1e-9)
+    return turned / size
