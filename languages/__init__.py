@@ -1,0 +1,1 @@
+"""Sample languages, the clips they came from, and what makes both."""
