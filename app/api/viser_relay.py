@@ -1,0 +1,125 @@
+"""Serve viser under a path of this app: one public port, viser itself on loopback only.
+
+viser's client is one HTML file whose websocket URL is the page's own without query and trailing
+slash: a page at ``/viser/abc/`` opens ``ws://host/viser/abc``. So two routes are enough. viser
+checks no origin and knows no token; both are checked here, on the way in.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, Final
+from urllib.parse import urlsplit
+
+import viser
+import websockets
+from fastapi import APIRouter, HTTPException, WebSocket
+from fastapi.responses import FileResponse
+from starlette.websockets import WebSocketDisconnect
+from websockets.asyncio.client import ClientConnection
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
+
+CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
+
+POLICY_VIOLATION, SERVICE_RESTART = 1008, 1012
+"""Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
+
+CONTENT_SECURITY_POLICY: Final = (
+    "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
+    "worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+    "font-src 'self' data:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'self'"
+)
+"""For viser's bundle alone: it is one file with inline scripts, and compiles WebAssembly.
+
+``connect-src 'self'`` matters most: without it a link with ``?websocket=ws://...`` would let a
+foreign server draw into our page.
+"""
+
+
+def router(port_of: Callable[[str], int | None], prefix: str = "/viser") -> APIRouter:
+    """Make the routes that relay ``{prefix}/{name}`` to the viser server of that workspace.
+
+    Parameters
+    ----------
+    port_of
+        The loopback port of a workspace's viser server, None when there is no such workspace.
+    prefix
+        Path under which the workspaces lie.
+
+    """
+    routes = APIRouter(include_in_schema=False)
+
+    @routes.get(prefix + "/{name}/")
+    def page(name: str) -> FileResponse:
+        if port_of(name) is None:
+            raise HTTPException(404, "There is no such workspace; reload the page to open one.")
+        headers = {
+            "Content-Security-Policy": CONTENT_SECURITY_POLICY,
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
+        }
+        return FileResponse(CLIENT, media_type="text/html", headers=headers)
+
+    @routes.websocket(prefix + "/{name}")
+    async def relay(name: str, browser: WebSocket) -> None:
+        port = port_of(name)
+        if port is None or not same_origin(browser):
+            await browser.close(code=POLICY_VIOLATION)
+            return
+        with contextlib.suppress(OSError, websockets.InvalidHandshake):
+            async with _connect(port, browser.scope.get("subprotocols", [])) as server:
+                await browser.accept(subprotocol=server.subprotocol)
+                await _until_one_ends(_to_viser(browser, server), _to_browser(server, browser))
+        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+            await browser.close(code=SERVICE_RESTART)
+
+    return routes
+
+
+def same_origin(websocket: WebSocket) -> bool:
+    """Tell whether the page that opens the websocket is one of ours.
+
+    Browsers send Origin with every websocket and let scripts of other sites open them; programs
+    that are no browser need not send it.
+    """
+    origin = websocket.headers.get("origin")
+    return origin is None or urlsplit(origin).netloc == websocket.headers.get("host")
+
+
+def _connect(port: int, subprotocols: list[str]) -> websockets.connect:
+    """Open the way to viser: no compression and no size limit, both ends are this machine."""
+    return websockets.connect(
+        f"ws://127.0.0.1:{port}",
+        subprotocols=[Subprotocol(name) for name in subprotocols] or None,
+        compression=None,
+        max_size=None,
+        proxy=None,
+        ping_interval=None,
+    )
+
+
+async def _to_viser(browser: WebSocket, server: ClientConnection) -> None:
+    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, KeyError):
+        while True:
+            await server.send(await browser.receive_bytes())
+
+
+async def _to_browser(server: ClientConnection, browser: WebSocket) -> None:
+    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, RuntimeError):
+        async for message in server:
+            await browser.send_bytes(message if isinstance(message, bytes) else message.encode())
+
+
+async def _until_one_ends(*directions: Coroutine[Any, Any, None]) -> None:
+    tasks = [asyncio.create_task(direction) for direction in directions]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)

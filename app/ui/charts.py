@@ -1,0 +1,314 @@
+"""Charts as pure functions: data in, HTML out. Every text that a user wrote is escaped here."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition import Recognition
+from app.recognition.poses import FloatArray
+
+MAX_ROWS = 60
+"""Gestures shown in the vote table; the farthest of a larger language say nothing about why."""
+
+MAX_CHART_POINTS = 400
+"""Points per curve: more than the chart has pixels would only make the page slow."""
+
+
+def verdict(recognition: Recognition, expected: str | None) -> str:
+    """Say what was recognised, whether that was meant, and who voted for it."""
+    label, votes = recognition.label, recognition.votes
+    count = sum(vote == recognition.nearest for vote in votes.values())
+    support = (
+        f"{count} of {len(votes)} voters, confidence {recognition.confidence:.0%}"
+        if votes
+        else f"confidence {recognition.confidence:.0%}"
+    )
+    if label is None:
+        badge, kind = "?", "expected"
+        text = f"Not recognised. Nearest is <b>{escape(recognition.nearest)}</b>"
+    elif expected is None:
+        badge, kind = "\N{BULLET}", "chosen"
+        text = f"Recognised as <b class='chosen'>{escape(label)}</b>"
+    elif expected == label:
+        badge, kind = "\N{CHECK MARK}", "chosen"
+        text = f"Recognised as <b class='chosen'>{escape(label)}</b>, as expected"
+    else:
+        badge, kind = "\N{NOT EQUAL TO}", "expected"
+        text = (
+            f"Taken for <b class='chosen'>{escape(label)}</b>, "
+            f"expected <b class='expected'>{escape(expected)}</b>"
+        )
+    return _block(
+        f"<div class='card verdict' role='status'><span class='badge {kind}' aria-hidden='true'>"
+        f"{badge}</span><div><p>{text}</p><p class='dim num'>{support}</p></div></div>"
+    )
+
+
+def hint(title: str, text: str) -> str:
+    """Say what this panel will show, and what to do for it."""
+    return _block(
+        f"<div class='card'><p><b>{escape(title)}</b></p><p class='dim'>{escape(text)}</p></div>"
+    )
+
+
+def vote_sentence(votes: Mapping[str, str | None]) -> str:
+    """Say which voters chose which gesture, the largest party first."""
+    parties: dict[str, list[str]] = {}
+    for voter, label in votes.items():
+        parties.setdefault(label or "no one", []).append(readable(voter))
+    ordered = sorted(parties.items(), key=lambda party: -len(party[1]))
+    sentences = [
+        f"<b>{escape(label)}</b>: {escape(', '.join(voters))}." for label, voters in ordered
+    ]
+    return _block(f"<h3>Who voted for what</h3><p>{'<br>'.join(sentences)}</p>")
+
+
+def vote_table(recognition: Recognition, expected: str | None) -> str:
+    """Tabulate every voter's distance to every gesture; each voter's choice is marked.
+
+    One row per gesture, most votes first, one column per voter. Each voter has its own unit, so
+    shades compare within a column only: the stronger, the nearer. The choice carries a dot and a
+    frame, the expected and the chosen gesture carry their name as a tag: nothing is told by
+    colour alone.
+    """
+    counts = {label: 0 for label in recognition.gestures}
+    for label in recognition.votes.values():
+        if label in counts:
+            counts[label] += 1
+    nearness = _nearness(recognition.distances)
+    order = sorted(
+        range(len(recognition.gestures)),
+        key=lambda row: (
+            -counts[recognition.gestures[row]],
+            -float(nearness[:, row].mean()) if len(nearness) else 0.0,
+        ),
+    )
+    head = "".join(
+        f"<th scope='col'><span>{escape(readable(voter))}</span></th>"
+        for voter in recognition.voters
+    )
+    rows = "".join(
+        _vote_row(recognition, row, expected, nearness[:, row], counts) for row in order[:MAX_ROWS]
+    )
+    hidden = len(order) - MAX_ROWS
+    rest = f"<p class='dim'>{hidden} farther gestures are not shown.</p>" if hidden > 0 else ""
+    return _block(
+        "<h3>Distance to every gesture, as each voter measures it</h3><div class='scroll'>"
+        f"<table aria-label='Votes'><thead><tr><th></th>{head}"
+        f"<th scope='col'><span>votes</span></th></tr></thead><tbody>{rows}</tbody></table></div>"
+        "<p class='dim'>\N{BLACK CIRCLE} a voter\N{RIGHT SINGLE QUOTATION MARK}s choice. "
+        "The stronger the shade, the nearer, within a column.</p>" + rest
+    )
+
+
+def _vote_row(
+    recognition: Recognition,
+    row: int,
+    expected: str | None,
+    nearness: FloatArray,
+    counts: Mapping[str, int],
+) -> str:
+    gesture = recognition.gestures[row]
+    tags = ""
+    if gesture == recognition.label:
+        tags += "<span class='tag chosen'>chosen</span>"
+    if gesture == expected:
+        tags += "<span class='tag expected'>expected</span>"
+    cells = "".join(
+        _vote_cell(
+            float(recognition.distances[column, row]),
+            float(nearness[column]),
+            recognition.votes.get(voter) == gesture,
+        )
+        for column, voter in enumerate(recognition.voters)
+    )
+    kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
+    return (
+        f"<tr class='{kind}'><th scope='row' title='{escape(gesture)}'>{escape(gesture)}{tags}</th>"
+        f"{cells}<td class='votes'>{counts[gesture]}</td></tr>"
+    )
+
+
+def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
+    shade = f"background:rgba(var(--osg-chosen-rgb),{0.04 + 0.42 * nearness**2:.2f})"
+    kind = " class='choice'" if chosen else ""
+    return f"<td{kind} style='{shade}'>{short_number(distance)}</td>"
+
+
+def _nearness(distances: FloatArray) -> FloatArray:
+    """Scale ``(V, G)`` distances per voter to 1 (nearest) .. 0 (farthest); not finite is 0."""
+    finite = np.where(np.isfinite(distances), distances, np.nan)
+    if finite.size == 0:
+        return np.zeros_like(distances)
+    low = np.nanmin(np.where(np.isnan(finite), np.inf, finite), axis=1, keepdims=True)
+    high = np.nanmax(np.where(np.isnan(finite), -np.inf, finite), axis=1, keepdims=True)
+    span = np.where(high > low, high - low, 1.0)
+    return np.nan_to_num(1.0 - (finite - low) / span, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def image_row(images: Sequence[tuple[str, npt.NDArray[np.uint8]]]) -> str:
+    """Show trajectory images side by side, each ``(H, W)`` grey or ``(H, W, 3)`` RGB."""
+    figures = "".join(
+        f"<figure><img alt='trajectory image: {escape(caption)}' src='{_data_url(image)}'>"
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
+        for caption, image in images
+    )
+    return _block(f"<h3>What the voters compared</h3><div class='images'>{figures}</div>")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a chart.
+
+    Attributes
+    ----------
+    name
+        Shown in the legend.
+    values
+        ``(T,)``; NaN interrupts the line.
+    colour
+        A CSS colour.
+    dashed
+        Drawn dashed, so that two curves differ by more than colour.
+
+    """
+
+    name: str
+    values: FloatArray
+    colour: str
+    dashed: bool = False
+
+
+def line_chart(
+    title: str,
+    time: FloatArray,
+    curves: Sequence[Curve],
+    *,
+    bounds: tuple[float, float] | None = None,
+    height: int = 110,
+) -> str:
+    """Draw curves over time as SVG, with a cursor at the CSS variable ``--osg-now``.
+
+    Parameters
+    ----------
+    title
+        What is drawn, with its unit.
+    time
+        ``(T,)`` seconds, increasing.
+    curves
+        Each with T values.
+    bounds
+        Least and largest value of the axis; by default those of the curves.
+    height
+        Of the plot, in the units of a picture that is 340 wide.
+
+    """
+    if len(time) < 2:
+        return ""
+    step = max(1, len(time) // MAX_CHART_POINTS)
+    low, high = bounds or _range([curve.values for curve in curves])
+    left, right, width = 34.0, 6.0, 340.0
+    x = left + (time - time[0]) / (time[-1] - time[0]) * (width - left - right)
+    paths = []
+    for curve in curves:
+        y = height - (curve.values - low) / (high - low) * height
+        dash = " stroke-dasharray='5 3'" if curve.dashed else ""
+        paths.append(
+            f"<path d='{_path(x[::step], y[::step])}' fill='none' stroke='{curve.colour}' "
+            f"stroke-width='1.8' stroke-linejoin='round'{dash}/>"
+        )
+    grid = "".join(
+        f"<line x1='{left}' x2='{width - right}' y1='{at:.1f}' y2='{at:.1f}' "
+        "stroke='var(--osg-line)'/>"
+        f"<text x='{left - 6}' y='{at + 3.5:.1f}' text-anchor='end' font-size='10' "
+        f"fill='var(--osg-dim)'>{value:.2g}</text>"
+        for value, at in ((high, 0.0), ((low + high) / 2, height / 2), (low, float(height)))
+    )
+    ticks = "".join(
+        f"<text x='{left + share * (width - left - right):.1f}' y='{height + 14}' "
+        f"text-anchor='{anchor}' font-size='10' fill='var(--osg-dim)'>"
+        f"{time[0] + share * (time[-1] - time[0]):.1f} s</text>"
+        for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end"))
+    )
+    return _block(
+        f"<h3>{escape(title)}</h3><div class='chart'>"
+        f"<svg viewBox='0 0 {width:g} {height + 18}' role='img' aria-label='{escape(title)}'>"
+        f"{grid}{ticks}{''.join(paths)}</svg><div class='cursor'><i></i></div></div>"
+        f"<ul class='legend'>{''.join(_legend(curve) for curve in curves)}</ul>"
+    )
+
+
+def cursor(share: float) -> str:
+    """Move the cursor of every chart to `share` (0 .. 1) of its time axis."""
+    return f"<style>:root {{ --osg-now: {100 * min(max(share, 0.0), 1.0):.2f}% }}</style>"
+
+
+def clock(frame: int, frames: int, seconds: float) -> str:
+    """Show the moment on display: its time and its frame, counted from 0."""
+    return (
+        "<div class='osg'><div class='clock num'>"
+        f"<span><b>{seconds:.2f} s</b></span><span class='dim'>frame {frame} of {frames}</span>"
+        "</div></div>"
+    )
+
+
+def readable(name: str) -> str:
+    """Turn an identifier such as ``aspect_ratio`` into words."""
+    return name.replace("_", " ")
+
+
+def short_number(value: float) -> str:
+    """Write a distance in at most four characters, or as many as its size needs."""
+    if not np.isfinite(value):
+        return "\N{INFINITY}" if value > 0 else "\N{EN DASH}"
+    if value == 0:
+        return "0"
+    if abs(value) < 0.001:
+        return f"{value:.0e}".replace("e-0", "e-")
+    decimals = 3 if abs(value) < 0.1 else 2 if abs(value) < 10 else 1 if abs(value) < 100 else 0
+    return f"{value:.{decimals}f}".removeprefix("0")
+
+
+def _legend(curve: Curve) -> str:
+    dash = " stroke-dasharray='5 3'" if curve.dashed else ""
+    return (
+        "<li><svg width='20' height='4' style='display:inline;width:20px'>"
+        f"<line x1='0' x2='20' y1='2' y2='2' stroke='{curve.colour}' stroke-width='2'{dash}/>"
+        f"</svg>{escape(curve.name)}</li>"
+    )
+
+
+def _path(x: FloatArray, y: FloatArray) -> str:
+    """Write an SVG path that lifts the pen where a value is NaN."""
+    pieces, drawing = [], False
+    for at, value in zip(x, y, strict=True):
+        if np.isfinite(value):
+            pieces.append(f"{'L' if drawing else 'M'}{at:.1f} {value:.1f}")
+        drawing = bool(np.isfinite(value))
+    return "".join(pieces)
+
+
+def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
+    """Least and largest finite value, never equal."""
+    finite = np.concatenate([curve[np.isfinite(curve)] for curve in values] or [np.zeros(0)])
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    return (low, high) if high > low else (low - 0.5, high + 0.5)
+
+
+def _data_url(image: npt.NDArray[np.uint8]) -> str:
+    pixels = image[..., ::-1] if image.ndim == 3 else image
+    encoded = cv2.imencode(".png", np.ascontiguousarray(pixels))[1]
+    return "data:image/png;base64," + base64.b64encode(encoded.tobytes()).decode("ascii")
+
+
+def _block(content: str) -> str:
+    return f"<div class='osg'>{content}</div>"

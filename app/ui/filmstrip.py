@@ -1,0 +1,118 @@
+"""The frames of the video on display, small and few enough to keep in memory."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event, Lock, Thread
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.errors import VideoError
+from app.recognition.video import read_frames
+
+Image = npt.NDArray[np.uint8]
+
+MAX_WIDTH = 480
+"""Pixels. Shown about 600 wide and at an angle; every step up costs playback its frame rate."""
+
+MAX_FRAMES = 360
+"""Frames kept: twelve seconds at 30 a second, 9 MB as JPEG; of longer ranges every n-th."""
+
+JPEG_QUALITY = 82
+"""Below 80 rings show around a bright diver on dark water; above 85 only the size grows."""
+
+
+class Filmstrip:
+    """Decodes a range of a clip in the background and gives the frame nearest to the one asked.
+
+    Parameters
+    ----------
+    video
+        The clip.
+    first, last
+        Frames to keep, both included, counted from 0 over all decoded frames.
+    on_frame
+        Called from the decoding thread with the index of every frame that was added.
+
+    """
+
+    def __init__(
+        self, video: Path, first: int, last: int, on_frame: Callable[[int], None] | None = None
+    ) -> None:
+        self._video = video
+        self._first, self._last = first, last
+        self._stride = max(1, -(-(last - first + 1) // MAX_FRAMES))
+        self._on_frame = on_frame
+        self._indices: list[int] = []
+        self._encoded: list[bytes] = []
+        self._lock = Lock()
+        self._stop = Event()
+        self._complete = Event()
+        self._thread = Thread(target=self._decode, name="filmstrip", daemon=True)
+        self.error: str | None = None
+
+    def start(self) -> None:
+        """Begin to decode."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop decoding and wait for the thread to end."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def wait(self, timeout: float) -> bool:
+        """Wait until every frame is decoded; False when `timeout` seconds pass before."""
+        return self._complete.wait(timeout)
+
+    def __len__(self) -> int:
+        """Count the frames decoded so far."""
+        return len(self._indices)
+
+    def nearest(self, frame: int) -> tuple[int, Image] | None:
+        """Return index and image ``(H, W, 3)`` RGB of the decoded frame nearest to `frame`.
+
+        None while nothing is decoded.
+        """
+        with self._lock:
+            if not self._indices:
+                return None
+            at = bisect_left(self._indices, frame)
+            candidates = [i for i in (at - 1, at) if 0 <= i < len(self._indices)]
+            best = min(candidates, key=lambda i: abs(self._indices[i] - frame))
+            index, encoded = self._indices[best], self._encoded[best]
+        pixels = cv2.imdecode(np.frombuffer(encoded, np.uint8), cv2.IMREAD_COLOR_RGB)
+        return index, np.asarray(pixels, dtype=np.uint8)
+
+    def _decode(self) -> None:
+        try:
+            with read_frames(self._video) as frames:
+                for frame in frames:
+                    if self._stop.is_set() or frame.index > self._last:
+                        return
+                    if self._wanted(frame.index):
+                        self._add(frame.index, frame.image)
+        except VideoError as error:
+            self.error = str(error)
+        finally:
+            self._complete.set()
+
+    def _wanted(self, index: int) -> bool:
+        return index >= self._first and (index - self._first) % self._stride == 0
+
+    def _add(self, index: int, image: Image) -> None:
+        height, width = image.shape[:2]
+        if width > MAX_WIDTH:
+            size = (MAX_WIDTH, max(1, round(height * MAX_WIDTH / width)))
+            image = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
+        bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+        encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()
+        with self._lock:
+            self._indices.append(index)
+            self._encoded.append(encoded)
+        if self._on_frame is not None:
+            self._on_frame(index)

@@ -1,0 +1,131 @@
+"""Where things stand in the space-time cube.
+
+Axes as a camera has them: x right, y down, z forward, and z is time. The height of the video is
+1; the video is centred on the z axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.landmarks import LANDMARK_GROUPS, SKELETON
+from app.recognition.poses import PoseSequence
+
+Points = npt.NDArray[np.float32]
+
+DEPTH_PER_SECOND = 0.62
+"""Depth of one second: a stroke of about three seconds makes a cube one and a half videos deep."""
+
+DEPTH_LIMITS: Final = (1.1, 1.9)
+"""Least and largest depth of the cube, so that very short and long clips fit the view as well."""
+
+UNMARKED: Final = frozenset(name for names in LANDMARK_GROUPS.values() for name in names) - {
+    "left_wrist",
+    "right_wrist",
+}
+"""Drawn without a dot: eleven on a mask hide the face, three on a hand hide the fingers."""
+
+
+@dataclass(frozen=True, eq=False)
+class CubeGeometry:
+    """A recording laid out in space and time.
+
+    Attributes
+    ----------
+    landmarks
+        K names.
+    points
+        ``(T, K, 3)``; NaN where a landmark was not seen.
+    depth
+        ``(T,)`` z of every moment, from 0.
+    aspect
+        Width of the video over its height.
+    seconds
+        Duration.
+
+    """
+
+    landmarks: tuple[str, ...]
+    points: Points
+    depth: Points
+    aspect: float
+    seconds: float
+
+    @classmethod
+    def from_poses(cls, poses: PoseSequence) -> CubeGeometry:
+        """Lay out `poses`; at least one frame."""
+        width, height = poses.frame_size
+        elapsed = poses.time - poses.time[0]
+        seconds = float(elapsed[-1])
+        total = float(np.clip(seconds * DEPTH_PER_SECOND, *DEPTH_LIMITS))
+        depth = (elapsed / seconds * total if seconds else elapsed).astype(np.float32)
+        flat = (poses.xy - np.array([width, height]) / 2) / height
+        z = np.broadcast_to(depth[:, None, None], (*flat.shape[:2], 1))
+        points = np.concatenate([flat, z], axis=2).astype(np.float32)
+        return cls(poses.landmarks, points, depth, width / height, seconds)
+
+    @property
+    def back(self) -> float:
+        """The z of the back wall."""
+        return float(self.depth[-1]) if len(self.depth) > 1 else DEPTH_LIMITS[0]
+
+    def at_time(self, seconds: float) -> float:
+        """Return the z of a moment, `seconds` after the first."""
+        return self.back * seconds / self.seconds if self.seconds else 0.0
+
+    def bones(self, frame: int) -> Points:
+        """Return ``(N, 2, 3)`` the bones of which both ends are seen."""
+        index = {name: column for column, name in enumerate(self.landmarks)}
+        pairs = [(index[a], index[b]) for a, b in SKELETON if a in index and b in index]
+        return _without_gaps(self.points[frame][np.array(pairs, dtype=int).reshape(-1, 2)])
+
+    def joints(self, frame: int) -> Points:
+        """Return ``(N, 3)`` the landmarks seen in a frame, but those of face and fingers."""
+        shown = [column for column, name in enumerate(self.landmarks) if name not in UNMARKED]
+        points = self.points[frame, shown]
+        return points[np.isfinite(points).all(axis=1)]
+
+    def trail(self, landmark: str, stop: int | None = None) -> Points:
+        """Return ``(T - 1, 2, 3)`` a landmark's path up to frame `stop`, with NaN in its gaps."""
+        path = self.points[: None if stop is None else stop + 1, self.landmarks.index(landmark)]
+        return np.stack([path[:-1], path[1:]], axis=1)
+
+    def quiet_trails(self, salient: tuple[str, ...]) -> Points:
+        """Return ``(N, 2, 3)`` the paths of arms, trunk and legs."""
+        rest = [name for name in self.landmarks if name not in UNMARKED and name not in salient]
+        trails = [_without_gaps(self.trail(name)) for name in rest]
+        return np.concatenate(trails) if trails else np.zeros((0, 2, 3), np.float32)
+
+    def rectangle(self, z: float) -> Points:
+        """Return ``(4, 2, 3)`` the outline of the video at depth `z`."""
+        x, y = self.aspect / 2, 0.5
+        corners = np.array([(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)], np.float32)
+        return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+
+    def edges(self) -> Points:
+        """Return ``(12, 2, 3)`` the edges of the cube."""
+        x, y = self.aspect / 2, 0.5
+        along = [
+            ((sx * x, sy * y, 0.0), (sx * x, sy * y, self.back)) for sx in (-1, 1) for sy in (-1, 1)
+        ]
+        ends = [self.rectangle(0.0), self.rectangle(self.back)]
+        return np.concatenate([np.array(along, np.float32), *ends])
+
+    def ticks(self) -> list[float]:
+        """Return the seconds to mark on the time axis: four to eight round values."""
+        steps = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0)
+        step = next((step for step in steps if self.seconds / step <= 8), 600.0)
+        return [float(value) for value in np.arange(0.0, self.seconds + 1e-6, step)]
+
+
+def seen(segments: Points) -> npt.NDArray[np.bool_]:
+    """Tell ``(N,)`` which of the ``(N, 2, 3)`` segments have both ends."""
+    return np.asarray(np.isfinite(segments).all(axis=(1, 2)), dtype=np.bool_)
+
+
+def _without_gaps(segments: Points) -> Points:
+    return segments[seen(segments)]

@@ -1,0 +1,105 @@
+"""The open workspaces: how many there may be, and when one that nobody shows is closed."""
+
+from __future__ import annotations
+
+import asyncio
+import time as clock
+from threading import Lock
+
+from app.ui.workspace import Workspace
+
+SWEEP_SECONDS = 15.0
+"""How often idle workspaces are looked for; they live for minutes, so nothing hurries."""
+
+
+class TooManyWorkspacesError(RuntimeError):
+    """Raised when as many workspaces are open as the registry allows."""
+
+
+class WorkspaceRegistry:
+    """All open workspaces.
+
+    Parameters
+    ----------
+    limit
+        How many there may be. Each costs a thread or two and, with a clip on display, 10 MB.
+    ttl
+        Seconds that one without a connected browser is kept: a reload, or a laptop's nap.
+
+    """
+
+    def __init__(self, limit: int = 32, ttl: float = 600.0) -> None:
+        self.limit, self.ttl = limit, ttl
+        self._lock = Lock()
+        self._workspaces: dict[str, Workspace] = {}
+
+    def create(self, *, dark: bool = True) -> Workspace:
+        """Open a workspace; when the limit is reached, the one idle longest makes room.
+
+        Raises
+        ------
+        TooManyWorkspacesError
+            When the limit is reached and a browser shows each of them.
+
+        """
+        self.close_idle(self.ttl)
+        with self._lock:
+            full = len(self._workspaces) >= self.limit
+            idle = [w for w in self._workspaces.values() if not w.connected] if full else []
+        if full and not idle:
+            raise TooManyWorkspacesError(
+                f"{self.limit} tabs are open, as many as this server takes; close one of them"
+            )
+        if full:
+            self.remove(min(idle, key=lambda workspace: workspace.last_seen).id)
+        workspace = Workspace(dark=dark)
+        with self._lock:
+            self._workspaces[workspace.id] = workspace
+        return workspace
+
+    def get(self, name: str) -> Workspace | None:
+        """Return an open workspace and count this as a sign of life; None when there is none."""
+        with self._lock:
+            workspace = self._workspaces.get(name)
+        if workspace is not None:
+            workspace.last_seen = clock.monotonic()
+        return workspace
+
+    def port_of(self, name: str) -> int | None:
+        """Return the loopback port of a workspace's viser server, None when there is none."""
+        workspace = self.get(name)
+        return None if workspace is None else workspace.port
+
+    def remove(self, name: str) -> bool:
+        """Close a workspace; False when there is none of that name."""
+        with self._lock:
+            workspace = self._workspaces.pop(name, None)
+        if workspace is None:
+            return False
+        workspace.close()
+        return True
+
+    def close_idle(self, seconds: float) -> None:
+        """Close those that no browser has shown for so long."""
+        with self._lock:
+            workspaces = list(self._workspaces.values())
+        for workspace in workspaces:
+            if workspace.connected:
+                workspace.last_seen = clock.monotonic()
+            elif clock.monotonic() - workspace.last_seen > seconds:
+                self.remove(workspace.id)
+
+    async def sweep(self) -> None:
+        """Close idle workspaces again and again; runs until it is cancelled."""
+        while True:
+            await asyncio.sleep(SWEEP_SECONDS)
+            await asyncio.to_thread(self.close_idle, self.ttl)
+
+    def close(self) -> None:
+        """Close them all."""
+        for workspace in list(self._workspaces.values()):
+            self.remove(workspace.id)
+
+    def __len__(self) -> int:
+        """Count the open workspaces."""
+        return len(self._workspaces)

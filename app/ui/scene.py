@@ -1,0 +1,282 @@
+"""The space-time cube: the video sweeps through time, the trails stay behind it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+import viser
+
+from app.recognition.trajectory_image import MARGIN, SIZE, Drawing
+from app.ui.geometry import CubeGeometry, Points, seen
+from app.ui.theme import Rgb, Theme, linear, time_colours
+
+WALL_GAP = 0.03
+"""Room between the last frame and the back wall, in heights of the video."""
+
+LAYERS: Final = {"rim": 0.002, "trail": 0.004, "bones": 0.006, "joints": 0.009}
+"""How far in front of the video plane things are drawn, so that they do not flicker into it."""
+
+DIM = 0.35
+"""Brightness of the part of a trail that is still to come."""
+
+CAMERA_POSITION: Final = (-2.3, -1.15, -2.25)
+CAMERA_TARGET: Final = (-0.02, 0.2, 0.62)
+"""Left of the video and above it: frame, trails and back wall are all seen, none edge-on."""
+
+
+class SpaceTimeCube:
+    """Draws one recording into a viser server's scene.
+
+    Parameters
+    ----------
+    server
+        Where to draw.
+    theme
+        Dark or light.
+
+    """
+
+    def __init__(self, server: viser.ViserServer, theme: Theme) -> None:
+        self._server = server
+        self._theme = theme
+        self._cube: CubeGeometry | None = None
+        self._salient: tuple[str, ...] = ()
+        self._colours: npt.NDArray[np.uint8] = np.zeros((0, 3), np.uint8)
+        server.initial_camera.position = CAMERA_POSITION
+        server.initial_camera.look_at = CAMERA_TARGET
+        server.initial_camera.up = (0.0, -1.0, 0.0)
+        server.initial_camera.fov = 0.62
+        self.clear()
+
+    def clear(self) -> None:
+        """Empty the scene."""
+        scene = self._server.scene
+        scene.reset()
+        scene.set_up_direction("-y")
+        scene.world_axes.visible = False
+        scene.set_background_image(np.full((2, 2, 3), self._theme.background, np.uint8))
+        self._cube = None
+
+    def recolour(self, theme: Theme) -> None:
+        """Use another theme from the next `show` or `clear` on."""
+        self._theme = theme
+
+    def show(self, cube: CubeGeometry, salient: tuple[str, ...], wall: Wall | None) -> None:
+        """Draw a recording; the video plane stays blank until `paint`."""
+        with self._server.atomic():
+            self.clear()
+            self._cube, self._salient = cube, salient
+            share = cube.depth / cube.back if len(cube.depth) > 1 else np.zeros(1)
+            self._colours = time_colours(np.asarray(share, dtype=np.float64))
+            self._draw_cube(cube)
+            self._draw_trails(cube)
+            if wall is not None:
+                self._draw_wall(cube, wall)
+            self._draw_moving_parts(cube)
+        self._server.flush()
+
+    def seek(self, frame: int, image: npt.NDArray[np.uint8] | None) -> None:
+        """Move the video plane, the skeleton and the bright trails to `frame`."""
+        cube = self._cube
+        if cube is None:
+            return
+        z = float(cube.depth[frame])
+        with self._server.atomic():
+            if image is not None:
+                self._video.image = image
+            self._video.position = (0.0, 0.0, z)
+            self._rim.position = (0.0, 0.0, z - LAYERS["rim"])
+            self._bones.points = in_front(cube.bones(frame), "bones")
+            self._joints.points = in_front(cube.joints(frame), "joints")
+            for name, trail in self._past.items():
+                segments, colours = self._bright_trail(cube, name, frame)
+                trail.points = segments
+                trail.colors = colours
+        self._server.flush()
+
+    def _draw_cube(self, cube: CubeGeometry) -> None:
+        scene, theme = self._server.scene, self._theme
+        scene.add_line_segments(
+            "/cube/edges", cube.edges(), theme.line, thickness=1.0, thickness_units="screen"
+        )
+        x, y = cube.aspect / 2, 0.5
+        ticks = cube.ticks()
+        marks = [((-x, y, cube.at_time(t)), (-x - 0.025, y, cube.at_time(t))) for t in ticks]
+        scene.add_line_segments(
+            "/cube/ticks",
+            np.array(marks, np.float32),
+            theme.line,
+            thickness=1.0,
+            thickness_units="screen",
+        )
+        for second in ticks[:: max(1, len(ticks) // 4)]:
+            text = text_image(f"{second:g} s", theme.ink)
+            height = 0.04
+            width = height * text.shape[1] / text.shape[0]
+            scene.add_image(
+                f"/cube/seconds/{second:g}",
+                text,
+                width,
+                height,
+                format="png",
+                position=(-x - 0.04 - width / 2, y, cube.at_time(second)),
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+
+    def _draw_trails(self, cube: CubeGeometry) -> None:
+        scene = self._server.scene
+        quiet = cube.quiet_trails(self._salient)
+        if len(quiet):
+            scene.add_line_segments(
+                "/trails/quiet", quiet, self._theme.quiet, thickness=1.0, thickness_units="screen"
+            )
+        self._past = {}
+        for name in self._salient:
+            whole = cube.trail(name)
+            known = seen(whole)
+            colours = self._segment_colours(len(whole))[known]
+            ahead = DIM * colours + (1 - DIM) * np.array(self._theme.background)
+            scene.add_line_segments(
+                f"/trails/{name}/ahead",
+                whole[known],
+                linear(ahead.astype(np.uint8)),
+                thickness=0.008,
+            )
+            segments, bright = self._bright_trail(cube, name, 0)
+            self._past[name] = scene.add_line_segments(
+                f"/trails/{name}/past", segments, bright, thickness=0.018
+            )
+
+    def _bright_trail(
+        self, cube: CubeGeometry, name: str, frame: int
+    ) -> tuple[Points, npt.NDArray[np.uint8]]:
+        segments = cube.trail(name, max(frame, 1))
+        known = seen(segments)
+        colours = linear(self._segment_colours(len(segments)))
+        return in_front(segments[known], "trail"), colours[known]
+
+    def _segment_colours(self, count: int) -> npt.NDArray[np.uint8]:
+        """``(count, 2, 3)`` sRGB at both ends of the first segments of a trail."""
+        colours = self._colours[: count + 1]
+        return np.stack([colours[:-1], colours[1:]], axis=1)
+
+    def _draw_wall(self, cube: CubeGeometry, wall: Wall) -> None:
+        scene, theme = self._server.scene, self._theme
+        z = cube.back + WALL_GAP
+        scene.add_image(
+            "/wall/plane",
+            np.full((2, 2, 3), theme.wall, np.uint8),
+            cube.aspect,
+            1.0,
+            format="png",
+            position=(0.0, 0.0, z + 0.004),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        ink = np.empty((*wall.image.shape, 4), np.uint8)
+        ink[..., :3] = theme.ink
+        ink[..., 3] = wall.image
+        scene.add_image(
+            "/wall/image",
+            ink,
+            wall.side,
+            wall.side,
+            format="png",
+            position=(*wall.centre, z),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _draw_moving_parts(self, cube: CubeGeometry) -> None:
+        scene, theme = self._server.scene, self._theme
+        self._video = scene.add_image(
+            "/video",
+            np.full((2, 2, 3), theme.wall, np.uint8),
+            cube.aspect,
+            1.0,
+            format="jpeg",
+            jpeg_quality=80,
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        self._rim = scene.add_line_segments(
+            "/rim",
+            cube.rectangle(0.0),
+            theme.rim,
+            thickness=1.6,
+            thickness_units="screen",
+        )
+        self._bones = scene.add_line_segments(
+            "/skeleton/bones", cube.bones(0), theme.bone, thickness=2.4, thickness_units="screen"
+        )
+        self._joints = scene.add_point_cloud(
+            "/skeleton/joints",
+            cube.joints(0),
+            theme.joint,
+            point_size=0.011,
+            point_shape="circle",
+            point_shading="flat",
+            precision="float32",
+        )
+
+
+class Wall:
+    """The trajectory image, placed behind the trails that it flattens.
+
+    Parameters
+    ----------
+    drawing
+        As the recogniser draws it.
+    cube
+        What it hangs behind.
+    salient
+        Landmarks it shows.
+    torso_length
+        In pixels of the video, None when the recording shows no torso.
+    frame_height
+        Of the video in pixels.
+
+    """
+
+    def __init__(
+        self,
+        drawing: Drawing,
+        cube: CubeGeometry,
+        salient: tuple[str, ...],
+        torso_length: float | None,
+        frame_height: int,
+    ) -> None:
+        self.image = drawing.image
+        paths = cube.points[:, [cube.landmarks.index(name) for name in salient], :2]
+        low, high = np.nanmin(paths, axis=(0, 1)), np.nanmax(paths, axis=(0, 1))
+        self.centre = tuple(float(value) for value in (low + high) / 2)
+        extent = float((high - low).max())
+        if drawing.trajectory is not None and torso_length is not None:
+            xy = drawing.trajectory.xy
+            drawn = np.nanmax(xy, axis=(0, 1)) - np.nanmin(xy, axis=(0, 1))
+            extent = float(drawn.max()) * torso_length / frame_height
+        self.side = extent * SIZE / (SIZE - 1 - 2 * MARGIN)
+
+
+def in_front(points: Points, layer: str) -> Points:
+    """Shift points towards the viewer, by the depth of their layer."""
+    return points - np.array([0, 0, LAYERS[layer]], np.float32)
+
+
+def text_image(text: str, colour: Rgb) -> npt.NDArray[np.uint8]:
+    """Write text into an image ``(H, W, 4)`` RGBA, transparent around it.
+
+    viser's own labels stand in grey boxes of one size, whatever the theme.
+    """
+    font, scale, weight, margin = cv2.FONT_HERSHEY_SIMPLEX, 1.4, 3, 6
+    (width, height), below = cv2.getTextSize(text, font, scale, weight)
+    alpha = np.zeros((height + below + 2 * margin, width + 2 * margin), np.uint8)
+    origin = (margin, height + margin)
+    cv2.putText(alpha, text, origin, font, scale, 255, weight, cv2.LINE_AA)
+    image = np.empty((*alpha.shape, 4), np.uint8)
+    image[..., :3], image[..., 3] = colour, alpha
+    return image

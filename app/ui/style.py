@@ -1,0 +1,117 @@
+"""The style sheet of our own HTML inside viser, and of the parts of viser that it dresses."""
+
+from __future__ import annotations
+
+from typing import Final
+
+PANEL_STYLE: Final = """<style>
+:root {
+  --osg-ink: #1c2a3a; --osg-dim: #5c6f83; --osg-line: #d9e1e9; --osg-tile: #f3f6f9;
+  --osg-chosen: #1a63d9; --osg-chosen-rgb: 26, 99, 217; --osg-expected: #a84e00;
+  --osg-x: #1a63d9; --osg-y: #c25e00;
+}
+:root[data-mantine-color-scheme="dark"] {
+  --osg-ink: #e2ecf6; --osg-dim: #8fa3b8; --osg-line: #24344a; --osg-tile: #162130;
+  --osg-chosen: #6aa9ff; --osg-chosen-rgb: 58, 134, 255; --osg-expected: #ffb066;
+  --osg-x: #6aa9ff; --osg-y: #ffb066;
+  --mantine-color-body: #111a25; --mantine-color-dark-7: #111a25; --mantine-color-dark-6: #162130;
+  --mantine-color-dark-5: #1c2a3b; --mantine-color-dark-4: #24344a; --mantine-color-text: #e2ecf6;
+}
+:root, body { --mantine-font-family: ui-sans-serif, system-ui, "Noto Sans", "DejaVu Sans",
+  sans-serif; font-family: var(--mantine-font-family); }
+.osg { padding: 4px 12px 10px; color: var(--osg-ink); font: 12px/1.45 var(--mantine-font-family); }
+.osg h3 { margin: 14px 0 6px; font-size: 12px; font-weight: 600; color: var(--osg-dim); }
+.osg p { margin: 0; }
+.osg .dim { color: var(--osg-dim); }
+.osg .num { font-variant-numeric: tabular-nums; }
+.osg .card { padding: 12px 14px; border-radius: 10px; background: var(--osg-tile);
+  border: 1px solid var(--osg-line); }
+.osg .verdict { display: flex; gap: 12px; align-items: flex-start; }
+.osg .verdict b { font-size: 15px; }
+.osg .badge { flex: none; width: 28px; height: 28px; border-radius: 50%; display: grid;
+  place-items: center; font-weight: 700; font-size: 15px; border: 2px solid currentColor; }
+.osg .chosen { color: var(--osg-chosen); }
+.osg .expected { color: var(--osg-expected); }
+.osg .tag { font-size: 10px; font-weight: 600; padding: 0 5px; border-radius: 99px;
+  border: 1px solid currentColor; white-space: nowrap; display: table;
+  margin-top: 2px; }
+.osg .tag.expected { border-style: dashed; }
+.osg .scroll { overflow-x: auto; max-height: 420px; overflow-y: auto; }
+.osg table { border-collapse: separate; border-spacing: 2px; width: 100%; }
+.osg thead th { vertical-align: bottom; font-weight: 500; color: var(--osg-dim); padding: 0 0 4px; }
+.osg table { table-layout: fixed; }
+.osg thead th:first-child { width: 96px; }
+.osg thead th span { writing-mode: vertical-rl; transform: rotate(180deg); white-space: nowrap;
+  margin: 0 auto; display: block; }
+.osg tbody th { text-align: left; font-weight: 500; padding: 3px 6px 3px 0; line-height: 1.25;
+  overflow: hidden; text-overflow: ellipsis; }
+.osg tbody tr.chosen th, .osg tbody tr.expected th { font-weight: 700; color: inherit; }
+.osg td { text-align: center; padding: 5px 0 8px; border-radius: 6px; font-size: 10.5px;
+  font-variant-numeric: tabular-nums; color: var(--osg-dim); }
+.osg td.choice { font-weight: 700; color: var(--osg-ink);
+  box-shadow: inset 0 0 0 2px var(--osg-chosen); }
+.osg td.choice { position: relative; }
+.osg td.choice::after { content: ""; position: absolute; left: calc(50% - 3px); bottom: 3px;
+  width: 6px; height: 6px; border-radius: 50%; background: var(--osg-chosen); }
+.osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 13px; }
+.osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
+.osg figure { margin: 0; }
+.osg figure img { width: 100%; display: block; border-radius: 8px; background: #000; }
+.osg figcaption { padding-top: 4px; text-align: center; }
+.osg .chart { position: relative; }
+.osg .chart svg { display: block; width: 100%; height: auto; overflow: visible; }
+.osg .chart .cursor { position: absolute; top: 0; bottom: 0; left: 34px; right: 6px;
+  pointer-events: none; }
+.osg .chart .cursor i { position: absolute; top: 0; bottom: 18px; width: 0; opacity: .75;
+  left: var(--osg-now, 0%); border-left: 1.5px solid var(--osg-ink); }
+.osg .legend { display: flex; flex-wrap: wrap; gap: 4px 14px; margin: 4px 0 0; padding: 0;
+  list-style: none; color: var(--osg-dim); }
+.osg .legend svg { vertical-align: middle; margin-right: 5px; }
+.osg .clock { display: flex; flex-wrap: wrap; gap: 0 12px; justify-content: center;
+  white-space: nowrap; }
+
+/* viser's own chrome: a second grip says nothing, its title bar opens developer settings. */
+[data-dock-griphandle], [data-testid="floating-panel-handle"], #webgl-software-rendering,
+[data-dock-region-handle] > div:first-child { display: none !important; }
+[data-dock-strip] { padding-left: 4px; }
+[data-testid="floating-panel"] { top: auto !important; bottom: 16px !important;
+  width: min(640px, calc(100% - 428px)) !important; border-radius: 12px !important;
+  border: 1px solid var(--osg-line);
+  box-shadow: 0 6px 24px rgba(0, 0, 0, .22) !important; }
+/* The playback bar: slider above, then play, steps, clock and speeds in one row. */
+div:has(> div > .osg-player) { display: grid; align-items: center; gap: 2px 6px;
+  grid-template: "slider slider slider slider" "play step clock speed" / auto auto 1fr auto;
+  padding: 6px 6px 2px; }
+div:has(> .osg-player), div:has(> .osg-player) + div { display: none; }
+div:has(> .osg-player) ~ div:nth-child(3) { grid-area: slider; }
+div:has(> .osg-player) ~ div:nth-child(4) { grid-area: clock; padding-bottom: .5em; }
+div:has(> .osg-player) ~ div:nth-child(5) { grid-area: play; }
+div:has(> .osg-player) ~ div:nth-child(6) { grid-area: step; padding-inline: 0 !important; }
+div:has(> .osg-player) ~ div:nth-child(7) { grid-area: speed; padding-inline: 0 10px !important; }
+div:has(> .osg-player) ~ div div:has(> p > label) { position: absolute !important;
+  clip-path: inset(50%); width: 1px !important; height: 1px; overflow: hidden; }
+div:has(> .osg-player) ~ div .mantine-Flex-root { flex-wrap: nowrap !important; }
+div:has(> .osg-player) ~ div:nth-child(n+6) button { min-width: 36px; --button-bd: 1px solid
+  var(--osg-line) !important; border-color: var(--osg-line) !important; }
+div:has(> .osg-player) ~ div button { height: 30px !important; border-radius: 8px !important;
+  font-variant-numeric: tabular-nums; }
+div:has(> .osg-player) ~ div:nth-child(n+6) button, .osg-player ~ div .mantine-Button-label {
+  color: var(--osg-ink) !important; }
+div:has(> .osg-player) ~ div:nth-child(5) button { min-width: 96px; }
+@media (max-width: 1020px) {
+  div:has(> div > .osg-player) {
+    grid-template: "slider slider" "play clock" "step speed" / auto minmax(0, 1fr); }
+  div:has(> .osg-player) ~ div:nth-child(6) { padding-inline: 10px 0 !important; }
+}
+@media (max-width: 560px) {
+  div:has(> div > .osg-player) {
+    grid-template: "slider slider" "play clock" "step step" "speed speed" / auto minmax(0, 1fr); }
+  div:has(> .osg-player) ~ div:nth-child(7) { padding-inline: 10px !important; }
+}
+</style>
+<i class="osg-player" hidden></i>"""
+"""Markup given to `add_html` may carry a style sheet, and that reaches the whole page of viser.
+
+What it says about viser itself leans on that client's attributes; when a later version renames
+them, its own look comes back and nothing breaks.
+"""

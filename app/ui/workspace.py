@@ -1,0 +1,289 @@
+"""One workspace per browser tab: what it shows, and its own viser server on loopback."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import secrets
+import time as clock
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+
+import numpy as np
+import numpy.typing as npt
+import viser
+
+from app.recognition import Language, PoseSequence, Recognition, Recording
+from app.recognition.errors import PoseError
+from app.recognition.poses import FloatArray
+from app.recognition.salience import salient_landmarks
+from app.recognition.trajectory import Trajectory
+from app.recognition.trajectory_image import Drawing, draw
+from app.ui.filmstrip import Filmstrip
+from app.ui.geometry import CubeGeometry
+from app.ui.panels import Inspector, PlaybackBar, PlaybackControls
+from app.ui.playback import Playback
+from app.ui.scene import SpaceTimeCube, Wall
+from app.ui.theme import DARK, LIGHT
+
+
+@dataclass(frozen=True)
+class WorkspaceView:
+    """What a workspace shows.
+
+    Attributes
+    ----------
+    title
+        Name of the clip.
+    video, recording
+        The clip's file and what was found in it.
+    start, end
+        Seconds of the range on display; None is the clip's own start or end.
+    recognition
+        How the range was recognised, if it was.
+    expected
+        The label that was meant, if known.
+    language
+        The revision it was recognised with, for its gestures' images.
+    salient
+        Landmarks whose trails are drawn; None proposes those that move.
+
+    """
+
+    title: str
+    video: Path
+    recording: Recording
+    start: float | None = None
+    end: float | None = None
+    recognition: Recognition | None = None
+    expected: str | None = None
+    language: Language | None = None
+    salient: tuple[str, ...] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """The frames of a recording that lie in the range on display.
+
+    Attributes
+    ----------
+    poses
+        Their poses; at least one frame.
+    first
+        Index of the first one in the recording.
+    salute
+        ``(T,)`` the salute's confidence.
+
+    """
+
+    poses: PoseSequence
+    first: int
+    salute: FloatArray
+
+    @classmethod
+    def of(cls, view: WorkspaceView) -> Range:
+        """Cut a view's range out of its recording.
+
+        Raises
+        ------
+        PoseError
+            When no frame lies in the range.
+
+        """
+        poses = view.recording.poses
+        start = -np.inf if view.start is None else view.start
+        end = np.inf if view.end is None else view.end
+        inside = np.flatnonzero((poses.time >= start) & (poses.time <= end))
+        if not len(inside):
+            raise PoseError(
+                f"no frame of {view.title!r} lies between {start:g} s and {end:g} s; "
+                "choose a longer range"
+            )
+        frames = slice(int(inside[0]), int(inside[-1]) + 1)
+        cut = poses.between(float(poses.time[frames][0]), float(poses.time[frames][-1]))
+        return cls(cut, frames.start, np.asarray(view.recording.salute, np.float64)[frames])
+
+
+class Workspace:
+    """A viser server with the space-time cube, the playback bar and the inspector.
+
+    Parameters
+    ----------
+    dark
+        Dark colours rather than light ones.
+
+    """
+
+    def __init__(self, *, dark: bool = True) -> None:
+        self.id = secrets.token_urlsafe(16)
+        self.last_seen = clock.monotonic()
+        self._theme = DARK if dark else LIGHT
+        self._lock = Lock()
+        self._view: WorkspaceView | None = None
+        self._filmstrip: Filmstrip | None = None
+        self._first = 0
+        self._painted = -1
+        with _quiet():
+            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        # Any client may ask for a public tunnel to this machine: there is none.
+        self._server.request_share_url = _no_public_tunnel  # type: ignore[method-assign]
+        self._configure_theme()
+        self._scene = SpaceTimeCube(self._server, self._theme)
+        self.playback = Playback(self._draw)
+        controls = PlaybackControls(
+            self.playback.seek, self.playback.toggle, self.playback.set_speed
+        )
+        self._bar = PlaybackBar(self._server.gui, controls)
+        self._inspector = Inspector(self._server.gui)
+
+    @property
+    def port(self) -> int:
+        """The loopback port of its viser server."""
+        return self._server.get_port()
+
+    @property
+    def view(self) -> WorkspaceView | None:
+        """What is on display."""
+        return self._view
+
+    @property
+    def connected(self) -> bool:
+        """Whether a browser shows it."""
+        return bool(self._server.get_clients())
+
+    def show(self, view: WorkspaceView) -> None:
+        """Show another clip, range or recognition; its frames arrive in the background.
+
+        Raises
+        ------
+        PoseError
+            When no frame of the clip lies in the view's range.
+
+        """
+        shown = Range.of(view)
+        with self._lock:
+            same_frames = self._view is not None and _frames_of(self._view) == _frames_of(view)
+            self._view = view
+            if not same_frames or self._filmstrip is None:
+                self._load(view, shown)
+            self._inspect(view, shown)
+
+    def set_dark(self, dark: bool) -> None:
+        """Change to dark or light colours."""
+        theme = DARK if dark else LIGHT
+        with self._lock:
+            if theme == self._theme:
+                return
+            self._theme = theme
+            self._configure_theme()
+            self._scene.recolour(theme)
+            if self._view is None:
+                self._scene.clear()
+            else:
+                self._load(self._view, Range.of(self._view))
+
+    def close(self) -> None:
+        """Stop playback, decoding and the server."""
+        self.playback.close()
+        with self._lock:
+            if self._filmstrip is not None:
+                self._filmstrip.close()
+            with _quiet():
+                self._server.stop()
+
+    def _load(self, view: WorkspaceView, shown: Range) -> None:
+        if self._filmstrip is not None:
+            self._filmstrip.close()
+        cube = CubeGeometry.from_poses(shown.poses)
+        trajectory, salient = _salient_motion(view, shown.poses)
+        wall = None
+        if trajectory is not None and not (drawing := draw(trajectory)).empty:
+            wall = _wall(drawing, cube, salient, shown.poses)
+        self._first, self._painted = shown.first, -1
+        last = shown.first + len(shown.poses) - 1
+        self._filmstrip = Filmstrip(
+            view.video, shown.first, last, lambda index: self.playback.redraw(index - shown.first)
+        )
+        self._scene.show(cube, salient, wall)
+        self._bar.load(shown.poses.time)
+        self.playback.load(shown.poses.time.tolist())
+        start = float(shown.poses.time[0])
+        self._inspector.show_tracks(trajectory, start, (shown.poses.time, shown.salute))
+        self._filmstrip.start()
+
+    def _inspect(self, view: WorkspaceView, shown: Range) -> None:
+        if view.recognition is None:
+            self._inspector.show_undecided()
+            return
+        images = _compared_images(view, shown.poses)
+        self._inspector.show_decision(view.recognition, view.expected, images)
+
+    def _draw(self, frame: int) -> None:
+        """Draw a frame; called by the playback alone."""
+        image = None
+        if self._filmstrip is not None:
+            nearest = self._filmstrip.nearest(self._first + frame)
+            if nearest is not None and nearest[0] != self._painted:
+                self._painted, image = nearest
+        self._scene.seek(frame, image)
+        if self._view is not None:
+            self._bar.show(frame)
+
+    def _configure_theme(self) -> None:
+        self._server.gui.configure_theme(
+            dark_mode=self._theme.dark,
+            show_logo=False,
+            show_share_button=False,
+            brand_color=self._theme.accent,
+        )
+
+
+def _salient_motion(
+    view: WorkspaceView, poses: PoseSequence
+) -> tuple[Trajectory | None, tuple[str, ...]]:
+    """Return the salient landmarks' trajectory and names; None and none when nothing moves."""
+    try:
+        trajectory = Trajectory.from_poses(poses)
+    except PoseError:
+        return None, ()
+    names = salient_landmarks(trajectory) if view.salient is None else view.salient
+    return (trajectory.select(names), names) if names else (None, ())
+
+
+def _wall(
+    drawing: Drawing, cube: CubeGeometry, salient: tuple[str, ...], poses: PoseSequence
+) -> Wall:
+    return Wall(drawing, cube, salient, poses.torso_length(), poses.frame_size[1])
+
+
+def _compared_images(
+    view: WorkspaceView, poses: PoseSequence
+) -> list[tuple[str, npt.NDArray[np.uint8]]]:
+    """Return the images of this take, of the expected gesture and of the chosen one."""
+    assert view.recognition is not None
+    trajectory, _ = _salient_motion(view, poses)
+    images = [] if trajectory is None else [("this take", draw(trajectory).image)]
+    known = {
+        gesture.label: gesture for gesture in (view.language.gestures if view.language else ())
+    }
+    chosen = view.recognition.nearest
+    captions = [(chosen, f"{chosen} (chosen)")]
+    if view.expected is not None and view.expected != chosen:
+        captions.insert(0, (view.expected, f"{view.expected} (expected)"))
+    images += [(caption, known[label].image) for label, caption in captions if label in known]
+    return images
+
+
+def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
+    """Return what of a view decides which frames and trails are shown."""
+    return view.video, view.start, view.end, view.salient
+
+
+def _no_public_tunnel(*_: object, **__: object) -> None:
+    """Stand in for viser's request for a public tunnel."""
+
+
+def _quiet() -> contextlib.redirect_stdout[io.StringIO]:
+    """Swallow the banner that viser prints even when told not to be verbose."""
+    return contextlib.redirect_stdout(io.StringIO())
