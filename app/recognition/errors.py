@@ -40,3 +40,7 @@ class LanguageError(RecognitionError):
 
 class ModelError(RecognitionError):
     """Raised when a pose or hand model file is missing, truncated or not the pinned one."""
+
+
+class EstimatorError(RecognitionError):
+    """Raised when a pose estimator cannot be had as asked, or is given what is no image."""

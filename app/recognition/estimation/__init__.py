@@ -1,1 +1,29 @@
 """Pose and hand landmarks from images: one protocol, two backends."""
+
+from app.recognition.estimation.base import (
+    Body,
+    FrameLandmarks,
+    Hand,
+    Image,
+    PoseEstimator,
+    Side,
+)
+from app.recognition.estimation.factory import Backend, create_estimator
+from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
+from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
+from app.recognition.estimation.session import Provider, available_providers
+
+__all__ = [
+    "Backend",
+    "Body",
+    "FrameLandmarks",
+    "Hand",
+    "Image",
+    "MediaPipeEstimator",
+    "OnnxPoseEstimator",
+    "PoseEstimator",
+    "Provider",
+    "Side",
+    "available_providers",
+    "create_estimator",
+]

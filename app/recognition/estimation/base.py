@@ -8,6 +8,7 @@ from typing import Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.errors import EstimatorError
 from app.recognition.poses import FloatArray
 
 Image = npt.NDArray[np.uint8]
@@ -87,3 +88,19 @@ class PoseEstimator(Protocol):
     def close(self) -> None:
         """Release the models; the estimator cannot be used afterwards."""
         ...
+
+
+def check_image(image: Image) -> None:
+    """Refuse what is no RGB image of 8 bits per channel.
+
+    Raises
+    ------
+    EstimatorError
+        Naming the shape and type seen.
+
+    """
+    if image.ndim != 3 or image.shape[2] != 3 or not image.size or image.dtype != np.uint8:
+        raise EstimatorError(
+            f"image has shape {image.shape} and type {image.dtype}, "
+            f"expected (height, width, 3) of uint8, RGB"
+        )

@@ -1,0 +1,133 @@
+"""Single-shot detectors: where in the whole image a person or a palm is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.estimation.base import Image
+from app.recognition.estimation.refinement import sigmoid
+from app.recognition.estimation.region import ZERO_BORDER, Region
+from app.recognition.estimation.session import ModelSession, Signature
+from app.recognition.estimation.suppression import Detection, blend_overlapping
+
+LEAST_SCORE: Final = 0.5
+"""Below it a detection is dropped; MediaPipe's default minimum detection confidence."""
+
+
+@dataclass(frozen=True)
+class DetectorLayout:
+    """How a single-shot detector lays out what it finds (Liu et al. 2016).
+
+    Attributes
+    ----------
+    input_size
+        Side of the model's square input in pixels.
+    strides
+        Input pixels per cell, one for each grid.
+    anchors_per_cell
+        Candidates per cell, one number for each grid.
+    keypoints
+        Keypoints per candidate.
+    lowest
+        What a black pixel is scaled to; white is 1.
+    overlap
+        Intersection over union above which two candidates are the same object.
+
+    """
+
+    input_size: int
+    strides: tuple[int, ...]
+    anchors_per_cell: tuple[int, ...]
+    keypoints: int
+    lowest: float
+    overlap: float
+
+    @property
+    def signature(self) -> Signature:
+        """The shapes of the model: box and keypoints per anchor, and a score per anchor."""
+        count = len(self.anchors())
+        return Signature(self.input_size, ((1, count, 4 + 2 * self.keypoints), (1, count, 1)))
+
+    def anchors(self) -> npt.NDArray[np.float32]:
+        """Return ``(N, 2)`` centres of the candidates in [0, 1] of the input, x then y."""
+        grids = []
+        for stride, repeats in zip(self.strides, self.anchors_per_cell, strict=True):
+            cells = -(-self.input_size // stride)
+            row, column = np.divmod(np.arange(cells * cells), cells)
+            centres = (np.stack([column, row], axis=1) + 0.5) / cells
+            grids.append(np.repeat(centres, repeats, axis=0))
+        return np.concatenate(grids).astype(np.float32)
+
+
+PERSON_LAYOUT: Final = DetectorLayout(
+    input_size=224,
+    strides=(8, 16, 32),
+    anchors_per_cell=(2, 2, 6),
+    keypoints=4,
+    lowest=-1.0,
+    overlap=0.3,
+)
+"""MediaPipe's pose_detection: keypoints 0 and 1 are mid-hips and a point on the circle around."""
+
+PALM_LAYOUT: Final = DetectorLayout(
+    input_size=192,
+    strides=(8, 16),
+    anchors_per_cell=(2, 6),
+    keypoints=7,
+    lowest=0.0,
+    overlap=0.3,
+)
+"""MediaPipe's palm_detection_full: keypoint 0 is the wrist, 2 the middle finger's knuckle."""
+
+
+class Detector:
+    """Finds objects of one kind in a whole image.
+
+    Parameters
+    ----------
+    session
+        The model, loaded with the layout's own signature.
+    layout
+        How to read its output.
+
+    """
+
+    def __init__(self, session: ModelSession, layout: DetectorLayout) -> None:
+        self._session = session
+        self._layout = layout
+        self._anchors = layout.anchors()
+
+    def detect(self, image: Image) -> tuple[Detection, ...]:
+        """Return what is found in `image`, best first, in pixels of the image."""
+        size, layout = self._layout.input_size, self._layout
+        whole = Region.around(image)
+        whole.crop(image, size, ZERO_BORDER, out=self._session.pixels)
+        raw, logits = self._session.run(layout.lowest)
+        scores = sigmoid(logits[0, :, 0])
+        chosen = np.flatnonzero(scores >= LEAST_SCORE)
+        if not len(chosen):
+            return ()
+        points = self._decoded(raw[0, chosen], self._anchors[chosen])
+        found = blend_overlapping(points, scores[chosen], layout.overlap)
+        return tuple(
+            Detection(
+                whole.to_image(detection.box, size),
+                whole.to_image(detection.keypoints, size),
+                detection.score,
+            )
+            for detection in found
+        )
+
+    def _decoded(
+        self, raw: npt.NDArray[np.float32], anchors: npt.NDArray[np.float32]
+    ) -> npt.NDArray[np.float64]:
+        """``(N, 2 + K, 2)`` box corners and keypoints in input pixels, from offsets to anchors."""
+        pairs = raw.astype(np.float64).reshape(len(raw), -1, 2)
+        origin = anchors[:, None] * self._layout.input_size
+        centre, extent = pairs[:, :1] + origin, pairs[:, 1:2]
+        keypoints = pairs[:, 2:] + origin
+        return np.concatenate([centre - extent / 2, centre + extent / 2, keypoints], axis=1)

@@ -1,0 +1,164 @@
+"""The second estimator: the `mediapipe` library itself, the reference of the parity test."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from app.recognition.errors import EstimatorError, ModelError
+from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image, Side, check_image
+from app.recognition.estimation.hands import MOST_HANDS
+from app.recognition.poses import FloatArray
+
+BundleName = Literal["pose_landmarker_full", "hand_landmarker"]
+
+MILLISECONDS: Final = 1000
+"""MediaPipe counts time in whole milliseconds."""
+
+
+class MediaPipeEstimator:
+    """Body and hands by MediaPipe's Tasks library on the processor; a `PoseEstimator`.
+
+    The library looks up a logging host of its maker while it runs. It works without an answer;
+    where nothing may leave the machine, use `OnnxPoseEstimator`.
+
+    Parameters
+    ----------
+    bundles
+        Folder with ``pose_landmarker_full.task`` and ``hand_landmarker.task``; by default the
+        ones built from the installed models.
+
+    Raises
+    ------
+    EstimatorError
+        When `mediapipe` is not installed or does not start here.
+    ModelError
+        When a model is missing.
+
+    """
+
+    def __init__(self, bundles: Path | None = None) -> None:
+        self._mediapipe = _library()
+        self._bundles = {
+            name: _bundle(name, bundles) for name in ("pose_landmarker_full", "hand_landmarker")
+        }
+        self._start()
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+
+        Parameters
+        ----------
+        image
+            ``(height, width, 3)`` RGB, upright; any strides.
+        time
+            Seconds. MediaPipe refuses a millisecond it has had: a time that does not come after
+            the frame before is taken as one millisecond later.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        stamp = self._next_stamp(time)
+        picture = self._mediapipe.Image(
+            image_format=self._mediapipe.ImageFormat.SRGB,
+            data=np.ascontiguousarray(image),  # it reads rows back to back, whatever the strides
+        )
+        size = np.array([image.shape[1], image.shape[0]], dtype=np.float64)
+        return FrameLandmarks(
+            _body(self._pose.detect_for_video(picture, stamp), size),
+            _hands(self._hand.detect_for_video(picture, stamp), size),
+        )
+
+    def reset(self) -> None:
+        """Forget what was tracked and smoothed so far; to be called before another clip."""
+        self.close()
+        self._start()
+
+    def close(self) -> None:
+        """Release the models; the estimator cannot be used afterwards."""
+        self._pose.close()
+        self._hand.close()
+
+    def _start(self) -> None:
+        vision = self._mediapipe.tasks.vision
+        video = vision.RunningMode.VIDEO
+        try:
+            self._pose = vision.PoseLandmarker.create_from_options(
+                vision.PoseLandmarkerOptions(
+                    base_options=self._base_options("pose_landmarker_full"), running_mode=video
+                )
+            )
+            self._hand = vision.HandLandmarker.create_from_options(
+                vision.HandLandmarkerOptions(
+                    base_options=self._base_options("hand_landmarker"),
+                    running_mode=video,
+                    num_hands=MOST_HANDS,
+                )
+            )
+        except (OSError, RuntimeError, ValueError) as error:
+            raise EstimatorError(
+                f"mediapipe does not start ({error}); on Debian it needs the packages libegl1 and "
+                f"libgles2, or use the backend 'onnx'"
+            ) from error
+        self._origin: float | None = None
+        self._stamp = 0
+
+    def _base_options(self, name: BundleName) -> Any:
+        return self._mediapipe.tasks.BaseOptions(model_asset_path=str(self._bundles[name]))
+
+    def _next_stamp(self, time: float) -> int:
+        """Milliseconds since the first frame, from 1 on: at 0 MediaPipe's filters do not start."""
+        if self._origin is None:
+            self._origin = time
+        elapsed = round((time - self._origin) * MILLISECONDS) + 1
+        self._stamp = max(elapsed, self._stamp + 1)
+        return self._stamp
+
+
+def _library() -> Any:
+    try:
+        return importlib.import_module("mediapipe")
+    except ImportError as error:
+        raise EstimatorError(
+            f"the backend 'mediapipe' cannot be imported ({error}); "
+            f"run `pip install 'osg-studio[mediapipe]'` or use the backend 'onnx'"
+        ) from error
+
+
+def _bundle(name: BundleName, folder: Path | None) -> Path:
+    if folder is None:
+        from app.recognition.models import task_bundle_path
+
+        return task_bundle_path(name)
+    path = folder / f"{name}.task"
+    if not path.is_file():
+        raise ModelError(f"no model file {path}; run `osg-studio models install`")
+    return path
+
+
+def _body(result: Any, size: FloatArray) -> Body | None:
+    if not result.pose_landmarks:
+        return None
+    landmarks = result.pose_landmarks[0]
+    visibility = np.array([point.visibility for point in landmarks], dtype=np.float64)
+    # The library keeps the presence of the whole body to itself: it is at least its threshold.
+    return Body(_pixels(landmarks, size), visibility, score=1.0)
+
+
+def _hands(result: Any, size: FloatArray) -> tuple[Hand, ...]:
+    hands = []
+    for landmarks, handedness in zip(result.hand_landmarks, result.handedness, strict=True):
+        side: Side = "right" if handedness[0].category_name == "Right" else "left"
+        hands.append(Hand(_pixels(landmarks, size), side, float(handedness[0].score)))
+    return tuple(sorted(hands, key=lambda hand: -hand.size))
+
+
+def _pixels(landmarks: Any, size: FloatArray) -> FloatArray:
+    return np.array([(point.x, point.y) for point in landmarks], dtype=np.float64) * size

@@ -1,0 +1,87 @@
+"""The default estimator: MediaPipe's own models on ONNX Runtime."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from app.recognition.errors import EstimatorError
+from app.recognition.estimation.base import FrameLandmarks, Image, check_image
+from app.recognition.estimation.body import POSE_SIGNATURE, BodyTracker
+from app.recognition.estimation.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
+from app.recognition.estimation.hands import HAND_SIGNATURE, HandTracker, PalmProposer
+from app.recognition.estimation.session import ModelSession, Provider, Signature, check_provider
+from app.recognition.models import ModelName, model_path
+
+DEFAULT_THREADS: Final = 2
+"""Processor threads per model run."""
+
+
+class OnnxPoseEstimator:
+    """Body and hands from images, tracked from frame to frame; a `PoseEstimator`.
+
+    Parameters
+    ----------
+    models
+        Folder with the ONNX files; by default the verified ones of the user's data folder.
+    threads
+        Processor threads within one run of a model.
+    provider
+        ``"cpu"``, or ``"cuda"``, ``"tensorrt"``, ``"coreml"`` where ONNX Runtime has them.
+
+    Raises
+    ------
+    ModelError
+        When a model file is missing, damaged or not the expected one.
+    EstimatorError
+        When the provider is not available here, or `threads` is less than one.
+
+    """
+
+    def __init__(
+        self,
+        models: Path | None = None,
+        *,
+        threads: int = DEFAULT_THREADS,
+        provider: Provider = "cpu",
+    ) -> None:
+        if threads < 1:
+            raise EstimatorError(f"threads is {threads}; at least one is needed")
+        check_provider(provider)
+
+        def load(name: ModelName, signature: Signature) -> ModelSession:
+            path = model_path(name) if models is None else models / f"{name}.onnx"
+            return ModelSession(path, signature, threads=threads, provider=provider)
+
+        persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
+        palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
+        self._body = BodyTracker(persons, load("pose_landmark_full", POSE_SIGNATURE))
+        self._hands = HandTracker(PalmProposer(palms), load("hand_landmark_full", HAND_SIGNATURE))
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+
+        Parameters
+        ----------
+        image
+            ``(height, width, 3)`` RGB, upright; any size from 1 x 1 on and any strides.
+        time
+            Seconds. One that does not come after the frame before restarts the smoothing.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        return FrameLandmarks(self._body.track(image, time), self._hands.track(image))
+
+    def reset(self) -> None:
+        """Forget what was tracked and smoothed so far; to be called before another clip."""
+        self._body.reset()
+        self._hands.reset()
+
+    def close(self) -> None:
+        """Release the models; the estimator cannot be used afterwards."""
+        del self._body, self._hands

@@ -1,0 +1,105 @@
+"""Filters that take the jitter out of landmarks over time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.recognition.poses import FloatArray
+
+
+@dataclass
+class _Memory:
+    """What the one-euro filter keeps between two calls."""
+
+    time: float
+    raw: FloatArray
+    filtered: FloatArray
+    speed: FloatArray
+
+
+class OneEuroFilter:
+    """The one-euro filter (Casiez, Roussel, Vogel 2012): a low pass that opens with speed.
+
+    Each value is smoothed with a cutoff of ``minimum_cutoff + beta * |speed|``: strongly at
+    rest, where jitter is seen, hardly in motion, where lag is seen. The speed itself is the
+    low-passed difference of the raw values. Every element of the array is its own signal.
+
+    Parameters
+    ----------
+    minimum_cutoff
+        Hz, the cutoff at rest.
+    beta
+        Growth of the cutoff in Hz per unit of scaled speed (``values * scale`` per second).
+    speed_cutoff
+        Hz, the cutoff of the speed's own low pass. One, as in the paper.
+
+    """
+
+    def __init__(self, minimum_cutoff: float, beta: float, speed_cutoff: float = 1.0) -> None:
+        self._minimum_cutoff = minimum_cutoff
+        self._beta = beta
+        self._speed_cutoff = speed_cutoff
+        self._memory: _Memory | None = None
+
+    def reset(self) -> None:
+        """Forget the signal; the next value passes unchanged."""
+        self._memory = None
+
+    def apply(self, values: FloatArray, time: float, scale: float = 1.0) -> FloatArray:
+        """Smooth the next values of the signal.
+
+        Parameters
+        ----------
+        values
+            Array of any shape, the same in every call.
+        time
+            Seconds. A time that does not come after the one before starts the filter anew:
+            no speed can be told from it.
+        scale
+            What a speed is multiplied with before `beta`: one over the object's size makes the
+            filter treat a near and a far body alike. Filtering ``k * values`` with
+            ``scale / k`` gives ``k`` times the result.
+
+        Returns
+        -------
+        The filtered values, a new array.
+
+        """
+        memory = self._memory
+        if memory is None or not time > memory.time:
+            self._memory = _Memory(time, values.copy(), values.copy(), np.zeros_like(values))
+            return values.copy()
+        step = time - memory.time
+        speed = (values - memory.raw) * (scale / step)
+        memory.speed += _weight(self._speed_cutoff, step) * (speed - memory.speed)
+        cutoff = self._minimum_cutoff + self._beta * np.abs(memory.speed)
+        weight = 1 / (1 + 1 / (2 * math.pi * step * cutoff))
+        filtered = memory.filtered + weight * (values - memory.filtered)
+        memory.time, memory.raw, memory.filtered = time, values.copy(), filtered
+        return filtered.copy()
+
+
+class ExponentialFilter:
+    """Exponential smoothing: each result is `weight` of the new and the rest of the old value."""
+
+    def __init__(self, weight: float) -> None:
+        self._weight = weight
+        self._filtered: FloatArray | None = None
+
+    def reset(self) -> None:
+        """Forget the signal; the next value passes unchanged."""
+        self._filtered = None
+
+    def apply(self, values: FloatArray) -> FloatArray:
+        """Smooth the next values (any shape, the same in every call); return a new array."""
+        old = values if self._filtered is None else self._filtered
+        self._filtered = old + self._weight * (values - old)
+        return self._filtered.copy()
+
+
+def _weight(cutoff: float, step: float) -> float:
+    """Weight of the new value in a first-order low pass of `cutoff` Hz after `step` seconds."""
+    return 1 / (1 + 1 / (2 * math.pi * cutoff * step))
