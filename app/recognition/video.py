@@ -38,6 +38,10 @@ DECODER_THREADS = 2
 """Threads of the decoder. Two keep decoding off the time of the models; each further one holds
 one more frame in memory."""
 
+MISSING_SHARE, MISSING_SECONDS = 0.1, 0.5
+"""Of the stated duration, what may be missing at the end before a clip counts as cut short (the
+greater one holds); containers round, and sound may last a little longer than the picture."""
+
 MOST_STREAMS = 64
 """Streams that FFmpeg may set up; a film with every language of sound has fewer."""
 
@@ -163,7 +167,9 @@ class FrameReader(Iterator[VideoFrame]):
         self._limits = limits or VideoLimits()
         self._count = 0
         self._faults = 0
-        self._ended_early = False
+        self._broken = False
+        self._ended = False
+        self._time = 0.0
         self._reformatter = VideoReformatter()
         self._container = _opened(self._path, self._limits)
         try:
@@ -196,15 +202,16 @@ class FrameReader(Iterator[VideoFrame]):
         if frame is None:
             frame = next(self._decoded, None)
         if frame is None:
+            self._ended = True
             self.close()
             raise StopIteration
         self._limits.require_pixels(frame.width, frame.height)
         self._limits.require_frames(self._count + 1)
         stamp = None if frame.pts is None else float(frame.pts * _time_base(frame, self._stream))
-        time = self._clock.seconds(stamp)
-        self._limits.require_seconds(time)
+        self._time = self._clock.seconds(stamp)
+        self._limits.require_seconds(self._time)
         self._count += 1
-        return VideoFrame(index=self._count - 1, time=time, image=self._upright(frame))
+        return VideoFrame(index=self._count - 1, time=self._time, image=self._upright(frame))
 
     def __enter__(self) -> Self:
         return self
@@ -225,11 +232,14 @@ class FrameReader(Iterator[VideoFrame]):
     def warnings(self) -> tuple[str, ...]:
         """Say in sentences what was wrong with the frames read so far."""
         found = []
-        if self._ended_early or self._faults:
-            of = f" of {self.info.frames}" if self.info.frames else ""
+        read = f"{self._count} of {self.info.frames or 'an unknown number of'} frames were read"
+        stated = self.info.duration or 0.0
+        if self._broken or self._faults:
+            found.append(f"the clip is damaged: {read}, {self._faults} pieces of data were not")
+        elif self._ended and stated - self._time > max(MISSING_SECONDS, MISSING_SHARE * stated):
             found.append(
-                f"the clip is damaged: {self._count}{of} frames were read, "
-                f"{self._faults} pieces of video data were not"
+                f"the clip is cut short: {read}, up to {self._time:.1f} s of the {stated:.1f} s "
+                "that it states"
             )
         if self._clock.repaired:
             found.append(
@@ -252,7 +262,7 @@ class FrameReader(Iterator[VideoFrame]):
             try:
                 packet = next(packets, None)
             except (av.error.FFmpegError, OSError):
-                self._ended_early = True
+                self._broken = True
                 return
             if packet is None:
                 return

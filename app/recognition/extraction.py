@@ -1,0 +1,153 @@
+"""From a clip to what is in it: frames stream through the models, only landmarks are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+
+from app.recognition.estimation import create_estimator
+from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.salute import ENTER_SCORE, best_salute
+from app.recognition.video import FrameReader, VideoFrame, VideoInfo, VideoLimits, read_frames
+
+Progress = Callable[[int, int], None]
+"""``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
+Raising an exception in it cancels the work."""
+
+
+def record(
+    clip: str | Path,
+    *,
+    estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+    limits: VideoLimits | None = None,
+) -> Recording:
+    """Find body and hands in every frame of a clip.
+
+    Memory does not grow with the clip but by the landmarks: one frame is held at a time.
+
+    Parameters
+    ----------
+    clip
+        The video file.
+    estimator
+        What finds the landmarks; it is reset first and left open. None: the default one.
+    progress
+        Called after every frame.
+    limits
+        What the clip may cost.
+
+    Raises
+    ------
+    VideoError
+        When the file is no video, holds no readable frame, or breaks a limit.
+    ModelError
+        When the default estimator's models are not installed.
+
+    """
+    with read_frames(clip, limits) as reader:
+        if estimator is not None:
+            return _record(reader, estimator, progress)
+        with closing(create_estimator()) as own:
+            return _record(reader, own, progress)
+
+
+def extract_poses(
+    clip: str | Path,
+    *,
+    estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+) -> PoseSequence:
+    """Find the body in every frame of a clip; see `record`, which also keeps the hands."""
+    return record(clip, estimator=estimator, progress=progress).poses
+
+
+class _Collector:
+    """Gathers the landmarks of one frame after another into a `Recording`."""
+
+    def __init__(self, info: VideoInfo) -> None:
+        self._info = info
+        self._xy: list[FloatArray] = []
+        self._visibility: list[FloatArray] = []
+        self._time: list[float] = []
+        self._hands: list[tuple[Hand, ...]] = []
+        self._salute: list[float] = []
+        self._without_body = 0
+
+    def add(self, time: float, found: FrameLandmarks) -> None:
+        count = len(POSE_LANDMARKS)
+        if found.body is None:
+            self._without_body += 1
+            self._xy.append(np.full((count, 2), np.nan))
+            self._visibility.append(np.zeros(count))
+        else:
+            seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
+            self._xy.append(np.where(seen, found.body.xy, np.nan))
+            self._visibility.append(np.clip(np.nan_to_num(found.body.visibility), 0, 1))
+        hands = tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
+        self._time.append(time)
+        self._hands.append(hands)
+        self._salute.append(best_salute(hands))
+
+    def recording(self, warnings: tuple[str, ...]) -> Recording:
+        poses = PoseSequence(
+            landmarks=POSE_LANDMARKS,
+            xy=np.stack(self._xy),
+            confidence=np.stack(self._visibility),
+            time=np.array(self._time),
+            frame_size=(self._info.width, self._info.height),
+        )
+        return Recording(
+            poses=poses,
+            hands=tuple(self._hands),
+            salute=np.array(self._salute),
+            warnings=warnings + self._warnings(),
+        )
+
+    def _warnings(self) -> tuple[str, ...]:
+        """Say what is missing in the clip, with counts, and what to do about it."""
+        frames = len(self._time)
+        found = []
+        if self._without_body:
+            found.append(f"no person in {self._without_body} of {frames} frames")
+        if not any(self._hands):
+            found.append(
+                f"no hand in any of {frames} frames, so no salute can be seen; choose the "
+                "gesture's range by hand, or film from nearer"
+            )
+        elif max(self._salute) <= ENTER_SCORE:
+            found.append(
+                f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
+                "salute with the palm or back of the hand towards the camera"
+            )
+        return tuple(found)
+
+
+def _record(reader: FrameReader, estimator: PoseEstimator, progress: Progress | None) -> Recording:
+    estimator.reset()
+    collector = _Collector(reader.info)
+    done = 0
+    for frame in reader:
+        collector.add(frame.time, estimator.estimate(frame.image, frame.time))
+        done = frame.index + 1
+        if progress is not None:
+            progress(done, _expected_frames(reader.info, frame))
+    if progress is not None:
+        progress(done, done)
+    return collector.recording(reader.warnings)
+
+
+def _expected_frames(info: VideoInfo, frame: VideoFrame) -> int:
+    """Estimate the clip's count of frames from what was read so far, never below it."""
+    done = frame.index + 1
+    if info.frames is not None:
+        return max(done, info.frames)
+    if info.duration is None or frame.time <= 0:
+        return done
+    return max(done, round(done * info.duration / frame.time))

@@ -1,0 +1,153 @@
+"""Everything found in one clip, frame by frame: the body, the hands and how much they salute."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from app.recognition.errors import PoseError
+from app.recognition.estimation.base import Hand
+from app.recognition.landmarks import HAND_LANDMARKS
+from app.recognition.poses import FloatArray, PoseSequence
+
+FILE_VERSION = 1
+"""Of the file that `Recording.save` writes; raised when a reader of today could misread it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What an estimator found in all T frames of a clip.
+
+    Attributes
+    ----------
+    poses
+        The body in every frame; all landmarks NaN where no person was found.
+    hands
+        T tuples: the hands of each frame, the larger first.
+    salute
+        ``(T,)`` in [0, 1]: score of the best salute in the frame (`best_salute`), 0 without a hand.
+    warnings
+        What the user should know about the clip, in sentences with counts.
+
+    Raises
+    ------
+    PoseError
+        When the parts do not have the same number of frames, or scores lie outside [0, 1].
+
+    """
+
+    poses: PoseSequence
+    hands: tuple[tuple[Hand, ...], ...]
+    salute: FloatArray
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Validate, and freeze a private copy of the scores."""
+        salute = np.array(self.salute, dtype=np.float64)
+        frames = len(self.poses)
+        if salute.shape != (frames,) or len(self.hands) != frames:
+            raise PoseError(
+                f"a recording of {frames} poses has {len(self.hands)} frames of hands and "
+                f"{salute.shape} salute scores; all must be the same number"
+            )
+        if not ((salute >= 0) & (salute <= 1)).all():
+            raise PoseError("salute scores lie outside [0, 1]")
+        salute.setflags(write=False)
+        object.__setattr__(self, "salute", salute)
+
+    def save(self, path: str | Path) -> None:
+        """Write a compressed NumPy archive, all of it or nothing.
+
+        The file appears under its name only when it is complete and on the disk.
+        """
+        target = Path(path)
+        descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        try:
+            with os.fdopen(descriptor, "wb") as file:
+                self._write(file)
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).replace(target)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+
+    def _write(self, file: BinaryIO) -> None:
+        found = [hand for frame in self.hands for hand in frame]
+        arrays: dict[str, Any] = {
+            "version": np.array(FILE_VERSION),
+            "landmarks": np.array(self.poses.landmarks, dtype=np.str_),
+            "xy": self.poses.xy,
+            "time": self.poses.time,
+            "frame_size": np.array(self.poses.frame_size),
+            "salute": self.salute,
+            "hands_per_frame": np.array([len(frame) for frame in self.hands], dtype=np.int64),
+            "hand_xy": np.array([hand.xy for hand in found]).reshape(-1, len(HAND_LANDMARKS), 2),
+            "hand_is_right": np.array([hand.side == "right" for hand in found], dtype=np.bool_),
+            "hand_score": np.array([hand.score for hand in found], dtype=np.float64),
+            "warnings": np.array(self.warnings, dtype=np.str_),
+        }
+        if self.poses.confidence is not None:
+            arrays["confidence"] = self.poses.confidence
+        np.savez_compressed(file, allow_pickle=False, **arrays)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Recording:
+        """Read what `save` wrote.
+
+        Raises
+        ------
+        PoseError
+            When the file is missing, damaged, or of a newer version.
+
+        """
+        source = Path(path)
+        try:
+            with np.load(source, allow_pickle=False) as archive:
+                return cls._from_arrays({name: archive[name] for name in archive.files})
+        except PoseError:
+            raise
+        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+            raise PoseError(
+                f"{source.name} is not a readable recording ({error}); extract the clip's poses "
+                "again"
+            ) from error
+
+    @classmethod
+    def _from_arrays(cls, arrays: Mapping[str, Any]) -> Recording:
+        version = int(arrays["version"])
+        if version != FILE_VERSION:
+            raise PoseError(
+                f"the recording has file version {version}, this program reads {FILE_VERSION}; "
+                "extract the clip's poses again, or update the program"
+            )
+        poses = PoseSequence(
+            landmarks=tuple(str(name) for name in arrays["landmarks"]),
+            xy=arrays["xy"],
+            confidence=arrays.get("confidence"),
+            time=arrays["time"],
+            frame_size=(int(arrays["frame_size"][0]), int(arrays["frame_size"][1])),
+        )
+        found = [
+            Hand(xy=xy, side="right" if is_right else "left", score=float(score))
+            for xy, is_right, score in zip(
+                arrays["hand_xy"], arrays["hand_is_right"], arrays["hand_score"], strict=True
+            )
+        ]
+        ends = np.cumsum(arrays["hands_per_frame"])
+        starts = ends - arrays["hands_per_frame"]
+        if len(found) != (int(ends[-1]) if len(ends) else 0):
+            raise PoseError("the recording's hands do not match its frames; extract it again")
+        return cls(
+            poses=poses,
+            hands=tuple(tuple(found[start:end]) for start, end in zip(starts, ends, strict=True)),
+            salute=arrays["salute"],
+            warnings=tuple(str(warning) for warning in arrays["warnings"]),
+        )

@@ -1,0 +1,279 @@
+"""Takes: what lies between two salutes, found in a recording or while a camera runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+
+from app.recognition.errors import PoseError
+from app.recognition.estimation.base import PoseEstimator
+from app.recognition.extraction import Progress, record
+from app.recognition.poses import PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.salute import SaluteTrigger
+from app.recognition.transit import Span, find_stroke
+
+SHORTEST_TAKE = 0.8
+"""Seconds between two salutes, at least. A reach, a stroke and a reach back take 0.5 s each at
+human speed (Flash and Hogan 1985); what is shorter is one salute that was lost for a while."""
+
+LONGEST_TAKE = 60.0
+"""Seconds. A gesture takes a few; whoever has not saluted for a minute has forgotten the stop
+salute or gone away, and their next salute begins a new gesture."""
+
+
+class TakeState(StrEnum):
+    """What a `TakeMachine` does now."""
+
+    idle = "idle"
+    """Waits for a salute."""
+    recording = "recording"
+    """A salute was made; the gesture is being shown, or about to be."""
+    done = "done"
+    """A second salute ended the take and is still held."""
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """Two salutes around a take, or one that was never followed by another.
+
+    Attributes
+    ----------
+    first_salute
+        From the first sight of the start salute to its last one.
+    last_salute
+        From the first sight of the stop salute to when it had been held long enough; None: there
+        was none before the stream or the time for a take ended.
+    end
+        Seconds: when the take ends, by the stop salute or without one.
+
+    """
+
+    first_salute: Span
+    last_salute: Span | None
+    end: float
+
+    @property
+    def start(self) -> float:
+        """When the take begins, in seconds."""
+        return self.first_salute.end
+
+    @property
+    def closed(self) -> bool:
+        """Whether a stop salute ended the take."""
+        return self.last_salute is not None
+
+
+@dataclass
+class TakeMachine:
+    """Turns a stream of salute scores into takes.
+
+    Idle until a salute is held; then recording. The take begins when this salute is released,
+    however long it is held, and ends where the next one begins. Then done, until that salute is
+    released too: one salute never ends one take and begins the next.
+
+    A salute that comes back within `shortest` seconds of its release had only been lost. A take
+    that lasts longer than `longest` seconds is given up as unclosed.
+
+    Attributes
+    ----------
+    trigger
+        Tells when a salute is held.
+    shortest, longest
+        Seconds that a take may last.
+    state
+        What the machine does now.
+
+    """
+
+    trigger: SaluteTrigger = field(default_factory=SaluteTrigger)
+    shortest: float = SHORTEST_TAKE
+    longest: float = LONGEST_TAKE
+    state: TakeState = field(default=TakeState.idle, init=False)
+    _began: float = field(default=0.0, init=False)
+    _released: float | None = field(default=None, init=False)
+
+    def update(self, time: float, score: float) -> Bracket | None:
+        """Take the next frame.
+
+        Parameters
+        ----------
+        time
+            Seconds, later than in every call before.
+        score
+            How much the best hand salutes, in [0, 1] (`best_salute`).
+
+        Returns
+        -------
+        The take that this frame ends, if it ends one.
+
+        """
+        held = self.trigger.update(time, score)
+        match self.state:
+            case TakeState.idle if held:
+                self.state = TakeState.recording
+                self._began = time if self.trigger.since is None else self.trigger.since
+                self._released = None
+            case TakeState.recording:
+                return self._recording(time, held)
+            case TakeState.done if not held:
+                self.state = TakeState.idle
+        return None
+
+    def finish(self, time: float) -> Bracket | None:
+        """End the stream at `time` seconds.
+
+        Returns
+        -------
+        The take that was begun and not closed, if there is one.
+
+        """
+        released = self._released
+        if self.state is not TakeState.recording or released is None:
+            return None
+        self.state = TakeState.idle
+        return self._unclosed(released, time) if time - released >= self.shortest else None
+
+    def _recording(self, time: float, held: bool) -> Bracket | None:
+        released, since = self._released, self.trigger.since
+        if released is None:
+            if not held:
+                self._released = self.trigger.until
+            return None
+        if not held or since is None:
+            if time - released <= self.longest:
+                return None
+            self.state = TakeState.idle
+            return self._unclosed(released, released + self.longest)
+        if since - released < self.shortest:
+            self._released = None
+            return None
+        self.state = TakeState.done
+        return Bracket(
+            first_salute=Span(self._began, released), last_salute=Span(since, time), end=since
+        )
+
+    def _unclosed(self, released: float, end: float) -> Bracket:
+        return Bracket(first_salute=Span(self._began, released), last_salute=None, end=end)
+
+
+@dataclass(frozen=True)
+class Take:
+    """One showing of a gesture.
+
+    Attributes
+    ----------
+    start, end
+        Seconds in the clip: the release of the start salute, the beginning of the stop salute.
+    closed
+        Whether a stop salute ended it; else `end` is where the clip (or the time allowed) ends.
+    poses
+        The stroke, without the hand's way from the salute and back to it.
+    stroke_start, stroke_end
+        Seconds in the clip between which `poses` lies.
+    untrimmed
+        Everything between the salutes.
+
+    """
+
+    start: float
+    end: float
+    closed: bool
+    poses: PoseSequence
+    stroke_start: float
+    stroke_end: float
+    untrimmed: PoseSequence
+
+    def with_stroke(self, start: float, end: float) -> Take:
+        """Return this take with another stroke, chosen by the user.
+
+        Parameters
+        ----------
+        start, end
+            Seconds in the clip.
+
+        Raises
+        ------
+        PoseError
+            When they do not lie in order between the salutes.
+
+        """
+        if not self.start <= start < end <= self.end:
+            raise PoseError(
+                f"a stroke from {start:g} s to {end:g} s does not fit the take from "
+                f"{self.start:g} s to {self.end:g} s; choose two moments inside it"
+            )
+        poses = self.untrimmed.between(start, end)
+        return replace(self, poses=poses, stroke_start=start, stroke_end=end)
+
+
+def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
+    """Find the takes of a recording.
+
+    Parameters
+    ----------
+    recording
+        What was found in a clip.
+    trim
+        Whether to leave the hand's way from and to the salute out of the stroke
+        (`app.recognition.transit`).
+
+    Returns
+    -------
+    The takes in order; none where nobody salutes, then the user chooses the range by hand. At most
+    the last one is unclosed, unless the diver forgot a stop salute for `LONGEST_TAKE` seconds.
+
+    """
+    machine = TakeMachine()
+    times = recording.poses.time.tolist()
+    found = [
+        machine.update(time, score)
+        for time, score in zip(times, recording.salute.tolist(), strict=True)
+    ]
+    if times:
+        found.append(machine.finish(times[-1]))
+    return tuple(take_from(recording.poses, bracket, trim=trim) for bracket in found if bracket)
+
+
+def find_takes(
+    clip: str | Path,
+    *,
+    estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+    trim: bool = True,
+) -> tuple[Take, ...]:
+    """Find the takes of a clip; see `app.recognition.extraction.record` and `takes_in`."""
+    return takes_in(record(clip, estimator=estimator, progress=progress), trim=trim)
+
+
+def take_from(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:
+    """Cut a take out of a recording.
+
+    Parameters
+    ----------
+    poses
+        A recording that covers the bracket with its salutes.
+    bracket
+        The salutes around the take.
+    trim
+        As in `takes_in`.
+
+    """
+    untrimmed = poses.between(bracket.start, bracket.end)
+    stroke = Span(bracket.start, bracket.end)
+    if trim:
+        around = poses.between(
+            bracket.first_salute.start,
+            bracket.last_salute.end if bracket.last_salute else bracket.end,
+        )
+        stroke = find_stroke(around, bracket.first_salute, bracket.last_salute)
+    return Take(
+        start=bracket.start,
+        end=bracket.end,
+        closed=bracket.closed,
+        poses=untrimmed.between(stroke.start, stroke.end),
+        stroke_start=stroke.start,
+        stroke_end=stroke.end,
+        untrimmed=untrimmed,
+    )

@@ -1,0 +1,276 @@
+"""The hand's way from the salute to where the stroke begins, and back: found, to be left out.
+
+Between two salutes the diver reaches for the place where the gesture begins, draws, and returns
+to the salute. The two reaches say nothing about the gesture; drawn into its trajectory image they
+make all gestures more alike (they are in every image of the published language files).
+
+People move in discrete strokes with a bell-shaped speed each (Flash and Hogan 1985), and a reach
+to a point is nearly straight. So the recording is cut where the speed of the moving wrists has a
+clear minimum, and the first piece is the reach, the last one the return, when they are straight,
+short enough, and not all there is. In doubt nothing is cut: a stroke with a reach in it is still
+recognised, half a stroke is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.trajectory import Trajectory
+
+WRISTS = ("left_wrist", "right_wrist")
+
+GRID_STEP = 1 / 60
+"""Seconds between the moments at which speed is computed: finer than most cameras' frames."""
+
+SMOOTHING = 0.06
+"""Standard deviation in seconds of the Gaussian that quietens the positions: a quarter of the
+half-width of the shortest reach's bell (0.4 s), so that bells survive and frame noise does not."""
+
+MOVING_HAND = 0.3
+"""Torso lengths that a wrist must travel, corner to corner, to count as moving: sway of the body
+and errors of the pose model stay below, gestures are above."""
+
+CLEAR_MINIMUM = 0.4
+"""Speed at a boundary over the lower one of the two neighbouring peaks, at most. A hand that stops
+or turns sharply comes below; on a curve it slows down by about a third (two-thirds power law,
+Lacquaniti et al. 1983)."""
+
+RESTING = 0.06
+"""Share of the highest speed below which a hand is at rest: where the jitter of the pose model ends
+and the slowest careful drawing after the fastest reach has not yet begun."""
+
+CORNER_MINIMUM = 0.7
+"""The same where the hand turns by `CORNER_ANGLE` or more: a hand drawing a rounded corner slows
+down less than one that stops, but always a little."""
+
+CORNER_ANGLE = 60.0
+"""Degrees between the directions `CORNER_REACH` before and after the minimum. A circle drawn in a
+second turns by 54 degrees in that time, and does not slow down."""
+
+CORNER_REACH = 0.15
+"""Seconds before and after a minimum in which the hand's direction is measured: longer than the
+smoothing rounds a corner."""
+
+PAUSE = 0.15
+"""Share of a neighbouring peak below which the hand pauses; of a minimum-jerk stroke this cuts off
+less than a hundredth of the way."""
+
+STRAIGHT_REACH = 0.85
+"""Distance over way of a reach, at least. Reaches are straight within a few per cent; a half
+circle has 0.64, a quarter circle 0.90 but it is no whole piece of a gesture's stroke."""
+
+LONGEST_REACH = 1.5
+"""Seconds. Reaches take 0.5 to 1 s (Flash and Hogan 1985); in water somewhat longer."""
+
+LARGEST_SHARE = 0.45
+"""Of all that lies between the salutes, what one reach may take at most; two leave a tenth."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of a recording.
+
+    Attributes
+    ----------
+    start, end
+        Seconds, in the clock of the recording; ``start <= end``.
+
+    """
+
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """The moving wrists on an even grid of G moments.
+
+    ``time`` (G,) seconds in the recording's clock; ``xy`` (G, 2 * wrists) torso lengths, smoothed;
+    ``speed`` (G,) torso lengths a second, of all wrists together; ``known`` (G,) whether all of
+    them were seen.
+    """
+
+    time: FloatArray
+    xy: FloatArray
+    speed: FloatArray
+    known: npt.NDArray[np.bool_]
+
+    def between(self, start: float, end: float) -> _Motion:
+        inside = (self.time >= start) & (self.time <= end)
+        return _Motion(self.time[inside], self.xy[inside], self.speed[inside], self.known[inside])
+
+    def slowest(self, span: Span) -> float:
+        """Return the moment of least speed in `span`."""
+        inside = np.flatnonzero((self.time >= span.start) & (self.time <= span.end))
+        if not len(inside):
+            return span.start
+        return float(self.time[inside[np.argmin(self.speed[inside])]])
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """One movement between two minima of speed: first and last grid index, pauses left out."""
+
+    first: int
+    last: int
+
+
+def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | None) -> Span:
+    """Find the gesture's own movement between two salutes.
+
+    Translating or scaling the recording leaves the answer as it is, shifting its clock shifts it.
+
+    Parameters
+    ----------
+    poses
+        A recording from the first salute to the last one.
+    first_salute, last_salute
+        When the salutes were seen. The hand rests somewhere in them, but may keep the shape while
+        it leaves, and take it before it arrives. None: the take was not closed, and only its
+        beginning is looked at.
+
+    Returns
+    -------
+    The stroke, between the salutes; all that lies between them where no reach is clear.
+
+    """
+    end = last_salute.start if last_salute else float(poses.time[-1])
+    whole = Span(first_salute.end, end)
+    motion = _hand_motion(
+        poses.between(first_salute.start, last_salute.end if last_salute else end)
+    )
+    if motion is None:
+        return whole
+    motion = motion.between(
+        motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
+    )
+    pieces = _pieces(motion)
+    if len(pieces) < 2:
+        return whole
+    moving = float(motion.time[pieces[-1].last] - motion.time[pieces[0].first])
+    goes = _is_reach(motion, pieces[0], moving)
+    comes = last_salute is not None and _is_reach(motion, pieces[-1], moving)
+    if goes and comes and len(pieces) == 2:
+        # There and back: the two pieces may be the whole gesture, a line drawn twice.
+        return whole
+    return Span(
+        start=max(whole.start, float(motion.time[pieces[1].first])) if goes else whole.start,
+        end=min(whole.end, float(motion.time[pieces[-2].last])) if comes else whole.end,
+    )
+
+
+def _hand_motion(poses: PoseSequence) -> _Motion | None:
+    """Follow the wrists that move, or return None where none does or none is seen."""
+    count = int(np.ceil(poses.duration / GRID_STEP)) + 1
+    wrists = [name for name in WRISTS if name in poses.landmarks]
+    if count < 3 or not any(np.isfinite(poses.column(name)).any() for name in wrists):
+        return None
+    trajectory = Trajectory.from_poses(poses).select(wrists).filled().resampled_in_time(count)
+    moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
+    if not moving:
+        return None
+    xy = np.concatenate(moving, axis=1)
+    known = np.isfinite(xy).all(axis=1)
+    if not known.any():
+        return None
+    moments = np.arange(count)
+    smooth = np.stack(
+        [_smoothed(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
+    )
+    speed = np.linalg.norm(np.gradient(smooth, trajectory.time, axis=0), axis=1)
+    return _Motion(time=trajectory.time + poses.time[0], xy=smooth, speed=speed, known=known)
+
+
+def _extent(path: FloatArray) -> float:
+    """Diagonal of a path's bounding box; 0 where nothing is seen."""
+    seen = path[np.isfinite(path).all(axis=1)]
+    return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
+
+
+def _smoothed(values: FloatArray) -> FloatArray:
+    """Convolve with the Gaussian of `SMOOTHING` seconds, the ends held."""
+    deviation = SMOOTHING / GRID_STEP
+    half = int(np.ceil(3 * deviation))
+    weights = np.exp(-0.5 * (np.arange(-half, half + 1) / deviation) ** 2)
+    padded = np.pad(values, half, mode="edge")
+    return np.convolve(padded, weights / weights.sum(), mode="valid")
+
+
+def _pieces(motion: _Motion) -> list[_Piece]:
+    """Cut where speed has a clear minimum, and drop the pauses between the pieces."""
+    speed = motion.speed
+    if len(speed) < 3 or speed.max() <= 0:
+        return []
+    resting = RESTING * float(speed.max())
+    peaks, valleys = _turning_points(np.maximum(speed, resting))
+    while valleys:
+        excess = [
+            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _allowed(motion, valley)
+            for i, valley in enumerate(valleys)
+        ]
+        worst = int(np.argmax(excess))
+        if excess[worst] <= 1:
+            break
+        # The lower one of the two peaks is a ripple on the other's flank.
+        valleys.pop(worst)
+        peaks.pop(worst if speed[peaks[worst]] < speed[peaks[worst + 1]] else worst + 1)
+    cuts = [0, *valleys, len(speed) - 1]
+    return [
+        _without_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
+        for i, peak in enumerate(peaks)
+    ]
+
+
+def _allowed(motion: _Motion, valley: int) -> float:
+    """Return how deep a minimum of speed must be to cut there, as a share of its peaks."""
+    reach = round(CORNER_REACH / GRID_STEP)
+    before = motion.xy[valley] - motion.xy[max(valley - reach, 0)]
+    after = motion.xy[min(valley + reach, len(motion.xy) - 1)] - motion.xy[valley]
+    lengths = float(np.linalg.norm(before) * np.linalg.norm(after))
+    turns = lengths > 0 and before @ after <= lengths * np.cos(np.radians(CORNER_ANGLE))
+    return CORNER_MINIMUM if turns else CLEAR_MINIMUM
+
+
+def _turning_points(values: FloatArray) -> tuple[list[int], list[int]]:
+    """Return where `values` peaks and, between each two peaks, where it is lowest.
+
+    A plateau counts as its middle; an end of the array from which it only falls is a peak.
+    """
+    ends = np.flatnonzero(np.diff(values) != 0)
+    firsts, lasts = np.append(0, ends + 1), np.append(ends, len(values) - 1)
+    levels = values[firsts]
+    middles = (firsts + lasts) // 2
+    framed = np.concatenate([[-np.inf], levels, [-np.inf]])
+    is_peak = (framed[1:-1] > framed[:-2]) & (framed[1:-1] > framed[2:])
+    peaks = np.flatnonzero(is_peak)
+    valleys = [
+        int(middles[a + int(np.argmin(levels[a : b + 1]))]) for a, b in pairwise(peaks.tolist())
+    ]
+    return middles[peaks].tolist(), valleys
+
+
+def _without_pauses(speed: FloatArray, first: int, last: int, pause: float) -> _Piece:
+    fast = np.flatnonzero(speed[first : last + 1] > pause)
+    return _Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else _Piece(first, last)
+
+
+def _is_reach(motion: _Motion, piece: _Piece, moving: float) -> bool:
+    """Tell whether a piece is a straight, short movement of hands in view.
+
+    `moving` is how many seconds all movement between the salutes takes.
+    """
+    inside = slice(piece.first, piece.last + 1)
+    path = motion.xy[inside]
+    way = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    lasts = float(motion.time[piece.last] - motion.time[piece.first])
+    return bool(
+        way > 0
+        and np.linalg.norm(path[-1] - path[0]) >= STRAIGHT_REACH * way
+        and lasts <= min(LONGEST_REACH, LARGEST_SHARE * moving)
+        and motion.known[inside].all()
+    )

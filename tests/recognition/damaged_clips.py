@@ -1,0 +1,171 @@
+"""Clips as they should not be: written by PyAV into a test's own folder, never stored.
+
+`write_clip` makes a small clean clip; every other function spoils one in one way.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import zipfile
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import numpy as np
+from av.container import OutputContainer
+from av.video.stream import VideoStream
+
+from app.recognition.estimation.base import Image
+
+WIDTH, HEIGHT = 64, 48
+RATE = 25
+TICKS = 1000
+"""Of the clips' clock, a second: whole milliseconds."""
+
+
+def picture(index: int, width: int = WIDTH, height: int = HEIGHT) -> Image:
+    """Paint red in the top left corner, blue elsewhere, and the frame's number as brightness."""
+    image = np.zeros((height, width, 3), dtype=np.uint8)
+    image[..., 2] = 100 + index % 100
+    image[: height // 2, : width // 2] = (250, 0, 0)
+    return image
+
+
+def write_clip(
+    path: Path,
+    *,
+    frames: int = 12,
+    size: tuple[int, int] = (WIDTH, HEIGHT),
+    codec: str = "libx264",
+    pixel_format: str = "yuv420p",
+    times: Sequence[float] | None = None,
+    rotation: int | None = None,
+    pixel_aspect: Fraction | None = None,
+    extra_streams: int = 0,
+    options: dict[str, str] | None = None,
+    container_format: str | None = None,
+) -> Path:
+    """Write a clip of `picture` frames.
+
+    Parameters
+    ----------
+    path
+        Its suffix chooses the container, unless `container_format` does.
+    times
+        Seconds of the frames, `frames` many; None: `RATE` a second.
+    rotation
+        Degrees, counter-clockwise, that the file asks players to turn the picture by.
+    extra_streams
+        Count of further video streams, of one frame each.
+
+    """
+    stamps = [i / RATE for i in range(frames)] if times is None else times
+    with av.open(str(path), "w", format=container_format, options=options or {}) as container:
+        stream = _video_stream(container, codec)
+        others = [_video_stream(container, "mpeg4") for _ in range(extra_streams)]
+        for each in (stream, *others):
+            each.width, each.height = size
+            each.pix_fmt = pixel_format if each is stream else "yuv420p"
+        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
+        if codec == "libx264":
+            # No reordering: then decoding and display order are one, whatever the timestamps.
+            stream.options = {"preset": "ultrafast", "bf": "0"}
+        if pixel_aspect is not None:
+            stream.codec_context.sample_aspect_ratio = pixel_aspect
+        if rotation is not None:
+            stream.set_display_rotation(rotation)
+        for index, seconds in enumerate(stamps):
+            frame = av.VideoFrame.from_ndarray(picture(index, *size), format="rgb24")
+            frame = frame.reformat(format=pixel_format)
+            frame.pts, frame.time_base = round(seconds * TICKS), Fraction(1, TICKS)
+            container.mux(stream.encode(frame))
+        for other in others:
+            container.mux(other.encode(av.VideoFrame(*size, "yuv420p")))
+        for each in (stream, *others):
+            container.mux(each.encode())
+    return path
+
+
+def _video_stream(container: OutputContainer, codec: str) -> VideoStream:
+    stream = container.add_stream(codec, rate=RATE)
+    assert isinstance(stream, VideoStream), f"{codec} is no video codec"
+    return stream
+
+
+def cut_off(clip: Path, share: float) -> Path:
+    """Keep only the first `share` of a file's bytes, as a broken transfer does."""
+    content = clip.read_bytes()
+    clip.write_bytes(content[: int(len(content) * share)])
+    return clip
+
+
+def joined(first: Path, second: Path) -> Path:
+    """Append one MPEG-TS clip to another, as recorders do: the clock starts anew in the middle."""
+    first.write_bytes(first.read_bytes() + second.read_bytes())
+    return first
+
+
+def flipped(clip: Path, seed: int, bytes_changed: int) -> Path:
+    """Overwrite random bytes anywhere in the file, as a bad card does."""
+    random = np.random.default_rng(seed)
+    content = np.frombuffer(clip.read_bytes(), dtype=np.uint8).copy()
+    places = random.integers(0, len(content), bytes_changed)
+    content[places] = random.integers(0, 256, bytes_changed)
+    clip.write_bytes(content.tobytes())
+    return clip
+
+
+def sound_only(path: Path) -> Path:
+    """Write a clip with half a second of sound and no picture."""
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("aac", rate=16000)
+        frame = av.AudioFrame.from_ndarray(
+            np.zeros((1, 8000), dtype=np.float32), format="fltp", layout="mono"
+        )
+        frame.sample_rate = 16000
+        container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    return path
+
+
+def _zip() -> bytes:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("clip.mp4", b"not a clip either")
+    return content.getvalue()
+
+
+def _moov_without_media() -> bytes:
+    return struct.pack(">I4s4sI4s", 20, b"ftyp", b"isom", 512, b"isom") + struct.pack(
+        ">I4s", 8, b"moov"
+    )
+
+
+IMPOSTORS: dict[str, bytes] = {
+    "nothing": b"",
+    "one byte": b"\0",
+    "page": b"<!doctype html><html><body><video src=x></body></html>" * 20,
+    "drawing": b'<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"></svg>' * 20,
+    "archive": _zip(),
+    "document": b"%PDF-1.7\n%\xe2\xe3\xcf\xd3\n" + bytes(2000),
+    "program": b"\x7fELF\x02\x01\x01" + bytes(2000),
+    "text": b"salute, circle, salute\n" * 100,
+    "zeros": bytes(4096),
+    "noise": np.random.default_rng(1).bytes(4096),
+    "MP4 header alone": struct.pack(">I4s4sI4s", 20, b"ftyp", b"isom", 512, b"isom"),
+    "MP4 without media": _moov_without_media(),
+    "Matroska header alone": bytes.fromhex("1a45dfa3934282886d6174726f736b614287810242858102"),
+}
+"""Contents that are no clip, whatever their file is called."""
+
+PLAYLISTS: dict[str, Callable[[Path], str]] = {
+    "HLS": lambda clip: f"#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n{clip}\n#EXT-X-ENDLIST\n",
+    "concatenation": lambda clip: f"ffconcat version 1.0\nfile '{clip}'\n",
+    "session description": lambda clip: (
+        "v=0\no=- 0 0 IN IP4 127.0.0.1\ns=x\nc=IN IP4 127.0.0.1\n"
+        f"t=0 0\na=tool:{clip}\nm=video 5004 RTP/AVP 96\na=rtpmap:96 H264/90000\n"
+    ),
+}
+"""Texts that make FFmpeg open another file or address, which they name."""

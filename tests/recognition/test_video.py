@@ -1,0 +1,268 @@
+"""Reading clips: right time and right way up from odd ones, a plain refusal of bad ones."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.recognition.errors import VideoError
+from app.recognition.estimation.base import Image
+from app.recognition.video import VideoFrame, VideoLimits, over_background, probe, read_frames
+from tests.recognition.damaged_clips import (
+    HEIGHT,
+    IMPOSTORS,
+    PLAYLISTS,
+    WIDTH,
+    cut_off,
+    flipped,
+    joined,
+    sound_only,
+    write_clip,
+)
+
+RED, BLUE = 0, 2
+
+
+def read(path: Path, limits: VideoLimits | None = None) -> tuple[list[VideoFrame], tuple[str, ...]]:
+    reader = read_frames(path, limits)
+    return list(reader), reader.warnings
+
+
+def is_red(image: Image, row: int, column: int) -> bool:
+    red, _, blue = image[row, column]
+    return bool(red > 180 and blue < 80)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("clip.mp4", {}),
+        ("clip.mov", {}),
+        ("clip.mkv", {}),
+        ("clip.ts", {}),
+        ("clip.webm", {"codec": "libvpx-vp9"}),
+        ("clip.avi", {"codec": "mpeg4"}),
+        ("ten_bits.mp4", {"pixel_format": "yuv420p10le"}),
+        ("odd.mp4", {"pixel_format": "yuv444p", "size": (63, 47)}),
+        ("odd.webm", {"codec": "libvpx", "size": (63, 47)}),
+        ("alpha.mov", {"codec": "png", "pixel_format": "rgba"}),
+        ("forty_one_streams.mkv", {"extra_streams": 40}),
+    ],
+)
+def test_every_common_kind_of_clip_is_read(
+    tmp_path: Path, name: str, options: dict[str, Any]
+) -> None:
+    clip = write_clip(tmp_path / name, frames=12, **options)
+    width, height = options.get("size", (WIDTH, HEIGHT))
+    frames, warnings = read(clip)
+    assert [frame.index for frame in frames] == list(range(12))
+    assert [frame.time for frame in frames] == pytest.approx(np.arange(12) / 25)
+    assert all(frame.image.shape == (height, width, 3) for frame in frames)
+    assert is_red(frames[0].image, 2, 2)
+    assert not is_red(frames[0].image, -3, -3)
+    assert warnings == ()
+
+
+def test_the_name_says_nothing(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4").rename(tmp_path / "http:--clip.txt|x")
+    assert len(read(clip)[0]) == 12
+
+
+def test_variable_frame_times_come_from_the_container(tmp_path: Path) -> None:
+    times = [0, 0.04, 0.3, 0.31, 1.2, 1.25]
+    clip = write_clip(tmp_path / "clip.mkv", frames=6, times=times)
+    assert [frame.time for frame in read(clip)[0]] == pytest.approx(times)
+
+
+def test_time_counts_from_the_first_frame_also_from_before_zero(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mkv", frames=4, times=[-0.2, -0.1, 0, 0.1])
+    assert [frame.time for frame in read(clip)[0]] == pytest.approx([0, 0.1, 0.2, 0.3])
+
+
+def test_a_thousand_frames_a_second_are_read_as_such(tmp_path: Path) -> None:
+    times = (np.arange(40) / 1000).tolist()
+    frames, _ = read(write_clip(tmp_path / "clip.mp4", frames=40, times=times))
+    assert [frame.time for frame in frames] == pytest.approx(times)
+
+
+def test_a_repeated_timestamp_is_repaired_and_reported(tmp_path: Path) -> None:
+    times = [0, 0.04, 0.04, 0.08, 0.12]
+    clip = write_clip(tmp_path / "clip.mkv", frames=5, times=times, codec="ffv1")
+    frames, warnings = read(clip)
+    assert (np.diff([frame.time for frame in frames]) > 0).all()
+    assert warnings == ("1 of 5 frames had no usable timestamp; their time is estimated",)
+
+
+def test_joined_recordings_go_on_in_time(tmp_path: Path) -> None:
+    long = [i / 25 for i in range(50)]
+    parts = [write_clip(tmp_path / f"{i}.ts", frames=50, times=long) for i in range(2)]
+    frames, _ = read(joined(*parts))
+    times = np.array([frame.time for frame in frames])
+    assert len(frames) == 100
+    assert (np.diff(times) > 0).all()
+    assert times[-1] == pytest.approx(99 / 25, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "red_corner"),
+    [(0, (2, 2)), (90, (-3, 2)), (180, (-3, -3)), (-90, (2, -3))],
+)
+def test_pictures_come_upright(tmp_path: Path, rotation: int, red_corner: tuple[int, int]) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", rotation=rotation)
+    info = probe(clip)
+    image = read(clip)[0][0].image
+    assert info.rotation == rotation % 360
+    assert image.shape == (info.height, info.width, 3)
+    assert (info.width < info.height) == (rotation % 180 == 90)
+    corners = [(row, column) for row in (2, -3) for column in (2, -3)]
+    assert [corner for corner in corners if is_red(image, *corner)] == [red_corner]
+
+
+def test_pixels_that_are_not_square_are_stretched(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", pixel_aspect=Fraction(2, 1))
+    assert (probe(clip).width, probe(clip).height) == (2 * WIDTH, HEIGHT)
+    assert read(clip)[0][0].image.shape == (HEIGHT, 2 * WIDTH, 3)
+
+
+def test_transparent_pixels_show_the_grey_background() -> None:
+    image = np.array([[[200, 100, 0, 255], [200, 100, 0, 0]]], dtype=np.uint8)
+    assert over_background(image).tolist() == [[[200, 100, 0], [128, 128, 128]]]
+
+
+def test_the_probe_states_size_time_count_and_codec(tmp_path: Path) -> None:
+    info = probe(write_clip(tmp_path / "clip.mp4", frames=12))
+    assert (info.width, info.height, info.frames, info.codec) == (WIDTH, HEIGHT, 12, "h264")
+    assert info.duration == pytest.approx(12 / 25)
+
+
+@pytest.mark.parametrize("kind", IMPOSTORS)
+def test_what_is_no_clip_is_refused_by_its_content(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "clip.mp4"
+    path.write_bytes(IMPOSTORS[kind])
+    with pytest.raises(VideoError, match=r"clip\.mp4"):
+        probe(path)
+
+
+@pytest.mark.parametrize("kind", PLAYLISTS)
+@pytest.mark.parametrize("suffix", ["mp4", "m3u8", "ffconcat", "sdp"])
+def test_a_playlist_opens_no_other_file(tmp_path: Path, kind: str, suffix: str) -> None:
+    other = write_clip(tmp_path / "other.mp4")
+    path = tmp_path / f"clip.{suffix}"
+    path.write_text(PLAYLISTS[kind](other))
+    with pytest.raises(VideoError):
+        probe(path)
+
+
+@pytest.mark.parametrize("name", ["http://127.0.0.1:9/clip.mp4", "concat:clip.mp4", "pipe:0", "."])
+def test_an_address_is_not_a_file(name: str) -> None:
+    with pytest.raises(VideoError, match="not a file"):
+        probe(name)
+
+
+def test_sound_without_a_picture_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(VideoError, match=r"no video, only.*audio"):
+        probe(sound_only(tmp_path / "clip.mp4"))
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_clip_without_its_index_is_refused(tmp_path: Path, share: float) -> None:
+    clip = cut_off(write_clip(tmp_path / "clip.mp4", frames=100), share)
+    with pytest.raises(VideoError, match=r"clip\.mp4.*(record|export)"):
+        read(clip)
+
+
+@pytest.mark.parametrize(
+    ("name", "share", "options"),
+    [
+        ("clip.mp4", 0.5, {"options": {"movflags": "faststart"}}),
+        ("clip.mp4", 0.9, {"options": {"movflags": "faststart"}}),
+        ("clip.mp4", 0.99, {"options": {"movflags": "faststart"}}),
+        ("clip.mkv", 0.5, {}),
+    ],
+)
+def test_a_truncated_clip_gives_its_beginning_and_says_how_much(
+    tmp_path: Path, name: str, share: float, options: dict[str, Any]
+) -> None:
+    clip = cut_off(write_clip(tmp_path / name, frames=100, **options), share)
+    frames, (warning,) = read(clip)
+    assert 0 < len(frames) < 100
+    assert f"{len(frames)} of {'100' if name == 'clip.mp4' else 'an unknown number of'}" in warning
+
+
+def test_a_truncated_stream_without_an_index_gives_its_beginning(tmp_path: Path) -> None:
+    clip = cut_off(write_clip(tmp_path / "clip.ts", frames=100), 0.5)
+    assert 20 < len(read(clip)[0]) < 60
+
+
+@pytest.mark.parametrize(
+    ("limits", "reason"),
+    [
+        (VideoLimits(pixels=WIDTH * HEIGHT - 1), "64 x 48 pixels"),
+        (VideoLimits(frames=11), "frames, more than the limit of 11"),
+        (VideoLimits(seconds=0.3), r"more than the limit of 0\.3 s"),
+    ],
+)
+@pytest.mark.parametrize("name", ["clip.mp4", "clip.mkv", "clip.ts"])
+def test_limits_hold_and_are_named(
+    tmp_path: Path, limits: VideoLimits, reason: str, name: str
+) -> None:
+    clip = write_clip(tmp_path / name, frames=12)
+    with pytest.raises(VideoError, match=reason):
+        read(clip, limits)
+
+
+def test_the_container_may_lie_about_its_length(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mkv", frames=30)
+    content = clip.read_bytes()
+    # The Matroska element Duration (4489), eight bytes of float: the clip claims a millisecond.
+    place = content.index(bytes.fromhex("448988")) + 3
+    clip.write_bytes(content[:place] + np.array(1.0, dtype=">f8").tobytes() + content[place + 8 :])
+    assert (probe(clip).duration or 0) < 0.1
+    with pytest.raises(VideoError, match="limit"):
+        read(clip, VideoLimits(seconds=0.5))
+
+
+def test_a_frame_too_large_is_never_decoded(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=1, size=(4800, 4800))
+    with pytest.raises(VideoError, match="4800 x 4800 pixels"):
+        probe(clip)
+
+
+@pytest.mark.parametrize(
+    ("name", "codec"), [("clip.mp4", "libx264"), ("clip.webm", "libvpx"), ("clip.avi", "mpeg4")]
+)
+@pytest.mark.parametrize("seed", range(12))
+def test_flipped_bytes_give_frames_or_a_refusal(
+    tmp_path: Path, name: str, codec: str, seed: int
+) -> None:
+    clip = write_clip(tmp_path / name, frames=20, codec=codec)
+    flipped(clip, seed, bytes_changed=4 ** (seed % 4))
+    try:
+        frames, _ = read(clip)
+    except VideoError:
+        return
+    times = np.array([frame.time for frame in frames])
+    assert (np.diff(times) > 0).all()
+    assert len({frame.image.shape for frame in frames}) == 1
+
+
+def test_reading_stops_where_the_reader_is_closed(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4")
+    with read_frames(clip) as reader:
+        assert next(reader).index == 0
+    clip.unlink()
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "seconds"),
+    [("diver_follow_me.webm", 83, 6.0), ("pose2sim_single_cam02.mp4", 100, 1.65)],
+)
+def test_real_clips_keep_their_count_and_time(
+    shared_data: Path, name: str, count: int, seconds: float
+) -> None:
+    frames, warnings = read(shared_data / "clips" / name)
+    assert len(frames) == count
+    assert frames[-1].time == pytest.approx(seconds, abs=0.005)
+    assert warnings == ()
