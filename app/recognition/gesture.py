@@ -1,0 +1,256 @@
+"""A gesture: one demonstration, and what recognition compares with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from app.recognition.errors import GestureError, PoseError
+from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, SHOULDERS
+from app.recognition.outline import GAP, BinaryImage
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.salience import (
+    MIN_DISPLACEMENT,
+    chosen_landmarks,
+    displacements,
+    salient_landmarks,
+)
+from app.recognition.trajectory import Trajectory
+from app.recognition.trajectory_image import (
+    MARGIN,
+    MIN_EXTENT,
+    SIMPLIFICATION,
+    SIZE,
+    STROKE_WIDTH,
+    Drawing,
+    draw,
+)
+from app.recognition.voters import PAPER_VOTERS, describe
+from app.recognition.voters.fourier import HARMONICS
+from app.recognition.voters.zernike import DEGREE
+
+MAX_LABEL_LENGTH = 80
+"""Characters: more than fits on a gesture's card, far less than breaks a layout or a log line."""
+
+MIN_FRAMES = 3
+"""Two points are a straight line whatever was shown; a shape needs a third."""
+
+MAX_MOMENTS = 100
+"""Most moments kept of a demonstration; longer ones are resampled evenly in time.
+
+With `MAX_LANDMARKS` it keeps a gesture's file entry below 40 kB whatever its length. Ten moments
+a second still follow the arm in a gesture of ten seconds.
+"""
+
+MAX_LANDMARKS = 16
+"""Most landmarks kept of a demonstration: the salient ones first, then the upper body's."""
+
+DIGITS = 4
+"""Decimals kept of a trajectory: 0.05 mm of a diver, below what any pose model resolves."""
+
+SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
+    {
+        "image_size": SIZE,
+        "image_margin": MARGIN,
+        "stroke_width": STROKE_WIDTH,
+        "simplification": SIMPLIFICATION,
+        "min_extent": MIN_EXTENT,
+        "max_moments": MAX_MOMENTS,
+        "outline_gap": GAP,
+        "zernike_degree": DEGREE,
+        "fourier_harmonics": HARMONICS,
+    }
+)
+"""What images and descriptors in a language file were made with; where a file's differ, they are
+made anew."""
+
+_UPPER_BODY = frozenset(
+    {*SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
+    | {*LANDMARK_GROUPS["left_hand"], *LANDMARK_GROUPS["right_hand"]}
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Gesture:
+    """A labelled gesture as it stands in a language.
+
+    Attributes
+    ----------
+    label
+        What recognition answers.
+    salient
+        The salient keypoints in alphabetical order; empty only in imported gestures, which then
+        match nothing.
+    image
+        ``(224, 224)``: the salient keypoints' paths, 255 on black.
+    trajectory
+        The demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None when
+        the gesture was imported from a file that has only images.
+    descriptors
+        Per voter's name its description of the image; empty when the image is.
+    thresholds
+        Per voter's name the distance beyond which the gesture is rejected; profile ``paper``
+        has none.
+    description
+        What the gesture looks like or means, for people.
+    command
+        What the robot should do: free text, a JSON object, or None.
+
+    Raises
+    ------
+    GestureError
+        When a field breaks these rules.
+
+    """
+
+    label: str
+    salient: tuple[str, ...]
+    image: BinaryImage
+    trajectory: Trajectory | None = None
+    descriptors: Mapping[str, FloatArray] = field(default_factory=dict)
+    thresholds: Mapping[str, float] = field(default_factory=dict)
+    description: str = ""
+    command: str | dict[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the label and the image, and freeze what could be changed."""
+        object.__setattr__(self, "label", _checked_label(self.label))
+        image = np.array(self.image, dtype=np.uint8)
+        if image.shape != (SIZE, SIZE) or not np.isin(image, (0, 255)).all():
+            raise GestureError(
+                f"image of gesture {self.label!r} must be {SIZE} x {SIZE} of 0 and 255, "
+                f"got shape {image.shape}"
+            )
+        image.setflags(write=False)
+        object.__setattr__(self, "image", image)
+        object.__setattr__(self, "salient", tuple(sorted(self.salient)))
+        object.__setattr__(self, "descriptors", MappingProxyType(dict(self.descriptors)))
+        object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
+
+    @classmethod
+    def from_demonstration(
+        cls,
+        label: str,
+        poses: PoseSequence,
+        *,
+        salient: Sequence[str] | None = None,
+        description: str = "",
+        command: str | dict[str, Any] | None = None,
+    ) -> Gesture:
+        """Make a gesture of one demonstration.
+
+        Parameters
+        ----------
+        label
+            What recognition shall answer.
+        poses
+            The demonstration, without the salutes around it.
+        salient
+            Landmarks to follow in place of those that `salient_landmarks` would choose.
+        description, command
+            See the class.
+
+        Raises
+        ------
+        GestureError
+            When the recording is too short, nothing moves in it, or `salient` does not fit it.
+
+        """
+        label = _checked_label(label)
+        if len(poses) < MIN_FRAMES:
+            raise GestureError(
+                f"the demonstration of {label!r} has {len(poses)} frames, a gesture needs at "
+                f"least {MIN_FRAMES}: choose a longer range of the clip"
+            )
+        try:
+            trajectory = Trajectory.from_poses(poses)
+        except PoseError as error:
+            raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
+        if salient is None:
+            names = salient_landmarks(trajectory)
+        else:
+            names = chosen_landmarks(trajectory, salient)
+        kept = condensed(trajectory).select(_kept_landmarks(trajectory, names))
+        drawing = draw(kept.select(names)) if names else None
+        if drawing is None or drawing.empty:
+            raise GestureError(_nothing_moves(label, trajectory, names))
+        return cls(
+            label=label,
+            salient=names,
+            image=drawing.image,
+            trajectory=kept,
+            descriptors=describe(drawing, PAPER_VOTERS),
+            description=description,
+            command=command,
+        )
+
+    @property
+    def drawing(self) -> Drawing:
+        """The gesture as voters see it."""
+        seen = None if self.trajectory is None else self.trajectory.select(self.salient)
+        return Drawing(self.image, seen)
+
+    def redrawn(self) -> Gesture:
+        """Make image and descriptors anew from the demonstration.
+
+        Where only an image is known, it stays, and the descriptors are made from it.
+        """
+        drawing = self.drawing
+        if drawing.trajectory is not None and self.salient:
+            drawing = draw(drawing.trajectory)
+        descriptors = describe(drawing, PAPER_VOTERS)
+        return replace(self, image=drawing.image, descriptors=descriptors)
+
+
+def condensed(trajectory: Trajectory) -> Trajectory:
+    """Bridge gaps, bound the number of moments and round, the same for reference and query.
+
+    Recognition from a saved file then equals recognition before saving, to the last bit.
+
+    Returns
+    -------
+    A trajectory of at most `MAX_MOMENTS` moments, rounded to `DIGITS` decimals.
+
+    """
+    bounded = trajectory.filled()
+    if len(bounded) > MAX_MOMENTS:
+        bounded = bounded.resampled_in_time(MAX_MOMENTS)
+    # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
+    return replace(
+        bounded, xy=np.round(bounded.xy, DIGITS) + 0.0, time=np.round(bounded.time, DIGITS) + 0.0
+    )
+
+
+def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
+    """Choose the landmarks worth keeping, in the trajectory's order."""
+    names = trajectory.landmarks
+    upper = [name for name in names if name in _UPPER_BODY and name not in salient]
+    others = [] if upper else [name for name in names if name not in salient]
+    kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
+    return tuple(name for name in names if name in kept)
+
+
+def _checked_label(label: Any) -> str:
+    if not isinstance(label, str) or not label.strip():
+        raise GestureError(f"a gesture's label must be a word or a few, got {label!r}")
+    if len(label) > MAX_LABEL_LENGTH or not label.isprintable():
+        raise GestureError(
+            f"a gesture's label must be at most {MAX_LABEL_LENGTH} printable characters, "
+            f"got {label[:MAX_LABEL_LENGTH]!r} ({len(label)})"
+        )
+    return label.strip()
+
+
+def _nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
+    moved = displacements(trajectory)
+    most = max(salient or moved, key=lambda name: moved[name])
+    unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"
+    return (
+        f"nothing moves in the demonstration of {label!r}: {most} has the largest displacement, "
+        f"{moved[most]:.2f} {unit}, and a hand or the head needs {MIN_DISPLACEMENT:g}: show the "
+        f"gesture larger, choose another range of the clip, or name the salient landmarks"
+    )

@@ -1,0 +1,149 @@
+"""Gestures to and from their entries in the language file."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from itertools import pairwise
+
+import numpy as np
+
+from app.recognition.errors import GestureError, LanguageError
+from app.recognition.gesture import Gesture
+from app.recognition.language_schema import GestureEntry, PathEntry, TrajectoryEntry
+from app.recognition.outline import BinaryImage
+from app.recognition.png import decode_png, encode_png
+from app.recognition.poses import FloatArray
+from app.recognition.strict_json import pointer_to
+from app.recognition.trajectory import Trajectory
+from app.recognition.trajectory_image import SIZE
+from app.recognition.voters import PAPER_VOTERS
+
+
+def entry_of(gesture: Gesture) -> GestureEntry:
+    """Return the file's entry of a gesture."""
+    trajectory = gesture.trajectory
+    return GestureEntry(
+        label=gesture.label,
+        description=gesture.description,
+        command=gesture.command,
+        salient=list(gesture.salient),
+        trajectory=None if trajectory is None else _trajectory_entry(trajectory),
+        image=base64.b64encode(encode_png(gesture.image)).decode("ascii"),
+        descriptors={name: values.tolist() for name, values in gesture.descriptors.items()},
+        thresholds=dict(gesture.thresholds),
+    )
+
+
+def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
+    """Return the gesture of a file's entry.
+
+    Parameters
+    ----------
+    entry
+        As it stands in the file.
+    pointer
+        JSON pointer to it, for errors.
+
+    Raises
+    ------
+    LanguageError
+        When its parts do not fit each other.
+
+    """
+    image = _image(entry.image, pointer + "/image")
+    trajectory = None
+    if entry.trajectory is not None:
+        trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
+        _check_salient(entry.salient, trajectory, pointer)
+    if len(set(entry.salient)) < len(entry.salient):
+        raise LanguageError("a landmark occurs twice", pointer + "/salient")
+    try:
+        return Gesture(
+            label=entry.label,
+            salient=tuple(entry.salient),
+            image=image,
+            trajectory=trajectory,
+            descriptors=_descriptors(entry, image, pointer + "/descriptors"),
+            thresholds=entry.thresholds,
+            description=entry.description,
+            command=entry.command,
+        )
+    except GestureError as error:
+        raise LanguageError(str(error), pointer + "/label") from error
+
+
+def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
+    return TrajectoryEntry(
+        unit=trajectory.unit,
+        axes="x right, y down",
+        time=trajectory.time.tolist(),
+        paths=[
+            PathEntry(
+                landmark=name,
+                x=_without_nan(trajectory.xy[:, index, 0]),
+                y=_without_nan(trajectory.xy[:, index, 1]),
+            )
+            for index, name in enumerate(trajectory.landmarks)
+        ],
+    )
+
+
+def _without_nan(values: FloatArray) -> list[float | None]:
+    return [None if np.isnan(value) else float(value) for value in values]
+
+
+def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
+    count = len(entry.time)
+    for index, (before, after) in enumerate(pairwise(entry.time)):
+        if after <= before:
+            raise LanguageError(
+                f"time does not increase: {before:g} s, then {after:g} s",
+                pointer + pointer_to("time", index + 1),
+            )
+    names = [path.landmark for path in entry.paths]
+    for index, path in enumerate(entry.paths):
+        at = pointer + pointer_to("paths", index)
+        if path.landmark in names[:index]:
+            raise LanguageError(f"a second path of {path.landmark!r}", at + "/landmark")
+        for axis, values in (("x", path.x), ("y", path.y)):
+            if len(values) != count:
+                raise LanguageError(
+                    f"{len(values)} values, but time has {count} moments", at + pointer_to(axis)
+                )
+    columns = [[path.x, path.y] for path in entry.paths]
+    return Trajectory(
+        landmarks=tuple(names),
+        xy=np.array(columns, dtype=np.float64).transpose(2, 0, 1),
+        time=np.array(entry.time),
+        unit=entry.unit,
+    )
+
+
+def _check_salient(salient: list[str], trajectory: Trajectory, pointer: str) -> None:
+    for index, name in enumerate(salient):
+        if name not in trajectory.landmarks:
+            raise LanguageError(
+                f"salient landmark {name!r} has no path in the trajectory",
+                pointer + pointer_to("salient", index),
+            )
+
+
+def _image(text: str, pointer: str) -> BinaryImage:
+    try:
+        return decode_png(base64.b64decode(text, validate=True), (SIZE, SIZE))
+    except (binascii.Error, ValueError) as error:
+        raise LanguageError(f"not a PNG in base64: {error}", pointer) from error
+
+
+def _descriptors(entry: GestureEntry, image: BinaryImage, pointer: str) -> dict[str, FloatArray]:
+    """Check the lengths of known voters' descriptors; others are kept as they are."""
+    lengths = {voter.name: voter.length(len(entry.salient)) for voter in PAPER_VOTERS}
+    for name, values in entry.descriptors.items():
+        if len(values) != lengths.get(name, len(values)):
+            raise LanguageError(
+                f"{len(values)} values, expected {lengths[name]}", pointer + pointer_to(name)
+            )
+    if not image.any():
+        return {}
+    return {name: np.array(values) for name, values in entry.descriptors.items()}

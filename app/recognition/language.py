@@ -1,0 +1,216 @@
+"""A gesture language: the gestures one diver and one robot agree on, and its file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from app.recognition.errors import LanguageError
+from app.recognition.gesture import SETTINGS, Gesture
+from app.recognition.gesture_entry import entry_of, gesture_of
+from app.recognition.landmarks import SKELETON
+from app.recognition.language_file import read_document, write_document
+from app.recognition.language_schema import FORMAT, MAX_FILE_BYTES, VERSION, LanguageDocument
+from app.recognition.strict_json import pointer_to
+
+TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
+
+MAX_NAME_LENGTH = 80
+"""Characters: more than fits on a language's card."""
+
+MAX_AUTHOR_LENGTH = 200
+"""Characters: a few names with their institution."""
+
+
+@dataclass(frozen=True, eq=False)
+class Language:
+    """A named set of gestures with distinct labels.
+
+    Attributes
+    ----------
+    name
+        For people.
+    gestures
+        In the author's order; any sequence is accepted, a tuple is kept. May be empty while a
+        language is being made.
+    author
+        Who made it.
+    created
+        When, in UTC to the second; now when not given.
+    revision
+        Counts the edits, from 1.
+    skeleton
+        Pairs of landmarks joined by a bone, for drawing.
+
+    Raises
+    ------
+    LanguageError
+        When a field breaks these rules; its pointer is that of the language file.
+
+    """
+
+    name: str
+    gestures: Sequence[Gesture] = ()
+    author: str = ""
+    created: datetime | None = None
+    revision: int = 1
+    skeleton: tuple[tuple[str, str], ...] = SKELETON
+
+    def __post_init__(self) -> None:
+        """Validate, and bring the fields to their kept form."""
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise LanguageError(f"a language needs a name, got {self.name!r}", "/name")
+        _check_text(self.name, MAX_NAME_LENGTH, "/name")
+        _check_text(self.author, MAX_AUTHOR_LENGTH, "/author")
+        if self.revision < 1:
+            raise LanguageError(f"revisions count from 1, got {self.revision}", "/revision")
+        object.__setattr__(self, "gestures", tuple(self.gestures))
+        labels: set[str] = set()
+        for index, gesture in enumerate(self.gestures):
+            if gesture.label in labels:
+                raise LanguageError(
+                    f"the label {gesture.label!r} occurs twice: rename or remove one of the two",
+                    pointer_to("gestures", index, "label"),
+                )
+            labels.add(gesture.label)
+        object.__setattr__(self, "created", _utc_second(self.created))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The gestures' labels in order."""
+        return tuple(gesture.label for gesture in self.gestures)
+
+    def gesture(self, label: str) -> Gesture:
+        """Return the gesture of that label.
+
+        Raises
+        ------
+        LanguageError
+            When there is none.
+
+        """
+        for gesture in self.gestures:
+            if gesture.label == label:
+                return gesture
+        raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {self.labels}")
+
+    def with_gesture(self, gesture: Gesture) -> Language:
+        """Return the next revision, with one more gesture at the end.
+
+        Raises
+        ------
+        LanguageError
+            When the language has a gesture of that label already.
+
+        """
+        return replace(self, gestures=(*self.gestures, gesture), revision=self.revision + 1)
+
+    def without(self, label: str) -> Language:
+        """Return the next revision, without the gesture of that label.
+
+        Raises
+        ------
+        LanguageError
+            When there is none.
+
+        """
+        unwanted = self.gesture(label)
+        kept = tuple(gesture for gesture in self.gestures if gesture is not unwanted)
+        return replace(self, gestures=kept, revision=self.revision + 1)
+
+    def to_json(self) -> str:
+        """Write the language file's text; the same language gives the same text."""
+        assert self.created is not None  # set in __post_init__
+        document = LanguageDocument(
+            format=FORMAT,
+            version=VERSION,
+            name=self.name,
+            author=self.author,
+            created=self.created.strftime(TIMESTAMP),
+            revision=self.revision,
+            skeleton=[list(bone) for bone in self.skeleton],
+            settings=dict(SETTINGS),
+            gestures=[entry_of(gesture) for gesture in self.gestures],
+        )
+        return write_document(document)
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> Language:
+        """Read a language file's text.
+
+        Raises
+        ------
+        LanguageError
+            When anything in it is not as the schema and this class say; it lists the JSON
+            pointers to the faults and carries the first.
+
+        """
+        document = read_document(text)
+        current = document.settings == SETTINGS
+        gestures = []
+        for index, entry in enumerate(document.gestures):
+            gesture = gesture_of(entry, pointer_to("gestures", index))
+            gestures.append(gesture if current else gesture.redrawn())
+        return cls(
+            name=document.name,
+            gestures=gestures,
+            author=document.author,
+            created=_moment(document.created),
+            revision=document.revision,
+            skeleton=tuple((start, end) for start, end in document.skeleton),
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the language file in one step: a reader sees the old file or the new one."""
+        target = Path(path)
+        partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
+        try:
+            with partial.open("wb") as file:
+                file.write(self.to_json().encode("utf-8"))
+                file.flush()
+                os.fsync(file.fileno())
+            partial.replace(target)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Language:
+        """Read a language file.
+
+        Raises
+        ------
+        LanguageError
+            When it cannot be read or is invalid; see `from_json`.
+
+        """
+        try:
+            with Path(path).open("rb") as file:
+                # One byte more than is admitted tells that there is more, however much it is.
+                content = file.read(MAX_FILE_BYTES + 1)
+        except OSError as error:
+            raise LanguageError(f"cannot read {path}: {error.strerror}") from error
+        return cls.from_json(content)
+
+
+def _check_text(text: Any, most: int, pointer: str) -> None:
+    if not isinstance(text, str) or len(text) > most or not text.isprintable():
+        raise LanguageError(f"must be at most {most} printable characters, got {text!r}", pointer)
+
+
+def _utc_second(moment: datetime | None) -> datetime:
+    if moment is None:
+        moment = datetime.now(UTC)
+    if moment.tzinfo is None:
+        raise LanguageError(f"created must have a time zone, got {moment!r}", "/created")
+    return moment.astimezone(UTC).replace(microsecond=0)
+
+
+def _moment(timestamp: str) -> datetime:
+    try:
+        return datetime.strptime(timestamp, TIMESTAMP).replace(tzinfo=UTC)
+    except ValueError as error:
+        raise LanguageError(f"no such date and time: {timestamp!r}", "/created") from error

@@ -1,0 +1,123 @@
+"""The language file as text: read strictly, written the same for the same content, sealed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+
+from pydantic import ValidationError
+
+from app.recognition.errors import LanguageError
+from app.recognition.language_schema import (
+    FORMAT,
+    MAX_FILE_BYTES,
+    MAX_GESTURES,
+    VERSION,
+    LanguageDocument,
+)
+from app.recognition.strict_json import (
+    MAX_FAULTS,
+    Fault,
+    StrictJSONError,
+    canonical_json,
+    pointer_to,
+    read_json,
+)
+
+
+def write_document(document: LanguageDocument) -> str:
+    """Write a document and its seal, one line a key and one line a gesture.
+
+    Lines keep differences between revisions readable in version control.
+    """
+    content = document.model_dump(mode="json", exclude={"sha256"})
+    content["sha256"] = seal(content)
+    lines = ",\n".join(f"{_compact(key)}: {_value(key, value)}" for key, value in content.items())
+    return f"{{\n{lines}\n}}\n"
+
+
+def read_document(text: str | bytes) -> LanguageDocument:
+    """Read and check a language file's text, as far as the schema goes.
+
+    Raises
+    ------
+    LanguageError
+        When it is no language file of this version, breaks the schema, or was changed since it
+        was sealed.
+
+    """
+    content = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
+    try:
+        read = read_json(content, MAX_FILE_BYTES)
+    except StrictJSONError as error:
+        raise _language_error(error.faults) from error
+    _check_kind(read)
+    try:
+        document = LanguageDocument.model_validate(read)
+    except ValidationError as error:
+        raise _language_error(_faults(error)) from error
+    if document.sha256 is not None and document.sha256 != seal(read):
+        raise LanguageError(
+            "the content does not match this seal: the file was damaged, or edited by hand. If "
+            'the edit was meant, remove the line "sha256" and save again with osg-studio convert',
+            "/sha256",
+        )
+    return document
+
+
+def seal(content: dict[str, Any]) -> str:
+    """Return the SHA-256 of the canonical JSON of everything but ``sha256``, in hexadecimal."""
+    sealed = {key: value for key, value in content.items() if key != "sha256"}
+    return hashlib.sha256(canonical_json(sealed).encode("utf-8")).hexdigest()
+
+
+def _check_kind(read: Any) -> None:
+    """Refuse other files and other versions in words, before the schema's many complaints."""
+    if not isinstance(read, dict) or read.get("format") != FORMAT:
+        raise LanguageError(
+            f'not a language file: its "format" must be "{FORMAT}". A file of the published '
+            "implementation can be brought in with osg-studio convert",
+            "/format" if isinstance(read, dict) else "",
+        )
+    version = read.get("version")
+    if isinstance(version, int) and version > VERSION:
+        raise LanguageError(
+            f"version {version} is newer than this program reads ({VERSION}): update osg-studio",
+            "/version",
+        )
+    gestures = read.get("gestures")
+    if isinstance(gestures, list) and len(gestures) > MAX_GESTURES:
+        raise LanguageError(f"{len(gestures)} gestures, the limit is {MAX_GESTURES}", "/gestures")
+
+
+def _faults(error: ValidationError) -> list[Fault]:
+    return [
+        Fault(pointer_to(*_steps(fault["loc"])), fault["msg"])
+        for fault in error.errors(include_url=False, include_context=False, include_input=False)
+    ]
+
+
+def _steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Drop what pydantic adds for the branches of a union: it is not in the document."""
+    branches = {"constrained-str", "str", "int", "float", "dict[str,any]", "constrained-float"}
+    return tuple(step for step in location if step not in branches)
+
+
+def _language_error(faults: list[Fault]) -> LanguageError:
+    """Make one error of several faults: the first one's pointer, and all of them in one line."""
+    first, *others = faults[:MAX_FAULTS]
+    message = first.message + "".join(f"; {fault.pointer}: {fault.message}" for fault in others)
+    if len(faults) > MAX_FAULTS:
+        message += f"; and {len(faults) - MAX_FAULTS} more"
+    return LanguageError(message, first.pointer)
+
+
+def _value(key: str, value: Any) -> str:
+    if key == "gestures" and value:
+        return "[\n" + ",\n".join(_compact(gesture) for gesture in value) + "\n]"
+    return _compact(value)
+
+
+def _compact(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))

@@ -1,0 +1,153 @@
+"""The language file, version 1, as models: what may stand in it, with units and axes.
+
+The JSON Schema published in `schema/` is generated from here.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+FORMAT: Final = "osg-studio/gesture-language"
+VERSION: Final = 1
+
+SCHEMA_ID = f"urn:osg-studio:gesture-language:{VERSION}"
+SCHEMA_FILE = f"gesture-language-{VERSION}.schema.json"
+
+MAX_GESTURES = 1000
+"""Far beyond what divers can learn (published languages have at most 20 signs); it bounds work."""
+
+MAX_FILE_BYTES = 64_000_000
+"""1000 gestures of 40 kB, and half as much again for descriptions and commands."""
+
+MAX_TEXT_LENGTH = 2000
+"""Characters of a description or a command's text: a card, not a manual."""
+
+Name = Annotated[str, Field(min_length=1, max_length=80)]
+Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
+FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class PathEntry(_Model):
+    """One landmark's path."""
+
+    landmark: Name
+    x: Annotated[
+        list[FiniteFloat | None],
+        Field(description="To the image's right, in `unit`, per moment; null = not seen."),
+    ]
+    y: Annotated[
+        list[FiniteFloat | None],
+        Field(description="Down, in `unit`, per moment; null = not seen."),
+    ]
+
+
+class TrajectoryEntry(_Model):
+    """A demonstration, relative to the torso."""
+
+    unit: Annotated[
+        Literal["torso_length", "extent"],
+        Field(
+            description="torso_length: mid-shoulders to mid-hips is 1. extent: the longest "
+            "diagonal of any landmark's bounding box is 1 (no torso was seen)."
+        ),
+    ]
+    axes: Annotated[
+        Literal["x right, y down"],
+        Field(description="As in the image; the origin is the torso's centre."),
+    ]
+    time: Annotated[
+        list[FiniteFloat],
+        Field(
+            min_length=1,
+            description="Seconds since the demonstration's start, strictly increasing.",
+        ),
+    ]
+    paths: Annotated[list[PathEntry], Field(min_length=1)]
+
+
+class GestureEntry(_Model):
+    """One gesture: its demonstration, and what the recogniser derived from it."""
+
+    label: Name
+    description: Text
+    command: Annotated[
+        Text | dict[str, Any] | None,
+        Field(description="What the robot should do: free text, an object, or null."),
+    ]
+    salient: Annotated[
+        list[Name],
+        Field(description="Landmarks whose motion is the gesture; empty: it matches nothing."),
+    ]
+    trajectory: Annotated[
+        TrajectoryEntry | None,
+        Field(description="null where the gesture was imported from a file of images."),
+    ]
+    image: Annotated[
+        str,
+        Field(
+            max_length=100_000,
+            description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
+        ),
+    ]
+    descriptors: Annotated[
+        dict[str, list[FiniteFloat]],
+        Field(description="Per voter its description of the image."),
+    ]
+    thresholds: Annotated[
+        dict[str, FiniteFloat],
+        Field(description="Per voter the distance beyond which the gesture is rejected."),
+    ]
+
+
+class LanguageDocument(_Model):
+    """A gesture language for one diver and one robot."""
+
+    format: Literal["osg-studio/gesture-language"]
+    version: Literal[1]
+    name: Name
+    author: Annotated[str, Field(max_length=200)]
+    created: Annotated[
+        str,
+        Field(
+            pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$",
+            description="UTC, ISO 8601 to the second.",
+        ),
+    ]
+    revision: Annotated[int, Field(ge=1, description="Counts the edits, from 1.")]
+    skeleton: Annotated[
+        list[Annotated[list[Name], Field(min_length=2, max_length=2)]],
+        Field(description="Pairs of landmarks joined by a bone, for drawing."),
+    ]
+    settings: Annotated[
+        dict[str, int | FiniteFloat],
+        Field(description="What images and descriptors were made with."),
+    ]
+    gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
+    sha256: Annotated[
+        str | None,
+        Field(
+            pattern="^[0-9a-f]{64}$",
+            description="Of the canonical JSON (RFC 8785) of everything but this key. A file "
+            "edited by hand leaves it out; saving adds it again.",
+        ),
+    ] = None
+
+
+def generated_schema() -> str:
+    """Return the JSON Schema 2020-12 of the file as text, made from the models."""
+    schema = LanguageDocument.model_json_schema()
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
+    return json.dumps(head | schema, indent=2) + "\n"
+
+
+def published_schema() -> str:
+    """Return the JSON Schema as it is checked in and shipped."""
+    return (resources.files("app.recognition") / "schema" / SCHEMA_FILE).read_text("utf-8")

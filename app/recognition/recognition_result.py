@@ -1,0 +1,64 @@
+"""What recognition answers, with everything needed to question it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from app.recognition.poses import FloatArray
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recognition:
+    """The outcome of one recognition.
+
+    Attributes
+    ----------
+    label
+        The recognised gesture, or None when rejected (profile ``paper`` never rejects).
+    nearest
+        The best gesture even when rejected.
+    confidence
+        In [0, 1]: the mean of the winner's share of the votes and of its margin, 1 - (its mean
+        relative distance over that of the nearest other gesture), or 0 where the other one is
+        nearer. Relative to the language: it cannot tell that a query was no gesture at all.
+    profile
+        The recogniser's profile.
+    voters
+        V names.
+    gestures
+        G labels.
+    distances
+        ``(V, G)``, smaller = more alike, each voter in its own unit; infinite where query and
+        gesture cannot be compared, since the query lacks a salient keypoint or does not move it.
+    votes
+        Per voter's name the label it votes for.
+
+    """
+
+    label: str | None
+    nearest: str
+    confidence: float
+    profile: str
+    voters: tuple[str, ...]
+    gestures: tuple[str, ...]
+    distances: FloatArray
+    votes: Mapping[str, str]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types; a distance that is infinite becomes None."""
+        return {
+            "profile": self.profile,
+            "label": self.label,
+            "nearest": self.nearest,
+            "confidence": self.confidence,
+            "votes": dict(self.votes),
+            "voters": list(self.voters),
+            "gestures": list(self.gestures),
+            "distances": [
+                [distance if math.isfinite(distance) else None for distance in row]
+                for row in self.distances.tolist()
+            ],
+        }

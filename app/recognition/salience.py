@@ -1,0 +1,137 @@
+"""Salient landmarks: the few whose motion is the gesture (paper, Sec. IV-A)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.recognition.errors import GestureError
+from app.recognition.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS
+from app.recognition.trajectory import Trajectory
+
+MIN_DISPLACEMENT = 0.3
+"""Peak-to-peak displacement, in the trajectory's unit, from which a landmark can be salient.
+
+With an adult's torso of about half a metre this is 15 cm. Measured relative to the torso, the
+hand of an arm at rest and the head stray up to 0.2 torso lengths (balance, breathing, jitter of
+the pose model); the smallest deliberate arm gestures span half a torso and more.
+"""
+
+MIN_SHARE_OF_LARGEST = 0.4
+"""Least displacement of a salient landmark as a share of the largest one.
+
+A diver's idle hand sculls for balance, and sculls more during a wide gesture, so a fixed
+threshold alone would admit it. Hands that gesture together span alike: in both-handed
+recordings the smaller displacement is rarely below half of the larger.
+"""
+
+OUTLIER_PERCENTILES = (5.0, 95.0)
+"""The range taken as peak to peak.
+
+A pose model throws a landmark far off for a frame or two; one such frame would make anything
+salient. A real extreme is slow (the hand turns round there), so little of it is lost.
+"""
+
+_GROUP_OF = {name: group for group, names in LANDMARK_GROUPS.items() for name in names}
+
+_NEVER_SALIENT = frozenset(POSE_LANDMARKS) - frozenset(_GROUP_OF)
+"""MediaPipe's arms, trunk and legs.
+
+Shoulders and hips are the frame of reference, elbows follow the hands, and legs swim. They can
+still be chosen by hand.
+"""
+
+
+def displacements(trajectory: Trajectory) -> dict[str, float]:
+    """Measure how far each landmark moves, peak to peak.
+
+    Parameters
+    ----------
+    trajectory
+        The demonstration, relative to the torso.
+
+    Returns
+    -------
+    Per landmark name the diagonal of the box around its path (between `OUTLIER_PERCENTILES`),
+    in the trajectory's unit; 0 for a landmark that is never seen.
+
+    """
+    measured = {}
+    for index, name in enumerate(trajectory.landmarks):
+        path = trajectory.xy[:, index]
+        path = path[np.isfinite(path).all(axis=1)]
+        measured[name] = 0.0
+        if len(path):
+            low, high = np.percentile(path, OUTLIER_PERCENTILES, axis=0)
+            measured[name] = float(np.hypot(*(high - low)))
+    return measured
+
+
+def salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
+    """Choose the landmarks whose motion is the gesture.
+
+    One of each hand and one of the head at most (`LANDMARK_GROUPS`), always the group's usual
+    representative when the recording has it: the same landmark then stands for the hand in
+    every recording. Landmarks of another set than MediaPipe's each stand for themselves.
+
+    Returns
+    -------
+    Names in the trajectory's order; empty when nothing moves.
+
+    """
+    moved = {
+        name: displacement
+        for name, displacement in displacements(trajectory).items()
+        if name in _representatives(trajectory)
+    }
+    bar = max(MIN_DISPLACEMENT, MIN_SHARE_OF_LARGEST * max(moved.values(), default=0.0))
+    return tuple(name for name in trajectory.landmarks if moved.get(name, 0.0) >= bar)
+
+
+def chosen_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
+    """Check landmarks that the author chose in place of `salient_landmarks`.
+
+    Returns
+    -------
+    The names in the trajectory's order.
+
+    Raises
+    ------
+    GestureError
+        When the choice is empty or names a landmark twice, one that the recording lacks, or one
+        that is never seen.
+
+    """
+    names = tuple(salient)
+    if isinstance(salient, str) or not names:
+        raise GestureError(f"salient must be one or more landmark names, got {salient!r}")
+    if len(set(names)) < len(names):
+        raise GestureError(f"salient names a landmark twice: {names}")
+    for name in names:
+        if name not in trajectory.landmarks:
+            raise GestureError(
+                f"salient landmark {name!r} is not in this recording; it has "
+                f"{', '.join(trajectory.landmarks)}"
+            )
+        if not np.isfinite(trajectory.select([name]).xy).any():
+            raise GestureError(
+                f"salient landmark {name!r} is never seen in this recording; choose another one"
+            )
+    return tuple(name for name in trajectory.landmarks if name in names)
+
+
+def _representatives(trajectory: Trajectory) -> frozenset[str]:
+    """Return the landmarks that may be salient: one per group, and those outside any group."""
+    visible = [
+        name
+        for index, name in enumerate(trajectory.landmarks)
+        if np.isfinite(trajectory.xy[:, index]).any()
+    ]
+    alone = {name for name in visible if name not in _GROUP_OF and name not in _NEVER_SALIENT}
+    first = {
+        next(name for name in names if name in visible)
+        for names in LANDMARK_GROUPS.values()
+        if not set(names).isdisjoint(visible)
+    }
+    return frozenset(alone | first)

@@ -1,0 +1,205 @@
+"""JSON from outside, read strictly; and the canonical form that is hashed."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+MAX_DEPTH = 32
+"""Deepest nesting read: a language file needs seven levels, a robot's command a few more."""
+
+MAX_SAFE_INTEGER = 2**53 - 1
+"""Largest integer that every JSON reader keeps exactly (RFC 7493, I-JSON)."""
+
+MAX_FAULTS = 20
+"""Faults listed in one go: enough to mend a file by hand, few enough to read."""
+
+_STRING = re.compile(rb'"(?:[^"\\]|\\.)*+(?:"|\Z)', re.DOTALL)
+_DEPTH_OF_BYTE = np.zeros(256, dtype=np.int8)
+_DEPTH_OF_BYTE[list(b"[{")] = 1
+_DEPTH_OF_BYTE[list(b"]}")] = -1
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something in a JSON document that must not be there.
+
+    Attributes
+    ----------
+    pointer
+        JSON pointer (RFC 6901), ``""`` for the whole document.
+    message
+        What is wrong.
+
+    """
+
+    pointer: str
+    message: str
+
+
+class StrictJSONError(ValueError):
+    """Raised when text is not the JSON that may be read; `faults` has at least one entry."""
+
+    def __init__(self, faults: list[Fault]) -> None:
+        super().__init__("; ".join(f"{fault.pointer}: {fault.message}" for fault in faults))
+        self.faults = faults
+
+
+class _ObjectWithDuplicates(dict[str, Any]):
+    """An object some of whose keys occur twice."""
+
+    duplicates: list[str]
+
+
+def read_json(content: bytes, max_bytes: int) -> Any:
+    """Parse UTF-8 JSON that is neither huge nor deep nor ambiguous.
+
+    Parameters
+    ----------
+    content
+        The file.
+    max_bytes
+        Largest size read.
+
+    Raises
+    ------
+    StrictJSONError
+        When the size or the depth is beyond the limit (checked before parsing), the text is not
+        UTF-8 or not JSON, or it holds duplicate keys, NaN, infinite or overflowing numbers,
+        integers beyond `MAX_SAFE_INTEGER`, or lone surrogates.
+
+    """
+    if len(content) > max_bytes:
+        size = f"{len(content) / 1e6:.0f} MB, the limit is {max_bytes / 1e6:.0f} MB"
+        raise StrictJSONError([Fault("", f"the file is too large: {size}")])
+    if (depth := _depth(content)) > MAX_DEPTH:
+        raise StrictJSONError([Fault("", f"nested {depth} deep, the limit is {MAX_DEPTH}")])
+    try:
+        document = json.loads(
+            content.decode("utf-8"), object_pairs_hook=_object, parse_int=_integer
+        )
+    except UnicodeDecodeError as error:
+        raise StrictJSONError([Fault("", f"not UTF-8 at byte {error.start}")]) from error
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno}, column {error.colno}"
+        raise StrictJSONError([Fault("", f"not JSON: {error.msg} at {where}")]) from error
+    faults = [fault for fault, _ in zip(_faults(document, ""), range(MAX_FAULTS), strict=False)]
+    if faults:
+        raise StrictJSONError(faults)
+    return document
+
+
+def canonical_json(value: Any) -> str:
+    """Write JSON in the one form of RFC 8785, so that its hash means its content.
+
+    Keys sorted by UTF-16 code units, no white space, numbers as ECMAScript writes them.
+    """
+    if isinstance(value, dict):
+        keys = sorted(value, key=lambda key: key.encode("utf-16-be"))
+        return "{" + ",".join(f"{_string(key)}:{canonical_json(value[key])}" for key in keys) + "}"
+    if isinstance(value, list):
+        return "[" + ",".join(canonical_json(entry) for entry in value) + "]"
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, float):
+        return _number(value)
+    return json.dumps(value)
+
+
+def pointer_to(*steps: str | int) -> str:
+    """Write a JSON pointer (RFC 6901), escaping ``~`` and ``/``."""
+    return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in steps)
+
+
+def _depth(content: bytes) -> int:
+    """Return the deepest nesting of brackets outside strings."""
+    brackets = np.frombuffer(_STRING.sub(b"", content), dtype=np.uint8)
+    changes = _DEPTH_OF_BYTE[brackets]
+    return int(np.cumsum(changes[changes != 0], dtype=np.int64).max(initial=0))
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    entries = dict(pairs)
+    if len(entries) == len(pairs):
+        return entries
+    keys = [key for key, _ in pairs]
+    ambiguous = _ObjectWithDuplicates(entries)
+    ambiguous.duplicates = sorted({key for key in keys if keys.count(key) > 1})
+    return ambiguous
+
+
+def _integer(digits: str) -> int | float:
+    """Parse an integer; one that is far too large becomes infinite, which is a fault later."""
+    return int(digits) if len(digits) < 20 else math.inf
+
+
+def _faults(value: Any, pointer: str) -> Iterator[Fault]:
+    """Find what the JSON grammar or Python's reader admits and other readers do not."""
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            yield Fault(pointer, "not a number that JSON or a double can hold")
+    elif isinstance(value, str):
+        if _has_lone_surrogate(value):
+            yield Fault(pointer, "text with half a surrogate pair")
+    elif isinstance(value, int):
+        if abs(value) > MAX_SAFE_INTEGER:
+            yield Fault(pointer, f"integer {value} is beyond {MAX_SAFE_INTEGER}")
+    elif isinstance(value, list):
+        for index, entry in enumerate(value):
+            yield from _faults(entry, f"{pointer}/{index}")
+    elif isinstance(value, dict):
+        yield from _faults_of_object(value, pointer)
+
+
+def _faults_of_object(entries: dict[str, Any], pointer: str) -> Iterator[Fault]:
+    if isinstance(entries, _ObjectWithDuplicates):
+        for key in entries.duplicates:
+            yield Fault(pointer + pointer_to(key), "this key occurs twice")
+    for key, entry in entries.items():
+        if _has_lone_surrogate(key):
+            yield Fault(pointer, "a key with half a surrogate pair")
+        else:
+            yield from _faults(entry, pointer + pointer_to(key))
+
+
+def _has_lone_surrogate(text: str) -> bool:
+    return not text.isascii() and any("\ud800" <= character <= "\udfff" for character in text)
+
+
+def _string(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _number(number: float) -> str:
+    """Write a finite number as ECMAScript does (ECMA-262, Number::toString)."""
+    if number == 0:
+        return "0"
+    sign, digits, exponent = _decimal(number)
+    point = len(digits) + exponent
+    if exponent >= 0 and point <= 21:
+        text = digits + "0" * exponent
+    elif 0 < point <= 21:
+        text = f"{digits[:point]}.{digits[point:]}"
+    elif -6 < point <= 0:
+        text = "0." + "0" * -point + digits
+    else:
+        fraction = "." + digits[1:] if len(digits) > 1 else ""
+        text = f"{digits[0]}{fraction}e{point - 1:+d}"
+    return sign + text
+
+
+def _decimal(number: float) -> tuple[str, str, int]:
+    """Split into sign, shortest digits that round-trip, and the exponent of the last digit."""
+    mantissa, _, exponent = repr(abs(number)).partition("e")
+    whole, _, fraction = mantissa.partition(".")
+    fraction = fraction.rstrip("0")
+    digits = (whole + fraction).lstrip("0")
+    shift = int(exponent or 0) - len(fraction)
+    stripped = digits.rstrip("0")
+    return "-" if number < 0 else "", stripped, shift + len(digits) - len(stripped)

@@ -1,0 +1,115 @@
+"""The trajectory image: a gesture's salient paths as white strokes on black, 224 x 224."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+
+import cv2
+import numpy as np
+
+from app.recognition.outline import BinaryImage, Outline
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory
+
+SIZE = 224
+"""Width and height in pixels: the published implementation's, so that its files can be read."""
+
+MARGIN = 16
+"""Empty border in pixels: room for half a stroke, and for closing a gap without touching it."""
+
+STROKE_WIDTH = 5
+"""Pixels. About 1/40 of the drawing: wide enough for moments of area to be steady, narrow enough
+for the two passes of a figure eight to stay apart."""
+
+SIMPLIFICATION = 3.0
+"""Tolerance of Ramer-Douglas-Peucker in pixels: half a stroke, so nothing visible is lost and
+the jitter inside the stroke's width is."""
+
+MIN_EXTENT = 0.1
+"""Least extent, in the trajectory's unit, that is drawn.
+
+The drawing fills its frame, so anything smaller, 5 cm of a diver's sway, would be blown up to
+look like a gesture.
+"""
+
+_SUBPIXEL_BITS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What a gesture looks like: the paths of its salient keypoints, and their image.
+
+    Attributes
+    ----------
+    image
+        The ``(224, 224)`` trajectory image; all zero when nothing moved.
+    trajectory
+        The salient keypoints' trajectory, or None for a gesture of which only the image is
+        known (imported from the published implementation's files).
+
+    """
+
+    image: BinaryImage
+    trajectory: Trajectory | None = None
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The outer contours of the strokes, followed once for all voters that measure them."""
+        return Outline.of(self.image)
+
+    @property
+    def empty(self) -> bool:
+        """Tell whether there is no stroke in the image."""
+        return not self.image.any()
+
+
+def draw(trajectory: Trajectory) -> Drawing:
+    """Draw the paths of a trajectory's landmarks into one image.
+
+    The one way an image comes about, for reference and query alike: all landmarks share one
+    frame, which is scaled to fill the image with its aspect kept; each unbroken stretch of a
+    path is simplified by Ramer-Douglas-Peucker (Ramer 1972, Douglas and Peucker 1973) and drawn
+    as one stroke.
+
+    Parameters
+    ----------
+    trajectory
+        Of the salient keypoints only.
+
+    Returns
+    -------
+    The drawing; its image is empty where nothing is seen or the whole extent of the paths is
+    below `MIN_EXTENT`.
+
+    """
+    image: BinaryImage = np.zeros((SIZE, SIZE), dtype=np.uint8)
+    seen = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
+    if not len(seen):
+        return Drawing(image, trajectory)
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    extent = float((high - low).max())
+    if extent < MIN_EXTENT:
+        return Drawing(image, trajectory)
+    scale = (SIZE - 1 - 2 * MARGIN) / extent
+    for path in np.moveaxis(trajectory.xy, 1, 0):
+        pixels = (path - (low + high) / 2) * scale + (SIZE - 1) / 2
+        for stroke in _strokes(pixels):
+            _draw_stroke(image, stroke)
+    return Drawing(image, trajectory)
+
+
+def _strokes(path: FloatArray) -> list[FloatArray]:
+    """Split ``(T, 2)`` at its NaN rows into unbroken stretches."""
+    runs = groupby(path, key=lambda point: bool(np.isfinite(point).all()))
+    return [np.stack(list(points)) for known, points in runs if known]
+
+
+def _draw_stroke(image: BinaryImage, stroke: FloatArray) -> None:
+    points = stroke.astype(np.float32)[:, None]
+    simplified = cv2.approxPolyDP(points, SIMPLIFICATION, closed=False)
+    grid = np.rint(simplified * 2**_SUBPIXEL_BITS).astype(np.int32)
+    cv2.polylines(
+        image, [grid], isClosed=False, color=255, thickness=STROKE_WIDTH, shift=_SUBPIXEL_BITS
+    )

@@ -1,0 +1,89 @@
+"""What every voter gives: a descriptor of a drawing, and how far descriptors lie apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory_image import Drawing
+
+
+class Voter(Protocol):
+    """Judges how much a query looks like each reference, from one point of view.
+
+    A voter sees drawings only through its descriptors, so that each drawing is described once.
+    It may look at a drawing's image or at its trajectory.
+    """
+
+    @property
+    def name(self) -> str:
+        """The name in results and language files, in snake_case."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """What a distance of 1 means, for people."""
+        ...
+
+    def length(self, keypoints: int) -> int:
+        """Return the length D of the descriptor of a drawing with so many salient keypoints."""
+        ...
+
+    def describe(self, drawing: Drawing) -> FloatArray:
+        """Describe a drawing that has a stroke.
+
+        Returns
+        -------
+        ``(D,)`` finite numbers.
+
+        """
+        ...
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Measure how far the query lies from each reference.
+
+        Parameters
+        ----------
+        query
+            ``(D,)`` descriptor.
+        references
+            ``(G, D)``, one descriptor a row.
+
+        Returns
+        -------
+        ``(G,)`` in `unit`, >= 0, 0 for the same descriptor.
+
+        """
+        ...
+
+
+def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray:
+    """Measure the Euclidean distance of ``(D,)`` to each row of ``(G, D)``: ``(G,)``.
+
+    The paper's choice (Sec. IV-D1): cosine similarity would ignore magnitudes.
+    """
+    return np.asarray(np.linalg.norm(references - query, axis=1), dtype=np.float64)
+
+
+DESCRIPTOR_DIGITS = 6
+"""Decimals of a descriptor: files stay small, and a saved language decides as before saving."""
+
+
+def describe(drawing: Drawing, voters: Sequence[Voter]) -> dict[str, FloatArray]:
+    """Describe a drawing once for each voter.
+
+    Returns
+    -------
+    Per voter's name its descriptor, rounded; empty for an empty drawing.
+
+    """
+    if drawing.empty:
+        return {}
+    return {
+        # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
+        voter.name: np.round(voter.describe(drawing), DESCRIPTOR_DIGITS) + 0.0
+        for voter in voters
+    }

@@ -1,0 +1,41 @@
+"""Voter: Hu's seven moment invariants."""
+
+import cv2
+import numpy as np
+
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory_image import Drawing
+from app.recognition.voters.base import euclidean_distances
+
+FLOOR = 1e-4
+"""Magnitude below which an invariant counts as zero.
+
+Invariants of thin strokes lie between 1 and 1e-10; moving a stroke by one pixel changes those of
+symmetric figures, which are zero in theory, by about this much.
+"""
+
+
+class HuMoments:
+    """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
+
+    From the normalised central moments of the stroke's pixels, on a logarithmic scale that keeps
+    the sign: ``sign(h) log10(1 + |h| / FLOOR)``, for they span ten decades and unscaled the
+    first would outvote the other six.
+    """
+
+    name = "hu"
+    unit = "Euclidean distance between the seven invariants, each in decades"
+
+    def length(self, keypoints: int) -> int:
+        """Return the number of descriptors, whatever the number of keypoints."""
+        return 7
+
+    def describe(self, drawing: Drawing) -> FloatArray:
+        """Return the seven invariants, ``(7,)``."""
+        moments = cv2.moments(drawing.image, binaryImage=True)
+        invariants = np.asarray(cv2.HuMoments(moments), dtype=np.float64).ravel()
+        return np.asarray(np.sign(invariants) * np.log10(1 + np.abs(invariants) / FLOOR))
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return Euclidean distances, ``(G,)``."""
+        return euclidean_distances(query, references)
