@@ -1,1 +1,42 @@
-"""The domain core: what a robot installs."""
+"""The domain core: from a clip's poses to a recognition that can be questioned.
+
+What is listed here is the public surface. It needs no web framework, database or display; a
+robot installs it alone.
+"""
+
+from app.recognition.errors import (
+    GestureError,
+    LanguageError,
+    ModelError,
+    PoseError,
+    RecognitionError,
+    VideoError,
+)
+from app.recognition.extraction import extract_poses, record
+from app.recognition.gesture import Gesture
+from app.recognition.language import Language
+from app.recognition.poses import PoseSequence
+from app.recognition.recognition_result import Recognition
+from app.recognition.recognizer import Recognizer
+from app.recognition.recording import Recording
+from app.recognition.takes import Take, find_takes, takes_in
+
+__all__ = [
+    "Gesture",
+    "GestureError",
+    "Language",
+    "LanguageError",
+    "ModelError",
+    "PoseError",
+    "PoseSequence",
+    "Recognition",
+    "RecognitionError",
+    "Recognizer",
+    "Recording",
+    "Take",
+    "VideoError",
+    "extract_poses",
+    "find_takes",
+    "record",
+    "takes_in",
+]
