@@ -30,7 +30,9 @@ class Settings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="OSG_", frozen=True, extra="forbid")
 
-    data_dir: Path = Field(default_factory=lambda: user_data_path("osg-studio") / "studio")
+    data_dir: Path = Field(
+        default_factory=lambda: user_data_path("osg-studio", appauthor=False) / "studio"
+    )
     """Folder of the database and the clips; made when missing."""
 
     database_url: str | None = None

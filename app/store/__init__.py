@@ -1,10 +1,10 @@
 """Where clips, languages, jobs and recognitions are kept: a database and files beside it."""
 
-from app.store.clips import ClipStore
+from app.store.clips import ClipStore, ClipWithJob
 from app.store.database import Database
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
 from app.store.jobs import JobStore
-from app.store.languages import LanguageStore
+from app.store.languages import Draft, LanguageState, LanguageStore
 from app.store.models import (
     Clip,
     Job,
@@ -18,13 +18,16 @@ from app.store.recognitions import RecognitionStore
 __all__ = [
     "Clip",
     "ClipStore",
+    "ClipWithJob",
     "Conflict",
     "Database",
+    "Draft",
     "Job",
     "JobStatus",
     "JobStore",
     "LanguageRecord",
     "LanguageRevision",
+    "LanguageState",
     "LanguageStore",
     "NotFound",
     "RecognitionRecord",

@@ -15,6 +15,9 @@ from app.store.errors import NotFound
 from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.models import Clip, Job, new_id, now
 
+VIDEO, RECORDING, POSTER = _KEPT = ("video", "recording.npz", "poster.jpg")
+"""The files of a clip."""
+
 
 @dataclass(frozen=True)
 class ClipWithJob:
@@ -97,13 +100,6 @@ class ClipStore:
                 return None
             return ClipWithJob(clip, _newest_jobs([clip.id], session)[clip.id])
 
-    def set_frames(self, clip_id: str, frames: int) -> None:
-        """Note how many frames were decoded."""
-        with self._database.writing() as session:
-            if clip := session.get(Clip, clip_id):
-                clip.frames = frames
-                session.add(clip)
-
     def delete(self, clip_id: str) -> None:
         """Hide a clip; its files stay until `purge`.
 
@@ -150,7 +146,7 @@ class ClipStore:
         with self._database.reading() as session:
             known = set(session.exec(select(Clip.id)).all())
         orphans = [path for path in self.folder.iterdir() if path.name not in known]
-        orphans += self.folder.glob(f"*/*{PARTIAL_SUFFIX}")
+        orphans += [path for path in self.folder.glob("*/*") if path.name not in _KEPT]
         for path in orphans:
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
@@ -161,15 +157,15 @@ class ClipStore:
 
     def video(self, clip_id: str) -> Path:
         """Return where the clip's own bytes are."""
-        return self._home(clip_id) / "video"
+        return self._home(clip_id) / VIDEO
 
     def recording(self, clip_id: str) -> Path:
         """Return where the landmarks found in the clip are, once its job is done."""
-        return self._home(clip_id) / "recording.npz"
+        return self._home(clip_id) / RECORDING
 
     def poster(self, clip_id: str) -> Path:
         """Return where the clip's still picture is, once its job is done."""
-        return self._home(clip_id) / "poster.jpg"
+        return self._home(clip_id) / POSTER
 
     def _home(self, clip_id: str) -> Path:
         return self.folder / clip_id

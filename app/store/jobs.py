@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
+
 from sqlmodel import col, func, select
 
 from app.store.database import Database
@@ -84,17 +87,52 @@ class JobStore:
                 job.attempts -= 1
                 session.add(job)
 
+    def complete(self, job_id: str, frames: int, warnings: Sequence[str]) -> bool:
+        """End a job that found what it looked for; return whether it was still open.
+
+        Parameters
+        ----------
+        job_id
+            Which one.
+        frames
+            How many were decoded; noted with the clip.
+        warnings
+            What the user should know about the clip.
+
+        """
+        with self._database.writing() as session:
+            job = session.get(Job, job_id)
+            if job is None or JobStatus(job.status).final:
+                return False
+            job.status, job.finished = JobStatus.DONE.value, now()
+            job.warnings = json.dumps(list(warnings), ensure_ascii=False)
+            session.add(job)
+            if clip := session.get(Clip, job.clip_id):
+                clip.frames = frames
+                session.add(clip)
+            return True
+
+    def retry(self, clip_id: str, client: str) -> Job | None:
+        """Queue another job for a clip; ``None`` when one is open or was done already."""
+        with self._database.writing() as session:
+            query = select(Job).where(Job.clip_id == clip_id)
+            if any(job.status in (*_OPEN, JobStatus.DONE) for job in session.exec(query)):
+                return None
+            job = Job(clip_id=clip_id, client=client)
+            session.add(job)
+            return job
+
     def finish(
         self, job_id: str, status: JobStatus, *, code: str | None = None, error: str | None = None
     ) -> bool:
-        """End a job that is still open; return whether it was.
+        """End a job that found nothing; return whether it was still open.
 
         Parameters
         ----------
         job_id
             Which one.
         status
-            A final status.
+            Failed or cancelled.
         code
             Stable word for why it failed.
         error

@@ -65,8 +65,8 @@ class Clip(SQLModel, table=True):
     width: int
     """Pixels, upright."""
     height: int
-    duration: float
-    """Seconds."""
+    duration: float | None = None
+    """Seconds; ``None`` where the container does not say."""
     frames: int | None = None
     """Frames the container states, then those decoded; ``None`` while unknown."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
@@ -93,6 +93,8 @@ class Job(SQLModel, table=True):
     """How often it was started; a job that ended the server several times is given up."""
     error_code: str | None = Field(default=None, max_length=64)
     error: str | None = Field(default=None, sa_column=Column(Text))
+    warnings: str = Field(default="[]", sa_column=Column(Text, nullable=False))
+    """What the user should know about the clip, as a JSON array of sentences."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     started: datetime | None = Field(default=None, sa_type=UtcDateTime)
     finished: datetime | None = Field(default=None, sa_type=UtcDateTime)

@@ -1,0 +1,321 @@
+"""Clips: upload, look at, extract, delete and restore."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from fastapi import APIRouter, Header, Request, Response
+from fastapi.responses import FileResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.api.extraction import process
+from app.api.extraction.messages import Failed
+from app.api.media_types import HEAD_BYTES, video_type
+from app.api.problems import ProblemError, documented
+from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView
+from app.api.studio import CurrentStudio, Studio
+from app.api.uploads import receive_file, shown_name
+from app.recognition.poses import PoseSequence
+from app.recognition.takes import takes_in
+from app.store import Clip, ClipWithJob, JobStatus
+
+PIXEL_DIGITS = 2
+"""Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
+
+TIME_DIGITS = 6
+"""Decimals of a second: containers count in microseconds at the finest."""
+
+CONFIDENCE_DIGITS = 3
+
+_UPLOAD_FORM = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary"}},
+                }
+            }
+        },
+    }
+}
+
+_SINGLE_RANGE = re.compile(r"bytes=(\d{1,18})-(\d{0,18})|bytes=-(\d{1,18})", re.ASCII)
+
+router = APIRouter(prefix="/clips", tags=["clips"])
+
+
+@router.post(
+    "",
+    status_code=202,
+    responses=documented(408, 415, 429),
+    openapi_extra=_UPLOAD_FORM,
+)
+async def upload_clip(
+    request: Request,
+    studio: CurrentStudio,
+    idempotency_key: Annotated[str | None, Header(max_length=255, min_length=1)] = None,
+) -> ClipAccepted:
+    """Store a clip and queue the extraction of its poses.
+
+    An upload that repeats an earlier one's `Idempotency-Key` answers with the earlier clip.
+    """
+    if idempotency_key and (
+        earlier := await run_in_threadpool(studio.clips.by_idempotency_key, idempotency_key)
+    ):
+        return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
+    await _require_place_in_queue(request, studio)
+    partial = studio.clips.new_partial()
+    try:
+        upload = await receive_file(request, partial, studio.settings)
+        clip = await _examined(partial, studio, name=upload.name, size=upload.size)
+        clip.idempotency_key = idempotency_key
+        added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
+    finally:
+        await run_in_threadpool(partial.unlink, missing_ok=True)
+    return await _announced(studio, added)
+
+
+async def add_file(request: Request, studio: Studio, path: Path) -> ClipAccepted:
+    """Store a copy of a file of ours as a clip, as if it had been uploaded."""
+    await _require_place_in_queue(request, studio)
+    partial = studio.clips.new_partial()
+    try:
+        content = await run_in_threadpool(path.read_bytes)
+        await run_in_threadpool(partial.write_bytes, content)
+        clip = await _examined(partial, studio, name=shown_name(path.name), size=len(content))
+        added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
+    finally:
+        await run_in_threadpool(partial.unlink, missing_ok=True)
+    return await _announced(studio, added)
+
+
+@router.get("", responses=documented())
+def list_clips(studio: CurrentStudio) -> list[ClipView]:
+    """List the clips, newest first."""
+    return [clip_view(found) for found in studio.clips.all()]
+
+
+@router.get("/{clip_id}", responses=documented(404))
+def get_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
+    """Describe one clip."""
+    return clip_view(studio.clips.get(clip_id))
+
+
+@router.delete("/{clip_id}", status_code=204, responses=documented(404))
+async def delete_clip(clip_id: str, studio: CurrentStudio) -> Response:
+    """Delete a clip and end its job. For a while it can be restored."""
+    found = await run_in_threadpool(studio.clips.get, clip_id)
+    await run_in_threadpool(studio.clips.delete, clip_id)
+    await studio.runner.cancel(found.job)
+    studio.broadcast.publish("clips", id=clip_id)
+    return Response(status_code=204)
+
+
+@router.post("/{clip_id}/restore", responses=documented(404))
+def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
+    """Bring a deleted clip back."""
+    studio.clips.restore(clip_id)
+    studio.broadcast.publish("clips", id=clip_id)
+    return clip_view(studio.clips.get(clip_id))
+
+
+@router.post("/{clip_id}/jobs", status_code=202, responses=documented(404, 409, 429))
+async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> ClipAccepted:
+    """Extract the poses again, after a job that failed or was cancelled."""
+    await run_in_threadpool(studio.clips.get, clip_id)
+    await _require_place_in_queue(request, studio)
+    job = await run_in_threadpool(studio.jobs.retry, clip_id, client_of(request))
+    if job is None:
+        detail = "the poses of this clip are extracted, or are being extracted, already"
+        raise ProblemError(409, "job_not_needed", detail)
+    await studio.runner.submit(job)
+    studio.broadcast.publish("clips", id=clip_id)
+    return ClipAccepted(id=clip_id, job_id=job.id)
+
+
+@router.get(
+    "/{clip_id}/video",
+    response_class=FileResponse,
+    responses={
+        **documented(404, 416),
+        200: {"description": "The clip's own bytes", "content": {"video/*": {}}},
+        206: {"description": "The range asked for", "content": {"video/*": {}}},
+    },
+)
+def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+    """Send the clip as it was uploaded, or a range of it."""
+    clip = studio.clips.get(clip_id).clip
+    _keep_single_range(request, clip.size)
+    return FileResponse(
+        studio.clips.video(clip_id),
+        media_type=clip.media_type,
+        filename=clip.name,
+        content_disposition_type="inline",
+        headers={"Cache-Control": "private, max-age=3600"},
+    )
+
+
+@router.get(
+    "/{clip_id}/poster",
+    response_class=FileResponse,
+    responses={
+        **documented(404, 416),
+        200: {"description": "A small still picture", "content": {"image/jpeg": {}}},
+    },
+)
+def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+    """Send a still picture of the clip, once its job has begun."""
+    studio.clips.get(clip_id)
+    poster = studio.clips.poster(clip_id)
+    if not poster.is_file():
+        raise ProblemError(404, "no_poster", "there is no still picture of this clip yet")
+    _keep_single_range(request, poster.stat().st_size)
+    headers = {"Cache-Control": "private, max-age=3600"}
+    return FileResponse(poster, media_type="image/jpeg", headers=headers)
+
+
+@router.get("/{clip_id}/poses", response_model=PosesView, responses=documented(404, 409))
+def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
+    """Return the landmarks in every frame."""
+    poses = studio.recording(clip_id).poses
+    # Built and written at once: pydantic would walk a million numbers again to check them.
+    return Response(_poses_json(poses), media_type="application/json")
+
+
+@router.get("/{clip_id}/takes", responses=documented(404, 409))
+def get_takes(clip_id: str, studio: CurrentStudio) -> list[TakeView]:
+    """List what lies between the salutes."""
+    return [
+        TakeView(
+            start=take.start,
+            end=take.end,
+            closed=take.closed,
+            stroke_start=take.stroke_start,
+            stroke_end=take.stroke_end,
+        )
+        for take in takes_in(studio.recording(clip_id))
+    ]
+
+
+def client_of(request: Request) -> str:
+    """Return the address that a queue limit counts by."""
+    return request.client.host[:64] if request.client else "local"
+
+
+def clip_view(found: ClipWithJob) -> ClipView:
+    """Return what to tell about a clip."""
+    clip, job = found.clip, found.job
+    return ClipView(
+        **clip.model_dump(exclude={"idempotency_key", "deleted"}),
+        status=JobStatus(job.status),
+        error=job.error,
+        error_code=job.error_code,
+        warnings=json.loads(job.warnings),
+        job_id=job.id,
+    )
+
+
+async def _require_place_in_queue(request: Request, studio: Studio) -> None:
+    most = studio.settings.max_jobs_per_client
+    if await run_in_threadpool(studio.jobs.count_open, client_of(request)) >= most:
+        raise ProblemError(
+            429,
+            "queue_full",
+            f"{most} clips are waiting already; try again when some of them are done",
+            headers={"Retry-After": "30", "Connection": "close"},
+        )
+
+
+async def _examined(partial: Path, studio: Studio, *, name: str, size: int) -> Clip:
+    """Look into a received file.
+
+    Raises
+    ------
+    ProblemError
+        415 when it is no video, 422 when it is one that cannot be read.
+
+    """
+    if size == 0:
+        raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
+    media_type = video_type(await run_in_threadpool(_head, partial))
+    if media_type is None:
+        raise ProblemError(
+            415,
+            "unsupported_media_type",
+            f"{name} is not a video this app knows, whatever its name says; "
+            "send MP4, MOV, WebM, MKV, AVI or MPEG-TS",
+        )
+    probed = await process.probe(partial, studio.settings)
+    if isinstance(probed, Failed):
+        raise ProblemError(422, probed.code, f"{name}: {probed.detail}")
+    return Clip(
+        name=name,
+        media_type=media_type,
+        size=size,
+        width=probed.width,
+        height=probed.height,
+        duration=probed.duration,
+        frames=probed.frames,
+    )
+
+
+def _head(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(HEAD_BYTES)
+
+
+async def _announced(studio: Studio, added: ClipWithJob) -> ClipAccepted:
+    await studio.runner.submit(added.job)
+    studio.broadcast.publish("clips", id=added.clip.id)
+    return ClipAccepted(id=added.clip.id, job_id=added.job.id)
+
+
+def _keep_single_range(request: Request, size: int) -> None:
+    """Leave one well-formed range to the response, and ignore all other kinds.
+
+    A server may ignore ranges it does not want to serve (RFC 9110, 14.2); a header of ten
+    thousand ranges then costs nothing.
+
+    Raises
+    ------
+    ProblemError
+        416 when the range begins behind the file's end.
+
+    """
+    header = request.headers.get("range")
+    match = _SINGLE_RANGE.fullmatch(header.strip()) if header else None
+    start, end, suffix = match.groups() if match else (None, None, None)
+    reversed_range = bool(start and end) and int(end or 0) < int(start or 0)
+    if match is None or reversed_range:
+        scope = request.scope
+        scope["headers"] = [pair for pair in scope["headers"] if pair[0].lower() != b"range"]
+        return
+    if (start is not None and int(start) >= size) or (suffix is not None and int(suffix) == 0):
+        raise ProblemError(
+            416,
+            "range_not_satisfiable",
+            f"the range {header!r} lies outside the {size} bytes of this file",
+            headers={"Content-Range": f"bytes */{size}"},
+        )
+
+
+def _poses_json(poses: PoseSequence) -> bytes:
+    xy = np.round(poses.xy, PIXEL_DIGITS)
+    confidence = poses.confidence
+    content = {
+        "landmarks": list(poses.landmarks),
+        "time": np.round(poses.time, TIME_DIGITS).tolist(),
+        "xy": np.where(np.isnan(xy), None, xy).tolist(),  # type: ignore[call-overload]
+        "confidence": None
+        if confidence is None
+        else np.round(confidence, CONFIDENCE_DIGITS).tolist(),
+        "frame_size": list(poses.frame_size),
+    }
+    return json.dumps(content, separators=(",", ":"), allow_nan=False).encode()

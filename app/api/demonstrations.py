@@ -1,0 +1,76 @@
+"""Which part of a clip is meant: a take between salutes, a range chosen by hand, or all of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.api.problems import Fault, ProblemError
+from app.recognition.poses import PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.takes import Take, takes_in
+
+SAME_MOMENT = 1e-3
+"""Seconds within which a given moment is a take's: numbers travel through JSON and text fields
+rounded to milliseconds, and no camera takes a thousand frames a second of a diver."""
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """One showing of a gesture.
+
+    Attributes
+    ----------
+    start, end
+        Seconds in the clip between which `poses` lies.
+    poses
+        The stroke.
+
+    """
+
+    start: float
+    end: float
+    poses: PoseSequence
+
+
+def demonstration_in(
+    recording: Recording, start: float | None = None, end: float | None = None
+) -> Demonstration:
+    """Find the demonstration meant by a range of seconds.
+
+    A range that is a take's own, from salute to salute, means its stroke, without the hand's way
+    from and to the salute. Any other range is taken as it is: whoever chooses by hand decides.
+    Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
+
+    Raises
+    ------
+    ProblemError
+        422 when the range is empty or reversed, or no range is given and there are several takes.
+
+    """
+    takes = takes_in(recording)
+    poses = recording.poses
+    if start is None and end is None:
+        if len(takes) > 1:
+            spans = ", ".join(f"{take.start:.2f}-{take.end:.2f} s" for take in takes)
+            detail = f"the clip holds {len(takes)} takes ({spans}); say which by start and end"
+            raise ProblemError(422, "take_ambiguous", detail)
+        if takes:
+            return _stroke(takes[0])
+    first = float(poses.time[0]) if start is None else start
+    last = float(poses.time[-1]) if end is None else end
+    for take in takes:
+        if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
+            return _stroke(take)
+    inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
+    if last <= first or not len(inside):
+        detail = (
+            f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
+            f"{poses.time[0]:g} s to {poses.time[-1]:g} s"
+        )
+        fault = Fault(pointer="/start" if start is not None else "/end", detail=detail)
+        raise ProblemError(422, "range_empty", detail, errors=[fault])
+    return Demonstration(first, last, inside)
+
+
+def _stroke(take: Take) -> Demonstration:
+    return Demonstration(take.stroke_start, take.stroke_end, take.poses)

@@ -1,0 +1,49 @@
+"""What changed, told to every open page: one stream for everything."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import AsyncIterator
+from typing import Any
+
+from fastapi import APIRouter
+from sse_starlette import EventSourceResponse, ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+
+from app.api.broadcast import News
+from app.api.jobs import EVENT_STREAM, job_view
+from app.api.problems import documented
+from app.api.studio import CurrentStudio, Studio
+from app.store import NotFound
+
+router = APIRouter(prefix="/events", tags=["events"])
+
+
+@router.get("", response_class=EventSourceResponse, responses={**documented(), **EVENT_STREAM})
+async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
+    """Stream what changes, as server-sent events.
+
+    `clips`, `languages` and `recognitions` carry the `id` to load again, `jobs` the whole job.
+    One stream for all, because browsers open only six connections to a server.
+    """
+    return EventSourceResponse(_change_events(studio))
+
+
+async def _change_events(studio: Studio) -> AsyncIterator[ServerSentEvent]:
+    with studio.broadcast.listening() as listener:
+        yield ServerSentEvent(comment="listening", retry=1000)
+        async for news in listener:
+            content = await _content(studio, news)
+            yield ServerSentEvent(data=json.dumps(content), event=news.kind)
+
+
+async def _content(studio: Studio, news: News) -> dict[str, Any]:
+    if news.kind != "jobs":
+        return news.data
+    try:
+        job = await run_in_threadpool(studio.jobs.get, news.data["id"])
+    except NotFound:
+        return news.data
+    view = job_view(job, studio.runner.progress(job.id))
+    content: dict[str, Any] = view.model_dump(mode="json")
+    return content

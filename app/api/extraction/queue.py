@@ -1,0 +1,32 @@
+"""The order of waiting jobs: in turn between clients, first come first served within each."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict, deque
+
+
+class FairQueue:
+    """Waiting jobs by client; one that queues a hundred does not keep the others waiting."""
+
+    def __init__(self) -> None:
+        self._waiting: OrderedDict[str, deque[str]] = OrderedDict()
+        self._changed = asyncio.Condition()
+
+    async def put(self, client: str, job_id: str) -> None:
+        """Add a job at the end of its client's line."""
+        async with self._changed:
+            self._waiting.setdefault(client, deque()).append(job_id)
+            self._changed.notify()
+
+    async def get(self) -> str:
+        """Take the next job, waiting for one."""
+        async with self._changed:
+            await self._changed.wait_for(lambda: self._waiting)
+            client, jobs = next(iter(self._waiting.items()))
+            job_id = jobs.popleft()
+            if jobs:
+                self._waiting.move_to_end(client)
+            else:
+                del self._waiting[client]
+            return job_id

@@ -1,0 +1,166 @@
+"""Runs the jobs that wait, a few at a time, and knows how far each of them is."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from contextlib import aclosing
+from dataclasses import dataclass
+
+from starlette.concurrency import run_in_threadpool
+
+from app.api.broadcast import Broadcast
+from app.api.extraction import process
+from app.api.extraction.messages import Failed, Finished, Progressed
+from app.api.extraction.queue import FairQueue
+from app.settings import Settings
+from app.store import ClipStore, Job, JobStatus, JobStore
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a running job is.
+
+    Attributes
+    ----------
+    stage
+        ``starting``, ``poses`` or ``saving``.
+    done, total
+        Frames; `total` is an estimate where the container does not count them.
+    eta_s
+        Seconds still to go at the present rate, or None before there is one.
+
+    """
+
+    stage: str
+    done: int = 0
+    total: int = 0
+    eta_s: float | None = None
+
+
+class ExtractionRunner:
+    """Extracts poses from clips in worker processes.
+
+    Parameters
+    ----------
+    settings
+        Limits of the workers, and how many at once.
+    clips, jobs
+        Where the files are, and what is to be done.
+    broadcast
+        Hears of every step as ``jobs``, and of every end as ``clips``.
+
+    """
+
+    def __init__(
+        self, settings: Settings, clips: ClipStore, jobs: JobStore, broadcast: Broadcast
+    ) -> None:
+        self._settings = settings
+        self._clips = clips
+        self._jobs = jobs
+        self._broadcast = broadcast
+        self._queue = FairQueue()
+        self._progress: dict[str, Progress] = {}
+        self._running: dict[str, asyncio.Task[None]] = {}
+        self._loops: list[asyncio.Task[None]] = []
+
+    async def start(self) -> None:
+        """Queue again what an earlier server left open, and begin to work."""
+        for job in await run_in_threadpool(self._jobs.resume):
+            await self._queue.put(job.client, job.id)
+        self._loops = [asyncio.create_task(self._work()) for _ in range(self._settings.workers)]
+
+    async def stop(self) -> None:
+        """End the workers; their jobs are queued again for the next start."""
+        running = list(self._running)
+        for task in (*self._loops, *self._running.values()):
+            task.cancel()
+        await asyncio.gather(*self._loops, *self._running.values(), return_exceptions=True)
+        for job_id in running:
+            await run_in_threadpool(self._jobs.requeue, job_id)
+
+    async def submit(self, job: Job) -> None:
+        """Let a job wait for its turn."""
+        await self._queue.put(job.client, job.id)
+        self._tell(job.id, job.clip_id)
+
+    async def cancel(self, job: Job) -> bool:
+        """End a job that waits or runs; return whether it did."""
+        cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
+        if task := self._running.get(job.id):
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+        if cancelled:
+            self._tell(job.id, job.clip_id)
+            self._broadcast.publish("clips", id=job.clip_id)
+        return cancelled
+
+    def progress(self, job_id: str) -> Progress | None:
+        """Return how far a job is, or None when it does not run."""
+        return self._progress.get(job_id)
+
+    async def _work(self) -> None:
+        while True:
+            job_id = await self._queue.get()
+            try:
+                if job := await run_in_threadpool(self._jobs.start, job_id):
+                    await self._supervise(job)
+            except Exception:
+                # One job's trouble, such as a full disk, must not end the loop for all others.
+                # The job stays open in the database, and is run again at the next start.
+                logger.exception("job %s could not be run", job_id)
+
+    async def _supervise(self, job: Job) -> None:
+        """Run one job in a task of its own, so that it can be cancelled alone."""
+        task = asyncio.create_task(self._extract(job))
+        self._running[job.id] = task
+        try:
+            await asyncio.wait([task])
+        finally:
+            self._running.pop(job.id, None)
+            self._progress.pop(job.id, None)
+        if not task.cancelled():
+            task.result()
+        self._tell(job.id, job.clip_id)
+        self._broadcast.publish("clips", id=job.clip_id)
+
+    async def _extract(self, job: Job) -> None:
+        self._show(job, Progress("starting"))
+        messages = process.extract(
+            self._clips.video(job.clip_id),
+            self._clips.recording(job.clip_id),
+            self._clips.poster(job.clip_id),
+            self._settings,
+        )
+        started: float | None = None
+        async with aclosing(messages) as steps:
+            async for message in steps:
+                match message:
+                    case Progressed():
+                        started = started or time.monotonic()
+                        elapsed = time.monotonic() - started
+                        self._show(job, _estimate(message, elapsed))
+                    case Finished(frames=frames, warnings=warnings):
+                        await run_in_threadpool(self._jobs.complete, job.id, frames, warnings)
+                    case Failed(code=code, detail=detail):
+                        failed = JobStatus.FAILED
+                        await run_in_threadpool(
+                            self._jobs.finish, job.id, failed, code=code, error=detail
+                        )
+
+    def _show(self, job: Job, progress: Progress) -> None:
+        self._progress[job.id] = progress
+        self._tell(job.id, job.clip_id)
+
+    def _tell(self, job_id: str, clip_id: str) -> None:
+        self._broadcast.publish("jobs", id=job_id, clip_id=clip_id)
+
+
+def _estimate(message: Progressed, elapsed: float) -> Progress:
+    """Add the time left, from the rate so far; `elapsed` seconds since the first report."""
+    left = message.total - message.done
+    eta = round(elapsed / message.done * left, 1) if message.done and elapsed > 0 else None
+    return Progress(message.stage, message.done, message.total, eta)

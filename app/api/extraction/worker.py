@@ -1,0 +1,152 @@
+"""The process that opens clips: ``python -m app.api.extraction.worker probe|extract ...``.
+
+It writes one JSON object per line to stdout (see `messages`) and ends by itself when its stdin is
+closed, which is what happens when the server dies.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, dump
+
+PROGRESS_SECONDS = 0.1
+"""Shortest time between two reports: what an eye follows on a progress bar."""
+
+POSTER_SECONDS = 1.0
+"""Where in the clip its still picture is taken: recordings often begin black or shaking."""
+
+POSTER_WIDTH = 320
+"""Pixels; a card of the page at twice the usual screen density."""
+
+Report = Callable[[Message], None]
+
+
+def probe(clip: Path, report: Report) -> None:
+    """Report what the clip says about itself."""
+    from app.recognition import video
+
+    report(Probed(**asdict(video.probe(clip))))
+
+
+def extract(clip: Path, recording: Path, poster: Path, report: Report) -> None:
+    """Write the clip's poster and recording, reporting progress."""
+    from app.recognition import extraction
+
+    write_poster(clip, poster)
+    reported = 0.0
+
+    def progress(done: int, total: int) -> None:
+        nonlocal reported
+        if (now := time.monotonic()) - reported >= PROGRESS_SECONDS or done == total:
+            reported = now
+            report(Progressed(stage="poses", done=done, total=total))
+
+    found = extraction.record(clip, progress=progress)
+    report(Progressed(stage="saving", done=len(found.poses), total=len(found.poses)))
+    found.save(recording)
+    report(Finished(frames=len(found.poses), warnings=found.warnings))
+
+
+def write_poster(clip: Path, poster: Path) -> None:
+    """Write a small JPEG of the frame at `POSTER_SECONDS`, or of the last one before."""
+    import cv2
+
+    from app.recognition import video
+
+    image = None
+    with video.read_frames(clip) as frames:
+        for frame in frames:
+            image = frame.image
+            if frame.time >= POSTER_SECONDS:
+                break
+    if image is None:
+        return
+    height, width = image.shape[:2]
+    size = (POSTER_WIDTH, max(1, round(height * POSTER_WIDTH / width)))
+    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    _, encoded = cv2.imencode(".jpg", cv2.cvtColor(small, cv2.COLOR_RGB2BGR))
+    partial = poster.with_suffix(".part")
+    partial.write_bytes(encoded.tobytes())
+    partial.replace(poster)
+
+
+def limit_resources(memory_bytes: int, cpu_seconds: int) -> None:
+    """Have the system end this process at these limits; 0 is none, as where POSIX is absent."""
+    if os.name != "posix":
+        return
+    import resource
+
+    for kind, limit in ((resource.RLIMIT_AS, memory_bytes), (resource.RLIMIT_CPU, cpu_seconds)):
+        if limit:
+            _, hard = resource.getrlimit(kind)
+            soft = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+            resource.setrlimit(kind, (soft, hard))
+    # A crash is expected here, and a core dump of a video is of no use to anybody.
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    with contextlib.suppress(OSError):
+        os.nice(5)  # The page stays quick while a clip is read.
+
+
+def end_with_server() -> None:
+    """End this process as soon as its stdin is closed."""
+
+    def wait() -> None:
+        with contextlib.suppress(OSError):
+            while os.read(sys.stdin.fileno(), 1024):
+                pass
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def main() -> None:
+    """Run one command and report how it went."""
+    parser = argparse.ArgumentParser(prog="osg-studio worker")
+    parser.add_argument("--memory-bytes", type=int, default=0)
+    parser.add_argument("--cpu-seconds", type=int, default=0)
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("probe").add_argument("clip", type=Path)
+    extracting = commands.add_parser("extract")
+    for name in ("clip", "recording", "poster"):
+        extracting.add_argument(name, type=Path)
+    chosen = parser.parse_args()
+
+    # Libraries that print must not write into the messages.
+    channel = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1, encoding="utf-8")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    limit_resources(chosen.memory_bytes, chosen.cpu_seconds)
+    end_with_server()
+
+    def report(message: Message) -> None:
+        channel.write(dump(message) + "\n")
+
+    from app.recognition.errors import ModelError, RecognitionError
+
+    try:
+        if chosen.command == "probe":
+            probe(chosen.clip, report)
+        else:
+            extract(chosen.clip, chosen.recording, chosen.poster, report)
+    except MemoryError:
+        report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
+    except ModelError as error:
+        report(Failed(code="model_missing", detail=str(error)))
+    except RecognitionError as error:
+        detail = str(error).removeprefix(f"{chosen.clip.name}: ")
+        report(Failed(code="video_unreadable", detail=detail))
+    except OSError as error:
+        detail = f"the server's storage cannot be used ({error.strerror}); free space and retry"
+        report(Failed(code="storage_unavailable", detail=detail))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,20 @@
+"""Whether the server works, and whether its models are there."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from app import __version__
+from app.api.problems import documented
+from app.api.schemas import Health
+from app.recognition.models import installed_models
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", responses=documented())
+def get_health() -> Health:
+    """Tell the version and the condition of the model files."""
+    models: dict[str, str] = {model.name: model.state for model in installed_models()}
+    status = "ok" if all(state == "ok" for state in models.values()) else "models_missing"
+    return Health(status=status, version=__version__, models=models)

@@ -1,0 +1,103 @@
+"""Jobs: how far they are, live, and cancelling them."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+from sse_starlette import EventSourceResponse, ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+
+from app.api.extraction.runner import Progress
+from app.api.problems import documented
+from app.api.schemas import JobView
+from app.api.studio import CurrentStudio, Studio
+from app.store import Job, JobStatus, NotFound
+
+EVENT_STREAM: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "Server-sent events",
+        "content": {"text/event-stream": {"schema": {"type": "string"}}},
+    }
+}
+"""OpenAPI ``responses`` of an endless answer."""
+
+FINAL_EVENT_ID = "final"
+"""Id of a job's last event; a browser that reconnects with it is told not to."""
+
+router = APIRouter(prefix="/jobs", tags=["jobs"])
+
+
+@router.get("/{job_id}", responses=documented(404))
+def get_job(job_id: str, studio: CurrentStudio) -> JobView:
+    """Tell how far a job is."""
+    return job_view(studio.jobs.get(job_id), studio.runner.progress(job_id))
+
+
+@router.get(
+    "/{job_id}/events",
+    response_class=EventSourceResponse,
+    responses={**documented(404), **EVENT_STREAM, 204: {"description": "The job is over"}},
+)
+async def follow_job(request: Request, job_id: str, studio: CurrentStudio) -> Response:
+    """Stream a job's progress as server-sent events until it ends."""
+    job = await run_in_threadpool(studio.jobs.get, job_id)
+    over = JobStatus(job.status).final
+    if over and request.headers.get("last-event-id") == FINAL_EVENT_ID:
+        return Response(status_code=204)
+    return EventSourceResponse(_progress_events(studio, job_id))
+
+
+@router.delete("/{job_id}", responses=documented(404))
+async def cancel_job(job_id: str, studio: CurrentStudio) -> JobView:
+    """Cancel a job that waits or runs; one that is over stays as it is."""
+    job = await run_in_threadpool(studio.jobs.get, job_id)
+    await studio.runner.cancel(job)
+    return job_view(await run_in_threadpool(studio.jobs.get, job_id), None)
+
+
+def job_view(job: Job, progress: Progress | None) -> JobView:
+    """Return what to tell about a job."""
+    status = JobStatus(job.status)
+    shown = progress if progress and status is JobStatus.RUNNING else Progress(status.value)
+    return JobView(
+        **job.model_dump(include={"id", "clip_id", "error", "error_code"}),
+        **job.model_dump(include={"created", "started", "finished"}),
+        status=status,
+        stage=shown.stage,
+        done=shown.done,
+        total=shown.total,
+        eta_s=shown.eta_s,
+    )
+
+
+async def _progress_events(studio: Studio, job_id: str) -> AsyncIterator[ServerSentEvent]:
+    with studio.broadcast.listening() as listener:
+        view = await _current(studio, job_id)
+        yield _event(view)
+        if view is None or view.status.final:
+            return
+        async for news in listener:
+            if news.kind != "jobs" or news.data["id"] != job_id:
+                continue
+            view = await _current(studio, job_id)
+            yield _event(view)
+            if view is None or view.status.final:
+                return
+
+
+async def _current(studio: Studio, job_id: str) -> JobView | None:
+    """Return how the job stands now; None when its clip was deleted meanwhile."""
+    try:
+        job = await run_in_threadpool(studio.jobs.get, job_id)
+    except NotFound:
+        return None
+    return job_view(job, studio.runner.progress(job_id))
+
+
+def _event(view: JobView | None) -> ServerSentEvent:
+    if view is None:
+        return ServerSentEvent(data='{"status": "cancelled"}', id=FINAL_EVENT_ID)
+    final = view.status.final
+    return ServerSentEvent(data=view.model_dump_json(), id=FINAL_EVENT_ID if final else None)

@@ -1,0 +1,46 @@
+"""Between the recogniser's languages and the store's revisions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.recognition import Language
+from app.store import Draft, LanguageRevision
+
+LONGEST_NAME = 200
+"""Characters of a language's name in lists."""
+
+LONGEST_CHANGE = 300
+"""Characters of what a revision did."""
+
+
+def draft_of(language: Language, change: str) -> Draft:
+    """Return the revision that holds `language`.
+
+    Parameters
+    ----------
+    language
+        With the number of the revision.
+    change
+        What this revision does, for the history.
+
+    """
+    return Draft(
+        name=language.name[:LONGEST_NAME],
+        labels=[gesture.label for gesture in language.gestures],
+        change=change[:LONGEST_CHANGE],
+        document=language.to_json(),
+    )
+
+
+def editing(
+    change: str, edited: Callable[[Language], Language]
+) -> Callable[[LanguageRevision, int], Draft]:
+    """Return what `LanguageStore.edit` wants: how a revision's document becomes the next one's."""
+
+    def draft(head: LanguageRevision, number: int) -> Draft:
+        language = edited(Language.from_json(head.document))
+        return draft_of(replace(language, revision=number), change)
+
+    return draft

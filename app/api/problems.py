@@ -1,0 +1,226 @@
+"""Errors as RFC 9457 problem documents: one shape for everything that can go wrong."""
+
+from __future__ import annotations
+
+import errno
+import logging
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.exceptions import HTTPException
+
+from app.recognition.errors import (
+    GestureError,
+    LanguageError,
+    ModelError,
+    PoseError,
+    RecognitionError,
+    VideoError,
+)
+from app.store import Conflict, NotFound, StoreError
+
+MEDIA_TYPE = "application/problem+json"
+
+RETRY_SECONDS = "5"
+"""``Retry-After`` where waiting may help: as long as a writer waits for the database."""
+
+_DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+logger = logging.getLogger(__name__)
+
+
+class Fault(BaseModel):
+    """One thing that is wrong with a request."""
+
+    pointer: str = Field(description="JSON pointer (RFC 6901) into the body; empty: all of it")
+    detail: str = Field(description="What is wrong there")
+    parameter: str | None = Field(
+        default=None, description="Name of the query, path or header parameter, outside the body"
+    )
+
+
+class Problem(BaseModel):
+    """What went wrong, in the shape of RFC 9457."""
+
+    model_config = ConfigDict(extra="allow")
+
+    type: str = Field(description="URI of this kind of problem")
+    title: str = Field(description="The kind of problem in words")
+    status: int = Field(description="The HTTP status")
+    detail: str = Field(description="What is wrong here, why, and what to do next")
+    code: str = Field(description="Stable word for programs")
+    errors: list[Fault] | None = Field(default=None, description="Each fault of the request")
+
+
+class ProblemError(HTTPException):
+    """Raised to answer with a problem document.
+
+    Parameters
+    ----------
+    status
+        HTTP status.
+    code
+        Stable word for programs, in snake_case.
+    detail
+        What is wrong, why, and what to do next.
+    errors
+        Each fault of the request, where there can be several.
+    headers
+        Response headers.
+    more
+        Further members of the document.
+
+    """
+
+    def __init__(
+        self,
+        status: int,
+        code: str,
+        detail: str,
+        *,
+        errors: Sequence[Fault] = (),
+        headers: Mapping[str, str] | None = None,
+        **more: Any,
+    ) -> None:
+        super().__init__(status, detail, headers=dict(headers or {}))
+        self.code = code
+        self.errors = errors
+        self.more = more
+
+    def response(self) -> JSONResponse:
+        """Return the answer to send."""
+        faults = [fault.model_dump(exclude_none=True) for fault in self.errors]
+        content = {
+            "type": f"urn:osg-studio:problem:{self.code}",
+            "title": HTTPStatus(self.status_code).phrase,
+            "status": self.status_code,
+            "detail": self.detail,
+            "code": self.code,
+            **({"errors": faults} if faults else {}),
+            **self.more,
+        }
+        return JSONResponse(
+            content, self.status_code, headers=dict(self.headers or {}), media_type=MEDIA_TYPE
+        )
+
+
+def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI ``responses`` of an operation that may answer with these statuses."""
+    # Every operation may be refused by the guards or meet a store that cannot answer.
+    return {
+        status: {
+            "description": HTTPStatus(status).phrase,
+            "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        }
+        for status in sorted({*statuses, 400, 401, 403, 413, 422, 500, 503, 507})
+    }
+
+
+def schemas() -> dict[str, Any]:
+    """Return the JSON Schemas that `documented` refers to."""
+    schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    return {**schema.pop("$defs"), "Problem": schema}
+
+
+def install(app: FastAPI) -> None:
+    """Make `app` answer every error with a problem document."""
+    app.add_exception_handler(RequestValidationError, _on_invalid_request)
+    app.add_exception_handler(HTTPException, _on_http_error)
+    for kind in (RecognitionError, StoreError, OSError, Exception):
+        app.add_exception_handler(kind, _on_error)
+
+
+def problem_of(error: Exception) -> ProblemError:
+    """Return the problem that stands for `error`."""
+    match error:
+        case ProblemError():
+            return error
+        case NotFound():
+            return ProblemError(404, "not_found", str(error))
+        case Conflict():
+            return ProblemError(
+                412,
+                "revision_conflict",
+                str(error),
+                headers={"ETag": f'"{error.current}"'},
+                current_revision=error.current,
+            )
+        case StoreError():
+            headers = {"Retry-After": RETRY_SECONDS}
+            return ProblemError(503, "store_unavailable", str(error), headers=headers)
+        case RecognitionError():
+            return _of_recognition(error)
+        case OSError():
+            return _of_storage(error)
+    logger.error("unexpected error", exc_info=error)
+    return ProblemError(
+        500,
+        "internal",
+        "the server met an error that it does not know; its log has the details",
+    )
+
+
+def _of_recognition(error: RecognitionError) -> ProblemError:
+    if isinstance(error, ModelError):
+        return ProblemError(503, "model_missing", str(error))
+    if isinstance(error, LanguageError):
+        fault = Fault(pointer=error.pointer, detail=str(error))
+        return ProblemError(422, "language_invalid", str(error), errors=[fault])
+    codes: dict[type, str] = {
+        GestureError: "gesture_unusable",
+        VideoError: "video_unreadable",
+        PoseError: "poses_unusable",
+    }
+    return ProblemError(422, codes.get(type(error), "recognition"), str(error))
+
+
+def _of_storage(error: OSError) -> ProblemError:
+    # The path stays in the log: it is nobody's business outside this machine.
+    logger.error("storage failed", exc_info=error)
+    reason = error.strerror or type(error).__name__
+    headers = {"Retry-After": RETRY_SECONDS}
+    if error.errno in _DISK_FULL:
+        detail = f"the server's disk is full ({reason}); delete clips or free space, then try again"
+        return ProblemError(507, "disk_full", detail, headers=headers)
+    detail = f"the server's storage cannot be used ({reason}); nothing was changed, try again"
+    return ProblemError(503, "storage_unavailable", detail, headers=headers)
+
+
+async def _on_error(_request: Request, error: Exception) -> JSONResponse:
+    return problem_of(error).response()
+
+
+async def _on_http_error(_request: Request, error: Exception) -> JSONResponse:
+    if isinstance(error, ProblemError):
+        return error.response()
+    assert isinstance(error, HTTPException)
+    status = HTTPStatus(error.status_code)
+    code = status.name.lower()
+    return ProblemError(status, code, str(error.detail), headers=error.headers).response()
+
+
+async def _on_invalid_request(_request: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)
+    faults = [_fault(item) for item in error.errors()]
+    where = "; ".join(f"{f.parameter or f.pointer or 'body'}: {f.detail}" for f in faults[:3])
+    more = f" (and {len(faults) - 3} more)" if len(faults) > 3 else ""
+    return ProblemError(
+        422, "request_invalid", f"the request is not valid: {where}{more}", errors=faults
+    ).response()
+
+
+def _fault(item: Mapping[str, Any]) -> Fault:
+    """Translate one of pydantic's errors; the input is not echoed, it may be anything."""
+    place, *steps = item["loc"]
+    if place != "body":
+        name = str(steps[0]) if steps else str(place)
+        return Fault(pointer="", detail=item["msg"], parameter=name)
+    if item["type"] == "json_invalid":
+        return Fault(pointer="", detail=f"not JSON: {item['ctx']['error']}")
+    pointer = "".join(f"/{str(step).replace('~', '~0').replace('/', '~1')}" for step in steps)
+    return Fault(pointer=pointer, detail=item["msg"])

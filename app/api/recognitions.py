@@ -1,0 +1,89 @@
+"""Recognitions: asked for, answered in full, and kept."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import APIRouter, Query
+
+from app.api.demonstrations import demonstration_in
+from app.api.problems import documented
+from app.api.schemas import RecognitionRequest, RecognitionView
+from app.api.studio import CurrentStudio
+from app.recognition import Recognition
+from app.store import RecognitionRecord
+
+DEFAULT_PROFILE = "paper"
+"""Profile of whoever names none."""
+
+MOST_LISTED = 500
+"""Recognitions in one answer; the page shows the newest of one clip or language."""
+
+router = APIRouter(prefix="/recognitions", tags=["recognitions"])
+
+
+@router.post("", status_code=201, responses=documented(404, 409))
+def recognize(request: RecognitionRequest, studio: CurrentStudio) -> RecognitionView:
+    """Recognise a take, a range or all of a clip, and keep the answer."""
+    state = studio.languages.get(request.language_id)
+    recording = studio.recording(request.clip_id)
+    profile = request.profile or DEFAULT_PROFILE
+    demonstration = demonstration_in(recording, request.start, request.end)
+    result = studio.recognizer(state, profile).recognize(demonstration.poses)
+    record = studio.recognitions.add(
+        RecognitionRecord(
+            clip_id=request.clip_id,
+            language_id=state.record.id,
+            revision=state.revision.revision,
+            start=demonstration.start,
+            end=demonstration.end,
+            profile=profile,
+            expected=request.expected,
+            result=json.dumps(result.to_dict(), allow_nan=False),
+        )
+    )
+    studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
+    return _view(record)
+
+
+@router.get("", responses=documented())
+def list_recognitions(
+    studio: CurrentStudio,
+    clip_id: Annotated[str | None, Query(max_length=64)] = None,
+    language_id: Annotated[str | None, Query(max_length=64)] = None,
+    limit: Annotated[int, Query(ge=1, le=MOST_LISTED)] = 100,
+) -> list[RecognitionView]:
+    """List recognitions, newest first."""
+    found = studio.recognitions.all(clip_id=clip_id, language_id=language_id, limit=limit)
+    return [_view(record) for record in found]
+
+
+@router.get("/{recognition_id}", responses=documented(404))
+def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionView:
+    """Return a recognition as it was answered."""
+    return _view(studio.recognitions.get(recognition_id))
+
+
+def kept_recognition(record: RecognitionRecord) -> Recognition:
+    """Return the recogniser's answer as it was when `record` was made."""
+    result: dict[str, Any] = json.loads(record.result)
+    distances = [
+        [np.inf if distance is None else distance for distance in row]
+        for row in result["distances"]
+    ]
+    return Recognition(
+        label=result["label"],
+        nearest=result["nearest"],
+        confidence=result["confidence"],
+        profile=result["profile"],
+        voters=tuple(result["voters"]),
+        gestures=tuple(result["gestures"]),
+        distances=np.array(distances, dtype=np.float64),
+        votes=result["votes"],
+    )
+
+
+def _view(record: RecognitionRecord) -> RecognitionView:
+    return RecognitionView(**(json.loads(record.result) | record.model_dump(exclude={"result"})))

@@ -1,0 +1,74 @@
+"""The languages and clips we bring, so that a new user has something that works at once."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.api.language_drafts import draft_of
+from app.recognition import Language
+from app.recognition.errors import LanguageError
+from app.store import LanguageStore
+
+CLIP_ENDINGS = frozenset({".mp4", ".webm"})
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class SampleClip:
+    """A clip we bring.
+
+    Attributes
+    ----------
+    name
+        Its file name, by which it is asked for.
+    size
+        Bytes.
+    path
+        Where it lies.
+
+    """
+
+    name: str
+    size: int
+    path: Path
+
+
+class Samples:
+    """The content of the samples' folder, which may be absent.
+
+    Parameters
+    ----------
+    folder
+        Holds languages as ``*.json`` and their clips in ``clips/``.
+
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def clips(self) -> dict[str, SampleClip]:
+        """Return the clips by name, in order."""
+        files = sorted((self._folder / "clips").glob("**/*"))
+        return {
+            path.name: SampleClip(path.name, path.stat().st_size, path)
+            for path in files
+            if path.suffix in CLIP_ENDINGS
+        }
+
+    def seed(self, languages: LanguageStore) -> None:
+        """Add the sample languages that were never added before; those deleted stay deleted."""
+        seeded = languages.seeded()
+        for path in sorted(self._folder.glob("*.json")):
+            if path.stem in seeded:
+                continue
+            try:
+                language = Language.from_json(path.read_bytes())
+            except (LanguageError, OSError):
+                # A server without one of its samples is still of use.
+                logger.exception("the sample language %s cannot be read", path.name)
+                continue
+            draft = draft_of(language, "Sample language")
+            languages.create(draft, language.revision, sample=path.stem)

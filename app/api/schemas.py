@@ -1,0 +1,227 @@
+"""The JSON that goes in and out, as pydantic models; `/openapi.json` is made from them."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.recognition.gesture import MAX_LABEL_LENGTH
+from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+from app.recognition.language_schema import MAX_TEXT_LENGTH
+from app.store import JobStatus
+
+MOST_SECONDS = 24 * 60 * 60
+"""No clip is a day long; beyond it a number of seconds is a mistake."""
+
+Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_LENGTH, pattern=r"\S")]
+Author = Annotated[str, Field(max_length=MAX_AUTHOR_LENGTH)]
+Label = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH, pattern=r"\S")]
+Seconds = Annotated[float, Field(ge=0, le=MOST_SECONDS, allow_inf_nan=False)]
+Identifier = Annotated[str, Field(min_length=1, max_length=64)]
+Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]
+Command = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | dict[str, Any] | None
+
+
+class Body(BaseModel):
+    """Base of request bodies: unknown members are mistakes, and are said to be."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class ClipAccepted(BaseModel):
+    """A clip was stored; its poses are extracted by the job."""
+
+    id: str
+    job_id: str
+
+
+class ClipView(BaseModel):
+    """A clip, and how far the extraction of its poses is."""
+
+    id: str
+    name: str = Field(description="As the sender called the file, without what could do harm")
+    status: JobStatus
+    error: str | None = Field(description="Why there are no poses, when the job failed")
+    error_code: str | None
+    warnings: list[str] = Field(description="What was found wanting in the clip")
+    width: int = Field(description="Pixels of the upright picture")
+    height: int
+    duration: float | None = Field(description="Seconds, where the container says")
+    frames: int | None = Field(description="Frames decoded; before that, as the container says")
+    size: int = Field(description="Bytes")
+    media_type: str
+    job_id: str
+    created: datetime
+
+
+class JobView(BaseModel):
+    """How far a job is."""
+
+    id: str
+    clip_id: str
+    status: JobStatus
+    stage: str = Field(description="queued, starting, poses, saving, or the final status")
+    done: int = Field(description="Frames")
+    total: int = Field(description="Frames; an estimate where the container does not count them")
+    eta_s: float | None = Field(description="Seconds left at the present rate")
+    error: str | None
+    error_code: str | None
+    created: datetime
+    started: datetime | None
+    finished: datetime | None
+
+
+class PosesView(BaseModel):
+    """Landmarks in every frame of a clip."""
+
+    landmarks: list[str]
+    time: list[float] = Field(description="Seconds since the first frame, one per frame")
+    xy: list[list[list[float | None]]] = Field(
+        description="Frames x landmarks x 2: pixels, x right, y down; null: not seen"
+    )
+    confidence: list[list[float]] | None = Field(description="Frames x landmarks, 0 to 1")
+    frame_size: tuple[int, int]
+
+
+class TakeView(BaseModel):
+    """What lies between two salutes, in seconds of the clip."""
+
+    start: float
+    end: float
+    closed: bool = Field(description="Whether a second salute ended it")
+    stroke_start: float = Field(description="Where the gesture begins: after the hand's way to it")
+    stroke_end: float
+
+
+class LanguageDraft(Body):
+    """A new language."""
+
+    name: Name
+    author: Author = ""
+
+
+class LanguageChange(Body):
+    """What to change about a language."""
+
+    name: Name | None = None
+    author: Author | None = None
+
+
+class LanguageRevert(Body):
+    """Which revision to go back to."""
+
+    revision: Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+
+class GestureDraft(Body):
+    """A gesture to save from a clip."""
+
+    label: Label
+    clip_id: Identifier
+    start: Seconds | None = None
+    end: Seconds | None = None
+    salient: Landmarks | None = None
+    description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
+    command: Command = None
+
+
+class GestureChange(Body):
+    """What to change about a gesture; what is left out stays."""
+
+    label: Label | None = None
+    salient: Landmarks | None = None
+    description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | None = None
+    command: Command = None
+
+
+class GestureView(BaseModel):
+    """A gesture of a language."""
+
+    label: str
+    description: str
+    command: str | dict[str, Any] | None
+    salient: list[str]
+    thumbnail: str = Field(description="Path of its trajectory image, a PNG")
+    has_trajectory: bool = Field(description="False when imported from a file that has none")
+
+
+class LanguageSummary(BaseModel):
+    """A language in a list."""
+
+    id: str
+    name: str
+    revision: int
+    labels: list[str]
+    sample: bool = Field(description="Whether it came with the program")
+    created: datetime
+    updated: datetime
+
+
+class LanguageView(LanguageSummary):
+    """A language with its gestures."""
+
+    author: str
+    gestures: list[GestureView]
+
+
+class RevisionView(BaseModel):
+    """One revision in a language's history."""
+
+    revision: int
+    name: str
+    labels: list[str]
+    change: str
+    created: datetime
+
+
+class RecognitionRequest(Body):
+    """What to recognise."""
+
+    clip_id: Identifier
+    language_id: Identifier
+    start: Seconds | None = None
+    end: Seconds | None = None
+    profile: Annotated[str, Field(max_length=32)] | None = None
+    expected: Label | None = None
+
+
+class RecognitionView(BaseModel):
+    """The full answer of a recognition, kept as a record."""
+
+    model_config = ConfigDict(extra="allow")
+
+    id: str
+    clip_id: str
+    language_id: str
+    revision: int
+    start: float
+    end: float
+    profile: str
+    expected: str | None
+    created: datetime
+    label: str | None = Field(description="None when rejected")
+    nearest: str | None = Field(description="The best label even when rejected")
+    confidence: float
+    voters: list[str]
+    gestures: list[str]
+    distances: list[list[float | None]] = Field(
+        description="Voters x gestures, smaller: more alike"
+    )
+    votes: dict[str, str | None]
+
+
+class SampleView(BaseModel):
+    """A clip that comes with the program."""
+
+    name: str
+    size: int = Field(description="Bytes")
+
+
+class Health(BaseModel):
+    """Whether the server works."""
+
+    status: str = Field(description="ok, or models_missing: then clips cannot be extracted")
+    version: str
+    models: dict[str, str] = Field(description="ok, missing or damaged, per model file")

@@ -1,0 +1,176 @@
+"""Who may talk to the server: the right host name, our own pages only, and whoever has the token.
+
+Plain ASGI, for HTTP and websockets alike. A browser lets every page of the web send requests to
+127.0.0.1, and DNS rebinding even lets it read the answers; so the `Host` must be ours, a request
+that changes something must come from our own page (Fetch Metadata and `Origin`, no CSRF tokens),
+and websockets, which no same-origin policy covers, must name our own `Origin`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qsl, urlencode, urlsplit
+
+from starlette.datastructures import Headers
+from starlette.responses import RedirectResponse, Response
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.api.problems import ProblemError
+from app.settings import Settings, is_loopback
+
+COOKIE = "osg_studio_session"
+COOKIE_SECONDS = 30 * 24 * 60 * 60
+"""A month: as long as a project of designing gestures takes."""
+
+POLICY_VIOLATION = 1008
+"""Websocket close code (RFC 6455, Sec. 7.4.1)."""
+
+OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
+"""Answered without a token, for whoever watches whether the server lives."""
+
+_SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+
+class SameOrigin:
+    """Refuses requests under foreign host names and from foreign pages.
+
+    Parameters
+    ----------
+    app
+        What to guard.
+    settings
+        Gives the host names that are ours.
+
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self._app = app
+        self._hosts = {settings.host.strip("[]").lower()}
+        self._hosts |= {host.strip("[]").lower() for host in settings.allowed_hosts}
+        # On all addresses the names under which we are reached cannot be known. There the token
+        # stands against rebinding: its cookie belongs to the real host name.
+        self._any_host = settings.host in {"0.0.0.0", "::"} and not settings.allowed_hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on what is ours."""
+        if scope["type"] in ("http", "websocket") and (reason := self._refusal(scope)):
+            await _refuse(ProblemError(403, "foreign_origin", reason), scope, receive, send)
+        else:
+            await self._app(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> str | None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if not self._is_ours(host):
+            return (
+                f"the host name {host[:80]!r} is not this server's; open it under the address it "
+                "printed at start, or add the name to OSG_ALLOWED_HOSTS"
+            )
+        origin = headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+            return f"the page {origin[:80]!r} is another site; only this server's pages may do this"
+        site = headers.get("sec-fetch-site", "none")
+        if site in ("none", "same-origin"):
+            return None
+        changes = scope["type"] == "websocket" or scope["method"] not in _SAFE_METHODS
+        if changes or not _is_navigation(headers):
+            return "another site asked for this; only this server's pages may"
+        return None
+
+    def _is_ours(self, host: str) -> bool:
+        try:
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:
+            return False
+        return (self._any_host and bool(name)) or name in self._hosts or is_loopback(name)
+
+
+def _is_navigation(headers: Headers) -> bool:
+    """Whether a person followed a link to a page of ours."""
+    return (
+        headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
+    )
+
+
+class TokenRequired:
+    """Lets in only who shows the token: as bearer, or by the cookie that ``/?token=`` sets.
+
+    Parameters
+    ----------
+    app
+        What to guard.
+    settings
+        Gives the token; without one everybody who reaches the server is let in.
+
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self._app = app
+        self._token = settings.token.get_secret_value().encode() if settings.token else None
+        key = self._token or b""
+        # The cookie is not the token itself: what leaks from a browser does not open scripts.
+        self._session = hmac.new(key, b"osg-studio session", hashlib.sha256).hexdigest()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on what shows the token."""
+        if self._token is None or scope["type"] not in ("http", "websocket"):
+            return await self._app(scope, receive, send)
+        if scope["path"] in OPEN_PATHS or self._is_known(Headers(scope=scope)):
+            return await self._app(scope, receive, send)
+        if (response := self._welcome(scope)) is not None:
+            return await response(scope, receive, send)
+        detail = (
+            "this server wants a token; open it as /?token=..., or send the header "
+            "'Authorization: Bearer ...'"
+        )
+        headers = {"WWW-Authenticate": "Bearer"}
+        problem = ProblemError(401, "token_required", detail, headers=headers)
+        return await _refuse(problem, scope, receive, send)
+
+    def _is_known(self, headers: Headers) -> bool:
+        scheme, _, shown = headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer" and self._is_token(shown.strip()):
+            return True
+        try:
+            cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+        except CookieError:
+            return False
+        return cookie is not None and hmac.compare_digest(
+            cookie.value.encode(), self._session.encode()
+        )
+
+    def _is_token(self, shown: str) -> bool:
+        return self._token is not None and hmac.compare_digest(
+            shown.encode("utf-8", "surrogateescape"), self._token
+        )
+
+    def _welcome(self, scope: Scope) -> Response | None:
+        """Trade ``?token=`` in a page's address for the cookie, and take it out of the address."""
+        if scope["type"] != "http" or scope["method"] != "GET":
+            return None
+        query = parse_qsl(scope["query_string"].decode("latin-1"))
+        if not self._is_token(dict(query).get("token", "")):
+            return None
+        rest = urlencode([(name, value) for name, value in query if name != "token"])
+        # One leading slash only: `//host` would be another site.
+        path = "/" + scope["path"].lstrip("/")
+        response = RedirectResponse(f"{path}?{rest}" if rest else path, 303)
+        response.set_cookie(
+            COOKIE,
+            self._session,
+            max_age=COOKIE_SECONDS,
+            httponly=True,
+            samesite="strict",
+            secure=scope["scheme"] == "https",
+        )
+        return response
+
+
+async def _refuse(problem: ProblemError, scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": POLICY_VIOLATION, "reason": problem.code})
+    else:
+        await problem.response()(scope, receive, send)

@@ -1,0 +1,234 @@
+"""Receiving one file by multipart, streamed to where it will stay."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import time
+import unicodedata
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import MultipartParser, parse_options_header
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import ClientDisconnect, Request
+
+from app.api.body_limit import too_large
+from app.api.problems import ProblemError
+from app.settings import Settings
+
+FRAME_BYTES = 64 * 1024
+"""What the multipart framing around the file may take: a few headers and small fields."""
+
+MOST_PARTS = 16
+"""Parts of one form; the page sends one."""
+
+LONGEST_NAME = 200
+"""Characters of a file name that are shown and kept."""
+
+_FLUSH_BYTES = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Upload:
+    """A file that arrived.
+
+    Attributes
+    ----------
+    name
+        What to show for it; see `shown_name`.
+    size
+        Bytes.
+
+    """
+
+    name: str
+    size: int
+
+
+async def receive_file(request: Request, target: Path, settings: Settings) -> Upload:
+    """Write the form's part ``file`` to `target`.
+
+    Memory stays at about a megabyte; `target` is the caller's to remove when this raises.
+
+    Raises
+    ------
+    ProblemError
+        400 when the form is malformed or cut short, 408 when it comes too slowly, 413 when the
+        file is too large, 415 when the body is no multipart form, 507 when the disk is too full.
+
+    """
+    _require_space(request, target, settings)
+    parser = _FilePart(_boundary(request), settings.max_clip_bytes)
+    with await run_in_threadpool(target.open, "wb") as file:
+        try:
+            async for chunk in _paced(request, settings):
+                parser.feed(chunk)
+                if len(parser.pending) >= _FLUSH_BYTES:
+                    await _flush(parser, file)
+        except FormParserError as error:
+            raise _malformed(f"the form is not valid multipart: {error}") from error
+        except ClientDisconnect as error:
+            raise _malformed("the upload was broken off") from error
+        await _flush(parser, file)
+    return parser.finished()
+
+
+def shown_name(name: str) -> str:
+    """Return what to show for a file that its sender calls `name`.
+
+    Folders, control characters and marks that turn the direction of writing are dropped, and
+    what is too long is cut before its ending.
+    """
+    base = name.replace("\\", "/").rsplit("/", 1)[-1]
+    visible = "".join(
+        character for character in base if not unicodedata.category(character).startswith("C")
+    )
+    visible = " ".join(visible.split())
+    if len(visible) > LONGEST_NAME:
+        stem, dot, ending = visible.rpartition(".")
+        ending = f"{dot}{ending}" if stem and len(ending) <= 8 else ""
+        visible = visible[: LONGEST_NAME - 1 - len(ending)] + "…" + ending
+    return visible or "clip"
+
+
+class _FilePart:
+    """Picks the bytes of the part ``file`` out of a multipart body."""
+
+    def __init__(self, boundary: bytes, limit: int) -> None:
+        self.pending = bytearray()
+        """Bytes of the file that are not yet written."""
+        self._limit = limit
+        self._size = 0
+        self._parts = 0
+        self._name: str | None = None
+        self._in_file = False
+        self._ended = False
+        self._header = bytearray()
+        self._value = bytearray()
+        self._disposition = b""
+        self._parser = MultipartParser(
+            boundary,
+            {
+                "on_part_begin": self._on_part_begin,
+                "on_header_field": self._on_header_field,
+                "on_header_value": self._on_header_value,
+                "on_header_end": self._on_header_end,
+                "on_headers_finished": self._on_headers_finished,
+                "on_part_data": self._on_part_data,
+                "on_end": self._on_end,
+            },
+        )
+
+    def feed(self, chunk: bytes) -> None:
+        self._parser.write(chunk)
+
+    def finished(self) -> Upload:
+        if not self._ended:
+            raise _malformed("the form ends before its last boundary; send the clip again")
+        if self._name is None:
+            raise _malformed("the form has no part named 'file' with a file name; send one clip")
+        return Upload(shown_name(self._name), self._size)
+
+    def _on_part_begin(self) -> None:
+        self._parts += 1
+        if self._parts > MOST_PARTS:
+            raise _malformed(f"the form has more than {MOST_PARTS} parts; send one clip")
+        self._disposition = b""
+        self._in_file = False
+
+    def _on_header_field(self, data: bytes, start: int, end: int) -> None:
+        self._header += data[start:end]
+
+    def _on_header_value(self, data: bytes, start: int, end: int) -> None:
+        self._value += data[start:end]
+
+    def _on_header_end(self) -> None:
+        if bytes(self._header).lower() == b"content-disposition":
+            self._disposition = bytes(self._value)
+        self._header.clear()
+        self._value.clear()
+
+    def _on_headers_finished(self) -> None:
+        _, options = parse_options_header(self._disposition)
+        if options.get(b"name") != b"file" or b"filename" not in options:
+            return
+        if self._name is not None:
+            raise _malformed("the form has several parts named 'file'; send one clip at a time")
+        self._in_file = True
+        self._name = options[b"filename"].decode("utf-8", "replace")
+
+    def _on_part_data(self, data: bytes, start: int, end: int) -> None:
+        if not self._in_file:
+            return
+        self._size += end - start
+        if self._size > self._limit:
+            raise too_large(self._limit)
+        self.pending += data[start:end]
+
+    def _on_end(self) -> None:
+        self._ended = True
+
+
+async def _flush(parser: _FilePart, file: BinaryIO) -> None:
+    data = bytes(parser.pending)
+    parser.pending.clear()
+    await run_in_threadpool(file.write, data)
+
+
+async def _paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
+    """Yield the body's chunks as long as they come fast enough."""
+    began, received = time.monotonic(), 0
+    chunks = aiter(request.stream())
+    while True:
+        try:
+            async with asyncio.timeout(settings.upload_grace_seconds):
+                chunk = await anext(chunks)
+        except StopAsyncIteration:
+            return
+        except TimeoutError as error:
+            raise _too_slow() from error
+        received += len(chunk)
+        excess = time.monotonic() - began - settings.upload_grace_seconds
+        if excess > 0 and received < excess * settings.upload_bytes_per_second:
+            raise _too_slow()
+        yield chunk
+
+
+def _boundary(request: Request) -> bytes:
+    kind, options = parse_options_header(request.headers.get("content-type", ""))
+    if kind != b"multipart/form-data":
+        raise ProblemError(
+            415,
+            "unsupported_media_type",
+            "the clip must be sent as multipart/form-data with a part named 'file'",
+        )
+    if not (boundary := options.get(b"boundary")):
+        raise _malformed("the Content-Type header names no boundary")
+    return boundary
+
+
+def _require_space(request: Request, target: Path, settings: Settings) -> None:
+    stated = request.headers.get("content-length", "")
+    needed = (int(stated) if stated.isdecimal() else 0) + settings.free_disk_bytes
+    free = shutil.disk_usage(target.parent).free
+    if free < needed:
+        raise ProblemError(
+            507,
+            "disk_full",
+            f"the server has {free / 1e6:.0f} MB of disk left and needs {needed / 1e6:.0f} MB for "
+            "this; delete clips or free space, then try again",
+            headers={"Retry-After": "60", "Connection": "close"},
+        )
+
+
+def _malformed(detail: str) -> ProblemError:
+    return ProblemError(400, "malformed_upload", detail, headers={"Connection": "close"})
+
+
+def _too_slow() -> ProblemError:
+    detail = "the upload came too slowly and was ended; try again on a better connection"
+    return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})

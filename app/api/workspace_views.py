@@ -1,0 +1,52 @@
+"""What a workspace is asked to show, looked up in the store."""
+
+from __future__ import annotations
+
+from app.api.recognitions import kept_recognition
+from app.api.studio import Studio
+from app.api.workspaces import ViewRequest
+from app.recognition import Language
+from app.store import RecognitionRecord
+from app.ui.workspace import WorkspaceView
+
+
+def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:
+    """Return the clip and the recognition that a request names.
+
+    Without a range of its own, the request means the recognition's; without a language, the
+    revision with which was recognised.
+
+    Raises
+    ------
+    NotFound
+        When there is no such clip, recognition or language.
+    ProblemError
+        409 while the clip's poses are not extracted.
+
+    """
+    clip = studio.clips.get(request.clip_id).clip
+    recording = studio.recording(clip.id)
+    record = studio.recognitions.get(request.recognition_id) if request.recognition_id else None
+    start, end = request.start, request.end
+    if record is not None and start is None and end is None:
+        start, end = record.start, record.end
+    return WorkspaceView(
+        title=clip.name,
+        video=studio.clips.video(clip.id),
+        recording=recording,
+        start=start,
+        end=end,
+        recognition=kept_recognition(record) if record else None,
+        expected=record.expected if record else None,
+        language=_language(studio, request, record),
+    )
+
+
+def _language(
+    studio: Studio, request: ViewRequest, record: RecognitionRecord | None
+) -> Language | None:
+    if record is not None:
+        return studio.language(studio.languages.get(record.language_id, record.revision))
+    if request.language_id:
+        return studio.language(studio.languages.get(request.language_id))
+    return None

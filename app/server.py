@@ -1,0 +1,191 @@
+"""The app: one process and one port for the page, the API and the viser workspaces."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+import webbrowser
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import uvicorn
+from fastapi import APIRouter, FastAPI
+from fastapi.openapi.utils import get_openapi
+from fastapi.responses import FileResponse
+from fastapi.staticfiles import StaticFiles
+
+from app import __version__, resources
+from app.api import (
+    clips,
+    events,
+    gestures,
+    health,
+    jobs,
+    languages,
+    problems,
+    recognitions,
+    sample_clips,
+    viser_relay,
+    workspaces,
+)
+from app.api.body_limit import BodyLimit
+from app.api.headers import SecurityHeaders
+from app.api.security import SameOrigin, TokenRequired
+from app.api.studio import running_studio
+from app.api.uploads import FRAME_BYTES
+from app.api.workspace_views import view_of
+from app.settings import Settings
+from app.ui.registry import WorkspaceRegistry
+
+API = "/api/v1"
+
+GRACEFUL_SECONDS = 3
+"""Time for open answers at the end; event streams never end by themselves, and the whole server
+must be gone within ten seconds."""
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Make the app; its store is opened when it starts to serve.
+
+    Parameters
+    ----------
+    settings
+        How to serve; by default what the environment says.
+
+    """
+    settings = settings or Settings()
+    registry = WorkspaceRegistry()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with running_studio(settings) as studio:
+            app.state.studio = studio
+            sweeper = asyncio.create_task(registry.sweep())
+            try:
+                yield
+            finally:
+                sweeper.cancel()
+                await asyncio.to_thread(registry.close)
+
+    app = FastAPI(
+        title="OSG Studio",
+        version=__version__,
+        summary="Gesture languages for divers and underwater robots",
+        lifespan=lifespan,
+        # The documentation pages would load scripts from elsewhere; the description itself stays.
+        docs_url=None,
+        redoc_url=None,
+    )
+    api = APIRouter(prefix=API)
+    for router in (
+        health.router,
+        clips.router,
+        jobs.router,
+        languages.router,
+        gestures.router,
+        recognitions.router,
+        sample_clips.router,
+        events.router,
+        workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
+    ):
+        api.include_router(router)
+    app.include_router(api)
+    app.include_router(health.router, include_in_schema=False)
+    app.include_router(viser_relay.router(registry.port_of))
+    _serve_page(app)
+    problems.install(app)
+    _describe(app)
+    _guard(app, settings)
+    return app
+
+
+def run(settings: Settings, *, open_browser: bool) -> None:
+    """Serve until interrupted.
+
+    Parameters
+    ----------
+    settings
+        How to serve.
+    open_browser
+        Whether to show the page to whoever sits at this machine, once it is up.
+
+    """
+    server = _AnnouncedServer(
+        uvicorn.Config(
+            create_app(settings),
+            host=settings.host,
+            port=settings.port,
+            log_level="warning",
+            # viser's messages are compressed already where it pays; twice costs half the rate.
+            ws_per_message_deflate=False,
+            timeout_graceful_shutdown=GRACEFUL_SECONDS,
+            # Our own Host check must see what the browser sent.
+            proxy_headers=False,
+            server_header=False,
+        ),
+        settings,
+        open_browser=open_browser,
+    )
+    with contextlib.suppress(KeyboardInterrupt):
+        server.run()
+
+
+class _AnnouncedServer(uvicorn.Server):
+    """Says where it listens as soon as it does, and opens a browser there if asked."""
+
+    def __init__(self, config: uvicorn.Config, settings: Settings, *, open_browser: bool) -> None:
+        super().__init__(config)
+        self._settings = settings
+        self._open_browser = open_browser
+
+    async def startup(self, sockets: Any = None) -> None:
+        await super().startup(sockets)
+        if not self.started:
+            return
+        port = self.servers[0].sockets[0].getsockname()[1]
+        host = "127.0.0.1" if self._settings.host in {"0.0.0.0", "::"} else self._settings.host
+        address = f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
+        print(f"OSG Studio is at {address} (Ctrl+C ends it)", flush=True)
+        if self._open_browser:
+            threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
+
+
+def _serve_page(app: FastAPI) -> None:
+    folder = resources.static_dir()
+    if not folder.is_dir():
+        return
+
+    @app.get("/", include_in_schema=False)
+    def page() -> FileResponse:
+        return FileResponse(folder / "index.html", headers={"Cache-Control": "no-cache"})
+
+    app.mount("/static", StaticFiles(directory=folder), name="static")
+
+
+def _describe(app: FastAPI) -> None:
+    """Have ``/openapi.json`` say that errors are problem documents."""
+
+    def described() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            schema = get_openapi(
+                title=app.title, version=app.version, summary=app.summary, routes=app.routes
+            )
+            schema["components"]["schemas"].update(problems.schemas())
+            app.openapi_schema = schema
+        return app.openapi_schema
+
+    app.openapi = described  # type: ignore[method-assign]
+
+
+def _guard(app: FastAPI, settings: Settings) -> None:
+    """Put in front of the routes, outermost last, what every request must pass."""
+    limits = {
+        f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
+        f"{API}/languages/import": settings.max_language_bytes,
+    }
+    app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
+    app.add_middleware(TokenRequired, settings=settings)
+    app.add_middleware(SameOrigin, settings=settings)
+    app.add_middleware(SecurityHeaders)
