@@ -121,7 +121,7 @@ TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = {
     "pose_landmarker_full": InstalledFile(
         "pose_landmarker_full",
         "pose_landmarker_full.task",
-        "8cc97946419bf937a85b2c86e637bf3b9147e16ee0f6924169aa54341dd41c2f",
+        "3c82c60bbe5fd58bdfb060737d7efed3cc64a2e5efd2292f6cdf08a7ccd51d7c",
     ),
     "hand_landmarker": InstalledFile(
         "hand_landmarker",

@@ -85,7 +85,7 @@ def described(content: bytes, schemas: Schemas) -> bytes:
     buffer = schema.BufferT()
     buffer.data = _description(len(model.subgraphs[0].outputs), schemas)
     model.buffers.append(buffer)
-    builder = _AligningBuilder(len(content))
+    builder = _SteadyBuilder(len(content))
     builder.Finish(model.Pack(builder), FILE_IDENTIFIER)
     return bytes(builder.Output())
 
@@ -111,13 +111,21 @@ def _description(outputs: int, schemas: Schemas) -> bytes:
     graph.outputTensorMetadata = [schema.TensorMetadataT() for _ in range(outputs)]
     description = schema.ModelMetadataT()
     description.subgraphMetadata = [graph]
-    builder = flatbuffers.Builder(0)
+    builder = _SteadyBuilder(0)
     builder.Finish(description.Pack(builder), METADATA_IDENTIFIER)
     return bytes(builder.Output())
 
 
-class _AligningBuilder(flatbuffers.Builder):  # type: ignore[misc]
-    """Aligns every vector as the data of a TensorFlow Lite buffer must be."""
+class _SteadyBuilder(flatbuffers.Builder):  # type: ignore[misc]
+    """Aligns data as TensorFlow Lite wants it, and writes the same bytes in every release.
+
+    Releases of `flatbuffers` differ in which tables may share the description of their fields
+    (25.12.19 changed it); here no two share one, which costs 20 kB of 6 MB.
+    """
+
+    def StartObject(self, numfields: int) -> None:  # noqa: N802
+        self.vtables = {}
+        super().StartObject(numfields)
 
     def StartVector(self, elemSize: int, numElems: int, alignment: int) -> Any:  # noqa: N802, N803
         return super().StartVector(elemSize, numElems, max(alignment, VECTOR_ALIGNMENT))
