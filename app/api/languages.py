@@ -27,7 +27,7 @@ from app.api.schemas import (
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
-from app.recognition.osg_reference import from_reference, to_reference
+from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.store import LanguageRevision, LanguageState
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)
@@ -205,17 +205,12 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
 
 
 def _imported(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
-    if _is_reference(content):
+    if is_reference(content):
         language, change = from_reference(content, name), "Import of an osg-reference file"
     else:
         language, change = Language.from_json(content), "Import"
     state = studio.languages.create(draft_of(language, change), language.revision)
     return announced(studio, state, response)
-
-
-def _is_reference(content: bytes) -> bool:
-    """Tell the published implementation's file from ours, before any of it is parsed."""
-    return b'"salient_keypoints"' in content and b'"format"' not in content
 
 
 def _tag(state: LanguageState) -> str:

@@ -29,6 +29,11 @@ BACKGROUND_TOLERANCE = 25
 background, which absorbs the soft edges of its strokes."""
 
 
+def is_reference(content: bytes) -> bool:
+    """Tell the published implementation's file from ours, before any of it is parsed."""
+    return b'"salient_keypoints"' in content and b'"osg-studio/' not in content
+
+
 def to_reference(language: Language) -> str:
     """Write a language as the published implementation reads it.
 

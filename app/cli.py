@@ -1,0 +1,414 @@
+"""The command `osg-studio`: author, recognise, convert and serve from a terminal.
+
+Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing was recognised,
+2 bad use or bad input, told in one line that says what, why and what to do next.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+from pydantic import ValidationError
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from app import __version__
+from app.recognition import (
+    Gesture,
+    Language,
+    PoseSequence,
+    Recognition,
+    Recognizer,
+    Recording,
+    Take,
+    record,
+    takes_in,
+)
+from app.recognition.errors import GestureError, RecognitionError
+from app.recognition.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.recognizer import PROFILES
+
+DEFAULT_PROFILE = "paper"
+NOTHING_RECOGNISED = 1
+BAD_INPUT = 2
+
+people = Console(stderr=True)
+command_line = typer.Typer(
+    name="osg-studio",
+    help="Design gesture languages for underwater robots: one demonstration per gesture.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+models_command = typer.Typer(
+    help="Pose and hand models: install, list, export.", invoke_without_command=True
+)
+command_line.add_typer(models_command, name="models")
+
+
+class FileFormat(StrEnum):
+    """The two language files that can be written."""
+
+    osg_studio = "osg-studio"
+    osg_reference = "osg-reference"
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """What ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line names.
+
+    Attributes
+    ----------
+    label
+        The gesture's label.
+    clip
+        The clip's file.
+    span
+        First and last second of the stroke when the user gives them, else None.
+
+    """
+
+    label: str
+    clip: Path
+    span: tuple[float, float] | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> Demonstration:
+        """Read an argument.
+
+        Raises
+        ------
+        GestureError
+            When it is not of that form.
+
+        """
+        label, equals, rest = text.partition("=")
+        if not equals or not label.strip() or not rest:
+            raise GestureError(
+                f"{text!r} is not LABEL=CLIP: name the gesture and its clip, as in circle=dive.mp4"
+            )
+        clip, span = clip_and_span(rest)
+        return cls(label.strip(), clip, span)
+
+
+def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
+    """Split ``CLIP@START-END`` (seconds); a file whose very name looks so is taken as it is."""
+    number = r"\d+(?:\.\d+)?"
+    match = re.fullmatch(rf"(.+)@({number})-({number})", text)
+    if match is None or Path(text).exists():
+        return Path(text), None
+    return Path(match[1]), (float(match[2]), float(match[3]))
+
+
+@command_line.callback(invoke_without_command=True)
+def top(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    """Answer options that stand before any command."""
+    if version:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@command_line.command()
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port to listen on; 0 picks a free one.")] = 8000,
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Folder for clips, languages and the database.")
+    ] = None,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            envvar="OSG_TOKEN", help="Secret asked of every visitor; needed off loopback."
+        ),
+    ] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Do not open a browser.")
+    ] = False,
+) -> None:
+    """Start the studio and open it in the browser."""
+    try:
+        from app.server import run
+        from app.settings import Settings
+    except ModuleNotFoundError as error:
+        raise RecognitionError(
+            f"the studio's packages are not installed ({error.name} is missing); "
+            'install them with: pip install "osg-studio[studio]"'
+        ) from error
+    given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir, "token": token}
+    try:
+        settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        raise RecognitionError(error.errors()[0]["msg"].removeprefix("Value error, ")) from error
+    run(settings, open_browser=not no_browser)
+
+
+@command_line.command()
+def define(
+    demonstrations: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="LABEL=CLIP...",
+            help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without.",
+        ),
+    ],
+    name: Annotated[str, typer.Option(help="Name of the language.")],
+    output: Annotated[Path, typer.Option(help="Language file to write.")],
+    author: Annotated[str, typer.Option(help="Who made it.")] = "",
+) -> None:
+    """Make a language from one demonstration clip per gesture."""
+    gestures = []
+    for demonstration in [Demonstration.parse(text) for text in demonstrations]:
+        poses = demonstration_poses(demonstration)
+        gesture = Gesture.from_demonstration(demonstration.label, poses)
+        people.print(
+            f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
+            f"salient: {', '.join(gesture.salient)}"
+        )
+        gestures.append(gesture)
+    language = Language(name=name, gestures=gestures, author=author)
+    language.save(output)
+    people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
+
+
+@command_line.command()
+def recognize(
+    clip: Annotated[
+        str, typer.Argument(help="Clip with gestures between salutes, or CLIP@START-END.")
+    ],
+    language: Annotated[Path, typer.Option(help="Language file.")],
+    profile: Annotated[
+        str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")
+    ] = DEFAULT_PROFILE,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Name the gestures in a clip, with every voter's distance to every gesture."""
+    path, span = clip_and_span(clip)
+    spoken = Language.load(language)
+    recognizer = Recognizer(spoken, profile=profile)
+    recording = read_clip(path)
+    takes = [take_by_hand(recording, span)] if span else list(takes_in(recording))
+    results = [(take, recognizer.recognize(take.poses)) for take in takes]
+    if as_json:
+        report = {
+            "clip": str(path),
+            "language": spoken.name,
+            "profile": profile,
+            "takes": [take_report(take, result) for take, result in results],
+        }
+        typer.echo(json.dumps(report, allow_nan=False))
+    else:
+        for take, result in results:
+            show_recognition(take, result)
+    if not takes:
+        people.print(
+            f"{path}: no salute found in {recording.poses.duration:.1f} s, so no take; hold the "
+            f"salute for at least 0.3 s, or give the range by hand: {path}@START-END"
+        )
+    if not any(result.label for _, result in results):
+        raise typer.Exit(NOTHING_RECOGNISED)
+
+
+@command_line.command()
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="Language file, ours or published.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="File to write.")],
+    file_format: Annotated[
+        FileFormat, typer.Option("--format", help="Format to write.")
+    ] = FileFormat.osg_studio,
+) -> None:
+    """Convert between our language file and the published implementation's."""
+    language = read_language(source)
+    if any(gesture.trajectory is None for gesture in language.gestures):
+        people.print(f"{source}: pictures only, no trajectories: the published format has none")
+    if file_format is FileFormat.osg_reference:
+        target.write_text(to_reference(language), encoding="utf-8")
+    else:
+        language.save(target)
+    people.print(f"{target}: {len(language.gestures)} gestures as {file_format.value}")
+
+
+@models_command.callback()
+def models(context: typer.Context) -> None:
+    """List the models when no other word follows."""
+    if context.invoked_subcommand is None:
+        list_models()
+
+
+@models_command.command("list")
+def list_models() -> None:
+    """List the models with their state and place."""
+    from app.recognition.models import installed_models
+
+    for model in installed_models():
+        typer.echo(f"{model.name}\t{model.state}\t{model.size}\t{model.path}")
+
+
+@models_command.command("install")
+def install_models_command(
+    source: Annotated[
+        Path | None, typer.Option(help="Exported folder or wheel to install from, without network.")
+    ] = None,
+) -> None:
+    """Obtain the models from MediaPipe's wheel by pip, once; they work offline afterwards."""
+    from app.recognition.models import install_models
+
+    with progress_bar("models") as advance:
+        install_models(
+            progress=lambda stage, done, total: advance(done, total, stage), source=source
+        )
+
+
+@models_command.command("export")
+def export_models_command(
+    directory: Annotated[Path, typer.Argument(help="Folder to copy the models to.")],
+) -> None:
+    """Copy the models to a folder, for a robot without network."""
+    from app.recognition.models import export_models
+
+    export_models(directory)
+    people.print(f"on the robot: osg-studio models install --source {directory}")
+
+
+def read_language(source: Path) -> Language:
+    """Read a language file, ours or the published implementation's.
+
+    Raises
+    ------
+    LanguageError
+        When it is neither; names the JSON pointer to the fault.
+
+    """
+    content = source.read_bytes()
+    if is_reference(content):
+        return from_reference(content, source.stem)
+    return Language.from_json(content)
+
+
+def demonstration_poses(demonstration: Demonstration) -> PoseSequence:
+    """Return the stroke of the only closed take of a clip, or of the range given by hand.
+
+    Raises
+    ------
+    GestureError
+        When the clip does not hold exactly one closed take and no range is given.
+
+    """
+    clip = demonstration.clip
+    recording = read_clip(clip)
+    if demonstration.span:
+        return take_by_hand(recording, demonstration.span).poses
+    takes = takes_in(recording)
+    closed = [take for take in takes if take.closed]
+    if len(closed) != 1:
+        found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
+        raise GestureError(
+            f"{clip} holds {found}, a demonstration needs one closed take between two salutes; "
+            f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
+        )
+    return closed[0].poses
+
+
+def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
+    """Make a take of the range the user gives, in seconds of the clip; nothing is trimmed.
+
+    Raises
+    ------
+    GestureError
+        When fewer than two frames lie in the range.
+
+    """
+    start, end = span
+    poses = recording.poses.between(start, end)
+    if len(poses) < 2:
+        last = recording.poses.time[-1]
+        raise GestureError(
+            f"{start:g}-{end:g} s holds {len(poses)} frames of a clip that ends at {last:.2f} s; "
+            "give START < END inside the clip"
+        )
+    return Take(
+        start=start,
+        end=end,
+        closed=True,
+        poses=poses,
+        stroke_start=start,
+        stroke_end=end,
+        untrimmed=poses,
+    )
+
+
+def read_clip(clip: Path) -> Recording:
+    """Extract a clip's landmarks behind a progress bar, and print the recording's warnings."""
+    with progress_bar(clip.name) as advance:
+        recording = record(clip, progress=advance)
+    for warning in recording.warnings:
+        people.print(f"{clip}: {warning}")
+    return recording
+
+
+def take_report(take: Take, result: Recognition) -> dict[str, Any]:
+    """Return the JSON object of one recognised take (contract, ``recognize --json``)."""
+    return {"start": take.start, "end": take.end, "closed": take.closed, **result.to_dict()}
+
+
+def show_recognition(take: Take, result: Recognition) -> None:
+    """Print the label on stdout and the vote table, for a person, on stderr."""
+    typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
+    table = Table(title="distance of every voter to every gesture; * its vote")
+    table.add_column("voter")
+    for label in result.gestures:
+        table.add_column(label, justify="right")
+    for voter, distances in zip(result.voters, result.distances, strict=True):
+        chosen = result.votes[voter]
+        cells = [
+            f"{distance:.3g}{' *' if label == chosen else ''}"
+            for label, distance in zip(result.gestures, distances, strict=True)
+        ]
+        table.add_row(voter, *cells)
+    people.print(table)
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[..., None]]:
+    """Show a bar on stderr (nothing where stderr is no terminal) and give what advances it."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=people, transient=True, disable=not people.is_terminal) as bar:
+        task = bar.add_task(title, total=None)
+
+        def advance(done: int, total: int | None, stage: str = "") -> None:
+            bar.update(task, completed=done, total=total, description=stage or title)
+
+        yield advance
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line and exit with its code; known errors become one line on stderr."""
+    try:
+        command_line(args=arguments, prog_name="osg-studio")
+    except (RecognitionError, OSError) as error:
+        sys.stderr.write(f"osg-studio: {describe(error)}\n")
+        sys.exit(BAD_INPUT)
+    sys.exit(0)
+
+
+def describe(error: Exception) -> str:
+    """Put an error into one line; a file system's error names its file first."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}; check the path and its permissions"
+    return " ".join(str(error).split())

@@ -1,0 +1,21 @@
+"""Print every ratio that the documentation claims: ``make bench`` or ``python -m benchmarks``."""
+
+from __future__ import annotations
+
+import argparse
+
+from benchmarks import extraction, memory, recognition
+
+PARTS = {"extraction": extraction.main, "recognition": recognition.main, "memory": memory.main}
+
+
+def main() -> None:
+    """Run the named parts, by default all of them."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], help="default: all")
+    for part in parser.parse_args().parts or PARTS:
+        PARTS[part]()
+
+
+if __name__ == "__main__":
+    main()

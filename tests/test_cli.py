@@ -1,0 +1,212 @@
+"""The command line, run as a user runs it: files in, text and exit codes out."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app import __version__
+from app.cli import Demonstration, clip_and_span, main
+from app.recognition import Gesture, GestureError, Language, PoseSequence
+from tests.conftest import ROOT
+
+LANGUAGE = ROOT / "languages" / "osg-table-2.json"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run of the command ended."""
+
+    code: int
+    out: str
+    error: str
+
+
+@pytest.fixture
+def osg_studio(capsys: pytest.CaptureFixture[str]) -> "OsgStudio":
+    return OsgStudio(capsys)
+
+
+class OsgStudio:
+    """Runs `osg-studio` in this process, which spares loading everything for each test."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+
+    def __call__(self, *arguments: str | Path) -> Outcome:
+        with pytest.raises(SystemExit) as ended:
+            main([str(argument) for argument in arguments])
+        captured = self._capsys.readouterr()
+        code = ended.value.code
+        return Outcome(code if isinstance(code, int) else 0, captured.out, captured.err)
+
+
+def a_language(labels: Sequence[str] = ("sign",)) -> Language:
+    time = np.linspace(0, 2, 40)
+    wrist = np.stack([300 + 80 * np.cos(3 * time), 200 + 80 * np.sin(3 * time)], axis=1)
+    poses = PoseSequence(
+        landmarks=("right_wrist",), xy=wrist[:, None], time=time, frame_size=(640, 480)
+    )
+    gestures = [Gesture.from_demonstration(label, poses) for label in labels]
+    return Language(name="pool", gestures=gestures)
+
+
+def test_a_demonstration_is_a_label_and_a_clip() -> None:
+    assert Demonstration.parse("circle=a.mp4") == Demonstration("circle", Path("a.mp4"))
+
+
+def test_a_demonstration_may_give_its_range_in_seconds() -> None:
+    parsed = Demonstration.parse("circle=dive 1.mp4@1.5-3")
+    assert parsed == Demonstration("circle", Path("dive 1.mp4"), (1.5, 3.0))
+
+
+def test_a_file_whose_name_looks_like_a_range_is_taken_as_it_is(tmp_path: Path) -> None:
+    clip = tmp_path / "dive@1-2"
+    clip.touch()
+    assert clip_and_span(str(clip)) == (clip, None)
+
+
+@pytest.mark.parametrize("text", ["circle", "=clip.mp4", "circle=", " =clip.mp4"])
+def test_what_is_no_demonstration_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(GestureError, match="LABEL=CLIP"):
+        Demonstration.parse(text)
+
+
+def test_version_is_printed_by_the_installed_command() -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "app", "--version"], capture_output=True, text=True, check=True
+    )
+    assert run.stdout.strip() == __version__
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        (["recognize", "absent.mp4", "--language", "{language}"], "absent.mp4"),
+        (["recognize", "absent.mp4", "--language", "absent.json"], "absent.json"),
+        (["recognize", "absent.mp4", "--language", "{language}", "--profile", "no"], "profile"),
+        (["define", "circle", "--name", "pool", "--output", "out.json"], "LABEL=CLIP"),
+        (["convert", "absent.json", "out.json"], "absent.json"),
+        (["convert", "{language}", "no/such/folder/out.json"], "no/such/folder"),
+        (["models", "install", "--source", "absent"], "absent"),
+        (["serve", "--host", "0.0.0.0", "--no-browser"], "token"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_two(
+    osg_studio: OsgStudio,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str],
+    what: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path / "models"))
+    a_language().save(tmp_path / "language.json")
+    ended = osg_studio(*[argument.format(language="language.json") for argument in arguments])
+    assert ended.code == 2
+    assert ended.out == ""
+    assert ended.error.startswith("osg-studio: ")
+    assert what in ended.error
+    assert ended.error.count("\n") == 1
+
+
+def test_an_unknown_command_is_bad_use(osg_studio: OsgStudio) -> None:
+    assert osg_studio("dance").code == 2
+
+
+def test_converting_to_the_published_format_and_back_keeps_labels_and_images(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    ours, published, back = (tmp_path / f"{name}.json" for name in ("ours", "published", "back"))
+    language = a_language(["circle", "wedge"])
+    language.save(ours)
+    assert osg_studio("convert", ours, published, "--format", "osg-reference").code == 0
+    document = json.loads(published.read_text())
+    assert list(document) == ["circle", "wedge"]
+    assert document["circle"]["salient_keypoints"] == ["RIGHT_WRIST"]
+    ended = osg_studio("convert", published, back)
+    assert ended.code == 0
+    assert "no trajectories" in ended.error
+    for before, after in zip(language.gestures, Language.load(back).gestures, strict=True):
+        np.testing.assert_array_equal(before.image, after.image)
+
+
+def test_models_are_listed_with_their_state(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path))
+    ended = osg_studio("models")
+    states = {line.split("\t")[0]: line.split("\t")[1] for line in ended.out.splitlines()}
+    assert states["pose_landmark_full"] == "missing"
+    assert states["hand_landmark_full"] == "missing"
+
+
+def test_exported_models_install_elsewhere_without_network(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert osg_studio("models", "export", tmp_path / "stick").code == 0
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path / "robot"))
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    assert osg_studio("models", "install", "--source", tmp_path / "stick").code == 0
+    assert {line.split("\t")[1] for line in osg_studio("models").out.splitlines()} == {"ok"}
+
+
+@pytest.mark.slow
+def test_a_language_defined_from_clips_recognises_another_take(
+    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    demonstrations = [
+        f"{label}={sample_clips / f'{label}-demonstration.mp4'}" for label in ("circle", "line")
+    ]
+    defined = osg_studio("define", *demonstrations, "--name", "pool", "--output", file)
+    assert defined.code == 0, defined.error
+    assert defined.out == ""
+    clip = sample_clips / "line-test-1.mp4"
+    ended = osg_studio("recognize", clip, "--language", file, "--json")
+    assert ended.code == 0
+    report = json.loads(ended.out)
+    assert list(report) == ["clip", "language", "profile", "takes"]
+    (take,) = report["takes"]
+    assert take["closed"] is True
+    assert 0 < take["start"] < take["end"]
+    assert take["label"] == take["nearest"] == "line"
+    assert take["gestures"] == ["circle", "line"]
+    assert list(take["votes"]) == take["voters"]
+    assert np.shape(take["distances"]) == (len(take["voters"]), 2)
+
+
+@pytest.mark.slow
+def test_a_clip_without_salute_ends_with_one_and_says_how_to_go_on(
+    osg_studio: OsgStudio, sample_clips: Path
+) -> None:
+    clip = sample_clips / "ordinary-movement.mp4"
+    ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--json")
+    assert ended.code == 1
+    assert json.loads(ended.out)["takes"] == []
+    assert "@START-END" in " ".join(ended.error.split())
+
+
+@pytest.mark.slow
+def test_a_range_by_hand_needs_no_salute(osg_studio: OsgStudio, sample_clips: Path) -> None:
+    clip = f"{sample_clips / 'ordinary-movement.mp4'}@0.5-2.5"
+    ended = osg_studio("recognize", clip, "--language", LANGUAGE)
+    assert ended.code == 0
+    assert ended.out.split("\t")[:2] == ["0.50", "2.50"]
+
+
+@pytest.mark.slow
+def test_a_demonstration_without_a_closed_take_is_refused(
+    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+) -> None:
+    clip = sample_clips / "ordinary-movement.mp4"
+    file = tmp_path / "pool.json"
+    ended = osg_studio("define", f"idle={clip}", "--name", "pool", "--output", file)
+    assert ended.code == 2
+    assert "needs one closed take" in ended.error
+    assert not file.exists()
