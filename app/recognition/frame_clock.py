@@ -13,6 +13,11 @@ SHORTEST_STEP, LONGEST_STEP = 1 / 1000, 0.5
 to the longest gap that a trajectory bridges (`app.recognition.trajectory.MAX_GAP_SECONDS`).
 A container's nominal rate is often wrong (a WebM recorded by a browser says 1000 per second)."""
 
+NUDGE = 0.25
+"""Share of a step that a frame is put after one which claims to be as late: little enough that the
+next good timestamp is still ahead, also where two frames changed places and the step seems double.
+"""
+
 DISCONTINUITY = 1.0
 """Seconds back from which a jump is a restart of the clock (joined files, a camera's counter that
 wraps) and not a frame out of order: B-frames reorder by at most a few frames."""
@@ -26,8 +31,8 @@ class FrameClock:
     nominal rate. Three faults are repaired and counted:
 
     - no timestamp: one step after the frame before;
-    - not later than the frame before (duplicates, frames out of order): half a step after it,
-      so that the next good timestamp is usually still ahead and time is not stretched;
+    - not later than the frame before (duplicates, frames out of order): `NUDGE` of a step after
+      it;
     - more than `DISCONTINUITY` back: the clock restarted; this frame comes one step after the
       one before, and all later ones are moved along with it.
 
@@ -90,4 +95,4 @@ class FrameClock:
         if last - now > DISCONTINUITY:
             self._shift += last + self.step - now
             return last + self.step
-        return last + self.step / 2
+        return last + NUDGE * self.step

@@ -279,9 +279,15 @@ class FrameReader(Iterator[VideoFrame]):
         if sideways:
             width, height = height, width
         has_alpha = any(component.is_alpha for component in frame.format.components)
-        converted = self._reformatter.reformat(
-            frame, width=width, height=height, format="rgba" if has_alpha else "rgb24"
-        )
+        try:
+            converted = self._reformatter.reformat(
+                frame, width=width, height=height, format="rgba" if has_alpha else "rgb24"
+            )
+        except av.error.FFmpegError as error:
+            raise VideoError(
+                f"{self._path.name}: frame {self._count} cannot be turned into a picture "
+                f"({error.strerror or error}); record or export it again"
+            ) from error
         image = np.asarray(converted.to_ndarray(), dtype=np.uint8)
         if has_alpha:
             image = over_background(image)
@@ -342,6 +348,7 @@ def _opened(path: Path, limits: VideoLimits) -> InputContainer:
             },
             # Probing may decode a frame already.
             options={"max_pixels": str(limits.pixels)},
+            metadata_errors="replace",
         )
     except (av.error.FFmpegError, OSError) as error:
         raise VideoError(
