@@ -1,0 +1,85 @@
+# What a developer or a new user does with this checkout. `make help` lists it.
+# Written for GNU make 3.81 (macOS) as well: no grouped targets, no .ONESHELL.
+
+PYTHON ?= python3
+VENV ?= .venv
+UV ?= uv
+
+BIN := $(VENV)/bin
+# The environment is made without ensurepip, which Debian ships apart from Python: the pip that is at
+# hand installs into it. The lock files are complete, so pip resolves nothing and builds nothing.
+PIP_INSTALL := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check install --quiet --no-deps
+LOCKED := --require-hashes --only-binary :all:
+
+# Measured where the parity test runs in CI; elsewhere that test is skipped.
+ifeq ($(shell uname -s -m),Linux x86_64)
+  MEDIAPIPE_LOCK := requirements-mediapipe.txt
+endif
+
+.DEFAULT_GOAL := help
+.PHONY: help run models test lint format bench languages lock clean
+
+help:  ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
+	$(BIN)/osg-studio serve
+
+models: $(VENV)/.runtime  ## Obtain the pose and hand models once
+	$(BIN)/osg-studio models install
+
+test: lint models  ## Check and test everything
+ifndef MEDIAPIPE_LOCK
+	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
+endif
+	$(BIN)/python -m pytest -n 2
+
+lint: $(VENV)/.development  ## Check style, types and layers
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(VENV)/.development  ## Put the source into the one format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/.development models  ## Print the benchmarks' ratios
+	$(BIN)/python -m benchmarks
+
+languages: models  ## Rebuild the sample languages from their clips
+	$(BIN)/python -m languages.build
+
+lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer versions)
+	$(UV_COMPILE) --group build --extra studio --output-file requirements.txt
+	$(UV_COMPILE) --group build --extra studio --extra test \
+	  --constraints requirements.txt --output-file requirements-test.txt
+	$(UV_COMPILE) --extra mediapipe \
+	  --constraints requirements-test.txt --output-file requirements-mediapipe.txt
+
+# One version of everything on every Python and platform (`fewest`), so that what is tested is what runs.
+UV_COMPILE = $(UV) pip compile pyproject.toml --quiet --universal --fork-strategy fewest \
+  --python-version 3.11 --generate-hashes --custom-compile-command "make lock" $(UPGRADE)
+
+clean:  ## Remove the virtual environment, caches and build results
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \
+	  build dist test-output benchmarks/out
+	find app tests benchmarks languages -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# Stamp files: a second `make` finds them newer than the locks and starts at once.
+
+$(VENV)/.python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python %d.%d is too old: OSG Studio needs 3.11 or newer; run make PYTHON=/path/to/python3.11" % sys.version_info[:2])'
+	$(PYTHON) -m venv --without-pip $(VENV)
+	touch $@
+
+$(VENV)/.runtime: $(VENV)/.python requirements.txt pyproject.toml
+	@echo "Installing the pinned dependencies (once; a minute or two)"
+	@$(PIP_INSTALL) $(LOCKED) -r requirements.txt
+	@$(PIP_INSTALL) --no-build-isolation --editable .
+	touch $@
+
+$(VENV)/.development: $(VENV)/.runtime requirements-test.txt $(MEDIAPIPE_LOCK)
+	@echo "Installing the pinned tools for tests (once; a minute or two)"
+	@$(PIP_INSTALL) $(LOCKED) -r requirements-test.txt $(addprefix -r ,$(MEDIAPIPE_LOCK))
+	touch $@
