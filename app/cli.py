@@ -7,42 +7,33 @@ Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing wa
 from __future__ import annotations
 
 import json
-import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
 from pydantic import ValidationError
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 from app import __version__
-from app.recognition import (
-    Gesture,
-    Language,
-    PoseSequence,
-    Recognition,
-    Recognizer,
-    Recording,
-    Take,
-    record,
-    takes_in,
+from app.clip_argument import (
+    Demonstration,
+    clip_and_span,
+    demonstration_poses,
+    read_clip,
+    take_by_hand,
 )
-from app.recognition.errors import GestureError, RecognitionError
+from app.recognition import Gesture, Language, Recognition, Recognizer, Take, takes_in
+from app.recognition.errors import RecognitionError
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.recognizer import PROFILES
+from app.terminal import describe, people, progress_bar, show_recognition
 
 DEFAULT_PROFILE = "paper"
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
 
-people = Console(stderr=True)
 command_line = typer.Typer(
     name="osg-studio",
     help="Design gesture languages for underwater robots: one demonstration per gesture.",
@@ -61,53 +52,6 @@ class FileFormat(StrEnum):
 
     osg_studio = "osg-studio"
     osg_reference = "osg-reference"
-
-
-@dataclass(frozen=True)
-class Demonstration:
-    """What ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line names.
-
-    Attributes
-    ----------
-    label
-        The gesture's label.
-    clip
-        The clip's file.
-    span
-        First and last second of the stroke when the user gives them, else None.
-
-    """
-
-    label: str
-    clip: Path
-    span: tuple[float, float] | None = None
-
-    @classmethod
-    def parse(cls, text: str) -> Demonstration:
-        """Read an argument.
-
-        Raises
-        ------
-        GestureError
-            When it is not of that form.
-
-        """
-        label, equals, rest = text.partition("=")
-        if not equals or not label.strip() or not rest:
-            raise GestureError(
-                f"{text!r} is not LABEL=CLIP: name the gesture and its clip, as in circle=dive.mp4"
-            )
-        clip, span = clip_and_span(rest)
-        return cls(label.strip(), clip, span)
-
-
-def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
-    """Split ``CLIP@START-END`` (seconds); a file whose very name looks so is taken as it is."""
-    number = r"\d+(?:\.\d+)?"
-    match = re.fullmatch(rf"(.+)@({number})-({number})", text)
-    if match is None or Path(text).exists():
-        return Path(text), None
-    return Path(match[1]), (float(match[2]), float(match[3]))
 
 
 @command_line.callback(invoke_without_command=True)
@@ -296,105 +240,9 @@ def read_language(source: Path) -> Language:
     return Language.from_json(content)
 
 
-def demonstration_poses(demonstration: Demonstration) -> PoseSequence:
-    """Return the stroke of the only closed take of a clip, or of the range given by hand.
-
-    Raises
-    ------
-    GestureError
-        When the clip does not hold exactly one closed take and no range is given.
-
-    """
-    clip = demonstration.clip
-    recording = read_clip(clip)
-    if demonstration.span:
-        return take_by_hand(recording, demonstration.span).poses
-    takes = takes_in(recording)
-    closed = [take for take in takes if take.closed]
-    if len(closed) != 1:
-        found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
-        raise GestureError(
-            f"{clip} holds {found}, a demonstration needs one closed take between two salutes; "
-            f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
-        )
-    return closed[0].poses
-
-
-def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
-    """Make a take of the range the user gives, in seconds of the clip; nothing is trimmed.
-
-    Raises
-    ------
-    GestureError
-        When fewer than two frames lie in the range.
-
-    """
-    start, end = span
-    poses = recording.poses.between(start, end)
-    if len(poses) < 2:
-        last = recording.poses.time[-1]
-        raise GestureError(
-            f"{start:g}-{end:g} s holds {len(poses)} frames of a clip that ends at {last:.2f} s; "
-            "give START < END inside the clip"
-        )
-    return Take(
-        start=start,
-        end=end,
-        closed=True,
-        poses=poses,
-        stroke_start=start,
-        stroke_end=end,
-        untrimmed=poses,
-    )
-
-
-def read_clip(clip: Path) -> Recording:
-    """Extract a clip's landmarks behind a progress bar, and print the recording's warnings."""
-    with progress_bar(clip.name) as advance:
-        recording = record(clip, progress=advance)
-    for warning in recording.warnings:
-        people.print(f"{clip}: {warning}")
-    return recording
-
-
 def take_report(take: Take, result: Recognition) -> dict[str, Any]:
     """Return the JSON object of one recognised take (contract, ``recognize --json``)."""
     return {"start": take.start, "end": take.end, "closed": take.closed, **result.to_dict()}
-
-
-def show_recognition(take: Take, result: Recognition) -> None:
-    """Print the label on stdout and the vote table, for a person, on stderr."""
-    typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
-    table = Table(title="distance of every voter to every gesture; * its vote")
-    table.add_column("voter")
-    for label in result.gestures:
-        table.add_column(label, justify="right")
-    for voter, distances in zip(result.voters, result.distances, strict=True):
-        chosen = result.votes[voter]
-        cells = [
-            f"{distance:.3g}{' *' if label == chosen else ''}"
-            for label, distance in zip(result.gestures, distances, strict=True)
-        ]
-        table.add_row(voter, *cells)
-    people.print(table)
-
-
-@contextmanager
-def progress_bar(title: str) -> Iterator[Callable[..., None]]:
-    """Show a bar on stderr (nothing where stderr is no terminal) and give what advances it."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=people, transient=True, disable=not people.is_terminal) as bar:
-        task = bar.add_task(title, total=None)
-
-        def advance(done: int, total: int | None, stage: str = "") -> None:
-            bar.update(task, completed=done, total=total, description=stage or title)
-
-        yield advance
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -405,10 +253,3 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         sys.stderr.write(f"osg-studio: {describe(error)}\n")
         sys.exit(BAD_INPUT)
     sys.exit(0)
-
-
-def describe(error: Exception) -> str:
-    """Put an error into one line; a file system's error names its file first."""
-    if isinstance(error, OSError) and error.filename is not None:
-        return f"{error.filename}: {error.strerror}; check the path and its permissions"
-    return " ".join(str(error).split())

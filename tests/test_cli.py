@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from app import __version__
-from app.cli import Demonstration, clip_and_span, main
-from app.recognition import Gesture, GestureError, Language, PoseSequence
+from app.cli import main
+from app.recognition import Gesture, Language, PoseSequence
 from tests.conftest import ROOT
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
@@ -54,27 +54,6 @@ def a_language(labels: Sequence[str] = ("sign",)) -> Language:
     )
     gestures = [Gesture.from_demonstration(label, poses) for label in labels]
     return Language(name="pool", gestures=gestures)
-
-
-def test_a_demonstration_is_a_label_and_a_clip() -> None:
-    assert Demonstration.parse("circle=a.mp4") == Demonstration("circle", Path("a.mp4"))
-
-
-def test_a_demonstration_may_give_its_range_in_seconds() -> None:
-    parsed = Demonstration.parse("circle=dive 1.mp4@1.5-3")
-    assert parsed == Demonstration("circle", Path("dive 1.mp4"), (1.5, 3.0))
-
-
-def test_a_file_whose_name_looks_like_a_range_is_taken_as_it_is(tmp_path: Path) -> None:
-    clip = tmp_path / "dive@1-2"
-    clip.touch()
-    assert clip_and_span(str(clip)) == (clip, None)
-
-
-@pytest.mark.parametrize("text", ["circle", "=clip.mp4", "circle=", " =clip.mp4"])
-def test_what_is_no_demonstration_is_refused_with_an_example(text: str) -> None:
-    with pytest.raises(GestureError, match="LABEL=CLIP"):
-        Demonstration.parse(text)
 
 
 def test_version_is_printed_by_the_installed_command() -> None:
