@@ -1,0 +1,117 @@
+// The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
+
+const BASE = "/api/v1";
+
+export class ApiError extends Error {
+  constructor(problem, status) {
+    super(problem.detail || problem.title || `The server answered ${status}.`);
+    this.name = "ApiError";
+    this.title = problem.title || "Something went wrong";
+    this.code = problem.code;
+    this.status = status;
+  }
+}
+
+const unreachable = () =>
+  new ApiError({ title: "No connection", detail: "The server did not answer. Is it still running? It is tried again by itself.", code: "offline" }, 0);
+
+async function problemOf(response) {
+  try {
+    return await response.json();
+  } catch {
+    return { title: response.statusText };
+  }
+}
+
+async function request(method, path, { body, headers = {}, raw = false } = {}) {
+  const options = { method, headers: { ...headers } };
+  if (body !== undefined) {
+    options.body = raw ? body : JSON.stringify(body);
+    options.headers["Content-Type"] = "application/json";
+  }
+  let response;
+  try {
+    response = await fetch(BASE + path, options);
+  } catch {
+    throw unreachable();
+  }
+  if (!response.ok) throw new ApiError(await problemOf(response), response.status);
+  return response.status === 204 ? null : response.json();
+}
+
+const id = encodeURIComponent;
+const matching = (language) => ({ "If-Match": `"${language.revision}"` });
+const gestureAt = (language, label) => `/languages/${id(language.id)}/gestures/${id(label)}`;
+
+export const clips = {
+  list: () => request("GET", "/clips"),
+  takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
+  remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
+  restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
+  retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
+  poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
+};
+
+export const jobs = {
+  get: (job) => request("GET", `/jobs/${id(job)}`),
+  cancel: (job) => request("DELETE", `/jobs/${id(job)}`),
+};
+
+export const samples = {
+  list: () => request("GET", "/samples"),
+  add: (name) => request("POST", "/samples", { body: { name } }),
+};
+
+export const languages = {
+  list: () => request("GET", "/languages"),
+  get: (language) => request("GET", `/languages/${id(language)}`),
+  create: (name) => request("POST", "/languages", { body: { name } }),
+  import: (name, text) => request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),
+  revert: (language, revision) => request("POST", `/languages/${id(language.id)}/revert`, { body: { revision }, headers: matching(language) }),
+  addGesture: (language, gesture) => request("POST", `/languages/${id(language.id)}/gestures`, { body: gesture, headers: matching(language) }),
+  changeGesture: (language, label, change) => request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
+  removeGesture: (language, label) => request("DELETE", gestureAt(language, label), { headers: matching(language) }),
+  exportUrl: (language, format) => `${BASE}/languages/${id(language)}/export?format=${format}`,
+};
+
+export const recognitions = {
+  create: (query) => request("POST", "/recognitions", { body: query }),
+  get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
+};
+
+export const workspaces = {
+  open: (dark) => request("POST", "/workspaces", { body: { dark } }),
+  find: (workspace) => request("GET", `/workspaces/${id(workspace)}`),
+  change: (workspace, dark) => request("PATCH", `/workspaces/${id(workspace)}`, { body: { dark } }),
+  show: (workspace, view) => request("PUT", `/workspaces/${id(workspace)}/view`, { body: view }),
+};
+
+/** Follow everything that changes on the server. */
+export const changes = () => new EventSource(`${BASE}/events`);
+
+/**
+ * Upload a clip. `fetch` tells nothing of an upload's progress, so this is an XMLHttpRequest.
+ * Returns `{ done, cancel }`; `key` makes a repeated upload the same clip.
+ */
+export function upload(file, key, onProgress) {
+  const call = new XMLHttpRequest();
+  const form = new FormData();
+  form.append("file", file);
+  const done = new Promise((resolve, reject) => {
+    call.upload.onprogress = (event) => onProgress(event.loaded, event.lengthComputable ? event.total : file.size);
+    call.onload = () => {
+      let answer = {};
+      try {
+        answer = JSON.parse(call.responseText);
+      } catch { /* a proxy's own error page */ }
+      if (call.status < 300) resolve(answer);
+      else reject(new ApiError(answer, call.status));
+    };
+    call.onerror = () => reject(unreachable());
+    call.onabort = () => reject(new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0));
+  });
+  call.open("POST", `${BASE}/clips`);
+  call.setRequestHeader("Idempotency-Key", key);
+  call.send(form);
+  return { done, cancel: () => call.abort() };
+}

@@ -1,0 +1,124 @@
+// The clips: what each is, how far its poses are, and the samples for a first try.
+
+import * as api from "./api.js";
+import { byId, h, icon, iconButton, reconcile } from "./dom.js";
+import { duration, plural, timeLeft } from "./format.js";
+import { state, update } from "./state.js";
+import { attempt, toast } from "./toasts.js";
+
+const BUSY = new Set(["queued", "running"]);
+const STAGES = { queued: "Waiting for its turn", starting: "Starting", poses: "Finding poses", saving: "Saving" };
+
+export async function reloadClips() {
+  const clips = await attempt("Loading the clips", api.clips.list);
+  if (clips) update({ clips });
+}
+
+/** Show another clip. */
+export function select(id) {
+  update({ clip: id, take: null, start: null, end: null, recognition: null });
+}
+
+/** Take over a job's progress, as the server tells it. */
+export function followJob(job) {
+  update({ jobs: new Map(state.jobs).set(job.id, job) });
+  const clip = state.clips.find((each) => each.job_id === job.id);
+  if (!clip || clip.status !== job.status) reloadClips();
+}
+
+function statusText(clip, job) {
+  if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
+  if (clip.status === "cancelled") return "Cancelled before its poses were found";
+  if (BUSY.has(clip.status)) {
+    const stage = STAGES[job?.stage] ?? STAGES[clip.status] ?? "Working";
+    if (!job?.total || job.stage !== "poses") return stage;
+    return `${stage}, ${job.done} of ${job.total} frames${job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`}`;
+  }
+  return [clip.duration ? duration(clip.duration) : null, `${clip.width} \u00d7 ${clip.height}`, clip.frames ? plural(clip.frames, "frame") : null].filter(Boolean).join("  \u00b7  ");
+}
+
+async function remove(clip) {
+  const done = await attempt("Deleting the clip", async () => { await api.clips.remove(clip.id); return true; });
+  if (!done) return;
+  if (state.clip === clip.id) select(null);
+  await reloadClips();
+  toast("Clip deleted", clip.name, { action: { label: "Undo", run: () => restore(clip) } });
+}
+
+async function restore(clip) {
+  if (await attempt("Restoring the clip", () => api.clips.restore(clip.id))) {
+    await reloadClips();
+    select(clip.id);
+  }
+}
+
+async function retry(clip) {
+  await attempt("Retrying", () => api.clips.retry(clip.id));
+  await reloadClips();
+}
+
+function buttons(clip) {
+  if (BUSY.has(clip.status)) return [iconButton("close", `Cancel ${clip.name}`, () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id)))];
+  const again = clip.status === "done" ? null : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
+  return [again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
+}
+
+function draw(clip, element) {
+  const job = state.jobs.get(clip.job_id);
+  const busy = BUSY.has(clip.status);
+  const chosen = clip.id === state.clip;
+  const signature = JSON.stringify([clip, job, chosen]);
+  if (element?.dataset.signature === signature) return element;
+  const drawn = element ?? h("li");
+  drawn.dataset.signature = signature;
+  drawn.className = `clip ${clip.status}${chosen ? " chosen" : ""}`;
+  const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
+  const poster = h("img", { className: "poster", src: api.clips.poster(clip.id), alt: "", loading: "lazy", width: 64, height: 48 });
+  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
+  drawn.replaceChildren(
+    h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },
+      poster,
+      h("span", { className: "clip-text" },
+        h("b", {}, clip.name),
+        h("span", { className: "stage-text" }, statusText(clip, job)),
+        busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...(job?.total ? { max: job.total, value: job.done } : {}) }) : null)),
+    h("div", { className: "clip-buttons" }, buttons(clip)));
+  if (focused) [...drawn.querySelectorAll("[aria-label]")].find((each) => each.getAttribute("aria-label") === focused)?.focus();
+  return drawn;
+}
+
+export function drawClips({ clips }) {
+  byId("clip-count").textContent = clips.length ? String(clips.length) : "";
+  reconcile(byId("clips"), clips, (clip) => clip.id, draw);
+}
+
+/** "circle_a_demonstration.mp4" as people read it. */
+const readable = (name) => name.replace(/\.\w+$/, "").replace(/[_-]+/g, " ");
+
+async function addSample(sample, button) {
+  button.disabled = true;
+  const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
+  button.disabled = false;
+  if (!accepted) return;
+  await reloadClips();
+  select(accepted.id);
+}
+
+/** Offer the sample clips: openly while there is nothing else, folded away later. */
+export function drawSamples({ samples, clips, uploads }) {
+  const box = byId("samples");
+  if (!samples.length) return box.replaceChildren();
+  const open = box.querySelector("details")?.open ?? !(clips.length || uploads.length);
+  const known = box.querySelectorAll("button").length;
+  if (known === samples.length) {
+    if (clips.length && box.dataset.first) { box.querySelector("details").open = false; delete box.dataset.first; }
+    return undefined;
+  }
+  if (!clips.length) box.dataset.first = "yes";
+  const list = h("ul", {}, samples.map((sample) => {
+    const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
+    button.onclick = () => addSample(sample, button);
+    return h("li", {}, button);
+  }));
+  return box.replaceChildren(h("details", { open }, h("summary", {}, "No clip at hand? Try a sample"), list));
+}

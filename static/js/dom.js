@@ -1,0 +1,66 @@
+// Building elements. Text only ever becomes text nodes: nothing a user wrote is parsed as markup.
+
+const SVG = "http://www.w3.org/2000/svg";
+
+const ICONS = {
+  close: "M5 5l10 10M15 5L5 15",
+  more: "M4 10h.01M10 10h.01M16 10h.01",
+  plus: "M10 4v12M4 10h12",
+  rename: "M4 16l1-4 8-8 3 3-8 8z",
+  retry: "M15.5 6.5A6.5 6.5 0 1 0 16.5 11M16 3v4h-4",
+  trash: "M4 6h12M8 6V4h4v2M6 6l1 10h6l1-10",
+};
+
+/** Find an element that index.html promises. */
+export const byId = (id) => document.getElementById(id);
+
+/**
+ * Make an element. Properties are set as properties (`onclick`, `className`, `hidden`), those with
+ * a dash as attributes; children are elements or text, and null is left out.
+ */
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null) continue;
+    if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
+    else if (name === "style") for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
+    else element[name] = value;
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** Make one of the line icons; it is decoration, so its button needs a label of its own. */
+export function icon(name) {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", "0 0 20 20");
+  svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(SVG, "path");
+  path.setAttribute("d", ICONS[name]);
+  svg.append(path);
+  return svg;
+}
+
+/** Make a small button that shows only an icon. */
+export function iconButton(name, label, onclick) {
+  return h("button", { type: "button", className: "quiet icon", title: label, "aria-label": label, onclick }, icon(name));
+}
+
+/**
+ * Make a list's children match `items`, reusing the element of an item that stays, so that focus
+ * and running transitions survive. `draw(item, element)` returns the element.
+ */
+export function reconcile(list, items, keyOf, draw) {
+  const known = new Map([...list.children].map((element) => [element.dataset.key, element]));
+  const wanted = items.map((item) => {
+    const key = String(keyOf(item));
+    const drawn = draw(item, known.get(key));
+    drawn.dataset.key = key;
+    return drawn;
+  });
+  const keep = new Set(wanted);
+  for (const element of [...list.children]) if (!keep.has(element)) element.remove();
+  wanted.forEach((element, index) => {
+    if (list.children[index] !== element) list.insertBefore(element, list.children[index] ?? null);
+  });
+}

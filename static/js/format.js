@@ -1,0 +1,22 @@
+// Numbers as people read them.
+
+export function bytes(count) {
+  if (count < 1000) return `${count} B`;
+  if (count < 1e6) return `${Math.round(count / 1e3)} kB`;
+  if (count < 1e9) return `${(count / 1e6).toFixed(1)} MB`;
+  return `${(count / 1e9).toFixed(2)} GB`;
+}
+
+/** Seconds in a clip, to the hundredth: a frame lasts three or four of them. */
+export const moment = (seconds) => `${seconds.toFixed(2)} s`;
+
+/** A duration, in whatever unit is readable. */
+export function duration(seconds) {
+  if (seconds < 60) return `${seconds < 10 ? seconds.toFixed(1) : Math.round(seconds)} s`;
+  const whole = Math.round(seconds);
+  return `${Math.floor(whole / 60)} min ${String(whole % 60).padStart(2, "0")} s`;
+}
+
+export const timeLeft = (seconds) => (seconds >= 1 ? `${duration(Math.ceil(seconds))} left` : "almost done");
+
+export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

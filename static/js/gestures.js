@@ -1,0 +1,96 @@
+// The gestures of the language, as cards with their trajectory images.
+
+import * as api from "./api.js";
+import { ask } from "./dialogs.js";
+import { byId, h, iconButton, reconcile } from "./dom.js";
+import { reloadLanguage } from "./languages.js";
+import { state, update } from "./state.js";
+import { complain, toast } from "./toasts.js";
+
+/** Change the language; when someone else was faster, show theirs and say so. */
+export async function edit(doing, change) {
+  const before = state.gestures;
+  try {
+    const language = await change(before);
+    update({ gestures: language });
+    return { before, language };
+  } catch (error) {
+    if (error.status !== 412) throw error;
+    await reloadLanguage();
+    throw Object.assign(new Error("The language was changed in another tab meanwhile. Its newest state is on display now; please try again."), { title: `${doing} failed`, status: 412 });
+  }
+}
+
+const readable = (name) => name.replaceAll("_", " ");
+
+function rename(gesture) {
+  return ask({
+    title: "Change gesture",
+    fields: [
+      { name: "label", label: "Label", value: gesture.label, required: true },
+      { name: "description", label: "Description", value: gesture.description, multiline: true },
+      { name: "command", label: "Command", value: typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, ""), hint: "What the robot should do." },
+    ],
+    action: "Save",
+    submit: (values) => edit("Changing the gesture", (language) => api.languages.changeGesture(language, gesture.label, changesOf(gesture, values))),
+  });
+}
+
+/** Only what was changed: a command that is an object stays one unless it was retyped. */
+function changesOf(gesture, values) {
+  const change = { label: values.label, description: values.description };
+  const shown = typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, "");
+  if (values.command !== shown) change.command = values.command || null;
+  return change;
+}
+
+async function remove(gesture) {
+  try {
+    const { before } = await edit("Deleting the gesture", (language) => api.languages.removeGesture(language, gesture.label));
+    toast("Gesture deleted", gesture.label, { action: { label: "Undo", run: () => undo(before.revision) } });
+  } catch (error) {
+    complain(error, "Deleting the gesture");
+  }
+}
+
+async function undo(revision) {
+  try {
+    await edit("Undo", (language) => api.languages.revert(language, revision));
+  } catch (error) {
+    complain(error, "Undo");
+  }
+}
+
+function draw(gesture, element) {
+  const { revision } = state.gestures;
+  const mark = state.result && (gesture.label === state.result.label ? "chosen" : gesture.label === state.result.expected ? "expected" : null);
+  const signature = JSON.stringify([gesture, mark]);
+  if (element?.dataset.signature === signature) return element;
+  const image = `${gesture.thumbnail}${gesture.thumbnail.includes("revision=") ? "" : `?revision=${revision}`}`;
+  const card = h("li", { className: `card${mark ? ` ${mark}` : ""}` },
+    h("img", { src: image, alt: `Trajectory of ${gesture.label}`, loading: "lazy", width: 112, height: 112 }),
+    h("div", { className: "card-text" },
+      h("b", { title: gesture.label }, gesture.label),
+      h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
+      mark ? h("span", { className: `tag ${mark}` }, mark) : null),
+    h("div", { className: "card-buttons" },
+      iconButton("rename", `Change ${gesture.label}`, () => rename(gesture)),
+      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture))));
+  card.dataset.signature = signature;
+  return card;
+}
+
+export function drawGestures({ gestures }) {
+  const members = gestures?.gestures ?? [];
+  byId("gesture-count").textContent = members.length ? String(members.length) : "";
+  const empty = byId("gestures-empty");
+  empty.hidden = members.length > 0;
+  empty.textContent = gestures
+    ? "No gestures yet. Select a take of a clip and press \u201cSave as gesture\u201d: one demonstration is enough."
+    : "No language yet. Make one with +, or drop a language file (.json).";
+  reconcile(byId("gestures"), members, (gesture) => gesture.label, draw);
+  const expected = byId("expected");
+  const chosen = expected.value;
+  expected.replaceChildren(h("option", { value: "" }, "not told"), ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)));
+  expected.value = members.some((gesture) => gesture.label === chosen) ? chosen : "";
+}

@@ -1,0 +1,96 @@
+// Which language is edited, its import and its export.
+
+import * as api from "./api.js";
+import { ask } from "./dialogs.js";
+import { byId, h } from "./dom.js";
+import { plural } from "./format.js";
+import { state, update } from "./state.js";
+import { attempt, toast } from "./toasts.js";
+
+const LAST = "osg-studio.language"; // A new tab starts with the language used last.
+
+export async function reloadLanguages() {
+  const languages = await attempt("Loading the languages", api.languages.list);
+  if (!languages) return;
+  const wanted = [state.language, localStorage.getItem(LAST)].find((id) => languages.some((each) => each.id === id));
+  update({ languages, language: wanted ?? languages[0]?.id ?? null });
+  await reloadLanguage();
+}
+
+/** Load the gestures of the language on display. */
+export async function reloadLanguage() {
+  const id = state.language;
+  if (!id) return update({ gestures: null });
+  localStorage.setItem(LAST, id);
+  const language = await attempt("Loading the language", () => api.languages.get(id));
+  if (language && state.language === id) update({ gestures: language });
+  return undefined;
+}
+
+function show(id) {
+  update({ language: id, recognition: null });
+  return reloadLanguage();
+}
+
+/** Ask for a name and make an empty language; resolves to it, or null. */
+export function newLanguage() {
+  return ask({
+    title: "New language",
+    text: "A language is a set of gestures that one robot understands.",
+    fields: [{ name: "name", label: "Name", required: true, value: "My gestures" }],
+    action: "Create",
+    submit: async ({ name }) => {
+      const language = await api.languages.create(name);
+      update({ languages: await api.languages.list() });
+      await show(language.id);
+      return language;
+    },
+  });
+}
+
+/** Import a language file, ours or the published format. */
+export async function importLanguage(file) {
+  const language = await attempt(`Importing ${file.name}`, async () => api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()));
+  if (!language) return;
+  update({ languages: await api.languages.list() });
+  await show(language.id);
+  toast("Language imported", `${language.name}, ${plural(language.gestures.length, "gesture")}`);
+}
+
+export function drawPicker({ languages, language }) {
+  const picker = byId("language");
+  picker.replaceChildren(...languages.map((each) => h("option", { value: each.id }, each.name)));
+  if (!languages.length) picker.append(h("option", { value: "" }, "No language yet"));
+  picker.disabled = !languages.length;
+  picker.value = language ?? "";
+}
+
+export function drawExport({ gestures }) {
+  const menu = byId("export-menu");
+  const nothing = !gestures?.gestures.length;
+  if (nothing) {
+    menu.replaceChildren(h("p", { className: "dim" }, "The language has no gestures yet. Save one from a take first."));
+    return;
+  }
+  const entry = (format, title, text) =>
+    h("a", { href: api.languages.exportUrl(gestures.id, format), download: "", onclick: () => { byId("export").open = false; } }, h("b", {}, title), h("span", {}, text));
+  menu.replaceChildren(
+    h("p", { className: "dim" }, `${gestures.name}, revision ${gestures.revision}, ${plural(gestures.gestures.length, "gesture")}`),
+    entry("osg-studio", "OSG Studio language", "For osg-studio on a robot; can be imported again unchanged."),
+    entry("osg-reference", "Published OSG format", "For the ROS node of the paper: images and keypoints only."),
+    h("p", { className: "dim" }, "On the robot:"),
+    h("code", {}, "osg-studio robot --language FILE.json --source 0"));
+}
+
+/** Wire what the header offers. */
+export function manageLanguages() {
+  byId("language").onchange = (event) => show(event.target.value);
+  byId("new-language").onclick = newLanguage;
+  const menu = byId("export");
+  addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });
+  menu.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !menu.open) return;
+    menu.open = false;
+    menu.querySelector("summary").focus();
+  });
+}

@@ -1,0 +1,93 @@
+// Start: load what there is, follow what changes, and keep every part of the page in step.
+
+import * as api from "./api.js";
+import { drawClips, drawSamples, followJob, reloadClips } from "./clips.js";
+import { byId, icon } from "./dom.js";
+import { drawGestures } from "./gestures.js";
+import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
+import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
+import { follow, readUrl, selectedClip, state, update } from "./state.js";
+import { attempt } from "./toasts.js";
+import { acceptFiles, drawUploads } from "./uploads.js";
+import { followTheme, openWorkspace, restart } from "./workspace.js";
+
+/** Hear of every change on the server; after a break, load everything again. */
+function followServer() {
+  const stream = api.changes();
+  let lost = false;
+  const data = (event) => { try { return JSON.parse(event.data); } catch { return {}; } };
+  stream.onopen = () => {
+    update({ connected: true });
+    if (!lost) return;
+    lost = false;
+    reloadClips();
+    reloadLanguages();
+    restart();
+  };
+  stream.onerror = () => {
+    lost = true;
+    update({ connected: false });
+  };
+  stream.addEventListener("clips", reloadClips);
+  stream.addEventListener("languages", reloadLanguages);
+  stream.addEventListener("jobs", (event) => {
+    const job = data(event);
+    if (job.id) followJob(job);
+  });
+}
+
+function drawConnection({ connected }) {
+  const element = byId("connection");
+  element.textContent = connected ? "Connected" : "Reconnecting\u2026";
+  element.classList.toggle("on", connected);
+}
+
+/** What is drawn, and which values it depends on. */
+function drawEverything() {
+  follow(["connected"], drawConnection);
+  follow(["uploads"], drawUploads);
+  follow(["clips", "jobs", "clip"], drawClips);
+  follow(["samples", "clips", "uploads"], drawSamples);
+  follow(["languages", "language"], drawPicker);
+  follow(["gestures"], drawExport);
+  follow(["gestures", "result"], drawGestures);
+  follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
+  follow(["result"], drawOutcome);
+}
+
+/** What is loaded when something else is selected. */
+function loadWithSelection() {
+  let ready = "";
+  follow(["clips", "clip"], () => {
+    const clip = selectedClip();
+    const now = clip ? `${clip.id} ${clip.status}` : "";
+    if (now === ready) return;
+    ready = now;
+    loadTakes();
+  });
+  follow(["recognition"], loadResult);
+  follow(["clips", "clip", "takes", "take", "start", "end", "recognition"], showSelection);
+}
+
+async function start() {
+  byId("new-language").append(icon("plus"));
+  update(readUrl());
+  acceptFiles();
+  manageLanguages();
+  stageButtons();
+  followTheme();
+  drawEverything();
+  const [clips, samples] = await Promise.all([
+    attempt("Loading the clips", api.clips.list),
+    attempt("Loading the samples", api.samples.list),
+    reloadLanguages(),
+    openWorkspace().catch(() => null),
+  ]);
+  update({ clips: clips ?? [], samples: samples ?? [] });
+  if (state.clip && clips && !selectedClip()) update({ clip: null, take: null, start: null, end: null, recognition: null });
+  if (!state.clip && clips?.length) update({ clip: clips[0].id });
+  loadWithSelection();
+  followServer();
+}
+
+start();

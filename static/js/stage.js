@@ -1,0 +1,129 @@
+// The clip on display: its takes, what is done with them, and what came of it.
+
+import * as api from "./api.js";
+import { ask } from "./dialogs.js";
+import { byId, h } from "./dom.js";
+import { edit } from "./gestures.js";
+import { newLanguage } from "./languages.js";
+import { selectedClip, selectedRange, state, update } from "./state.js";
+import { drawTimeline } from "./timeline.js";
+import { attempt, complain, toast } from "./toasts.js";
+import { show } from "./workspace.js";
+
+const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
+
+let viewTimer = 0;
+let shownView = "";
+
+/** Load the takes of the clip on display as soon as it has any. */
+export async function loadTakes() {
+  const clip = selectedClip();
+  if (!clip || clip.status !== "done") return update({ takes: null });
+  const takes = await attempt("Loading the takes", () => api.clips.takes(clip.id));
+  if (!takes || state.clip !== clip.id) return undefined;
+  const kept = state.take !== null && state.take < takes.length ? state.take : null;
+  const byHand = state.start !== null || state.end !== null;
+  return update({ takes, take: kept ?? (takes.length && !byHand ? 0 : null) });
+}
+
+/** Let the workspace show what is selected, once the selection rests. */
+export function showSelection() {
+  clearTimeout(viewTimer);
+  const clip = selectedClip();
+  if (!clip || clip.status !== "done" || !state.takes) return;
+  const { shown } = selectedRange();
+  const view = { clip_id: clip.id, start: shown[0], end: shown[1] };
+  // Without a take or a choice the whole clip is meant, to its very last frame.
+  if (state.take === null && state.start === null) delete view.start;
+  if (state.take === null && state.end === null) delete view.end;
+  if (state.recognition) view.recognition_id = state.recognition;
+  const text = JSON.stringify(view);
+  if (text === shownView) return;
+  viewTimer = setTimeout(() => { shownView = text; show(view); }, state.take === null && state.start !== null ? SETTLED : 0);
+}
+
+function query() {
+  const { start, end } = selectedRange();
+  const whole = state.take === null && state.start === null && state.end === null;
+  return whole && !state.takes?.length ? { clip_id: state.clip } : { clip_id: state.clip, start, end };
+}
+
+async function saveGesture() {
+  const range = query();
+  if (!state.language && !(await newLanguage())) return;
+  const saved = await ask({
+    title: "Save as gesture",
+    text: `One demonstration is enough. It is added to \u201c${state.gestures?.name ?? ""}\u201d.`,
+    fields: [
+      { name: "label", label: "Label", required: true, hint: "What the recogniser answers: circle, ascend, follow me." },
+      { name: "description", label: "Description", multiline: true },
+      { name: "command", label: "Command", hint: "What the robot should do." },
+    ],
+    action: "Save gesture",
+    submit: (values) => edit("Saving the gesture", (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null })),
+  });
+  if (!saved) return;
+  const { before, language } = saved;
+  const label = language.gestures.at(-1).label;
+  toast("Gesture saved", `${label}, in ${language.name}`, {
+    action: { label: "Undo", run: () => edit("Undo", (now) => api.languages.revert(now, before.revision)).catch((error) => complain(error, "Undo")) },
+  });
+}
+
+async function recognise() {
+  if (!state.gestures?.gestures.length) {
+    toast("Nothing to compare with", "The language has no gestures yet. Save one from a take, or choose another language above.", { kind: "error" });
+    return;
+  }
+  const button = byId("recognise");
+  button.disabled = true;
+  const result = await attempt("Recognition", () => api.recognitions.create({ ...query(), language_id: state.language, expected: byId("expected").value || null }));
+  button.disabled = false;
+  if (result) update({ result, recognition: result.id });
+}
+
+/** Load the recognition that the URL names. */
+export async function loadResult() {
+  if (!state.recognition) return update({ result: null });
+  if (state.result?.id === state.recognition) return undefined;
+  const result = await attempt("Loading the recognition", () => api.recognitions.get(state.recognition));
+  return update(result ? { result } : { result: null, recognition: null });
+}
+
+/** Say in the page what was recognised; the reasons are in the workspace. */
+export function drawOutcome({ result }) {
+  const box = byId("outcome");
+  if (!result) return box.replaceChildren();
+  const { label, nearest, expected, votes } = result;
+  const voters = Object.values(votes);
+  const count = voters.filter((vote) => vote === nearest).length;
+  const wrong = label === null || (expected !== null && expected !== label);
+  const parts = label === null
+    ? ["Not recognised; nearest is ", h("b", {}, nearest)]
+    : expected === null || expected === label
+      ? ["Recognised as ", h("b", { className: "chosen" }, label), expected === label ? ", as expected" : ""]
+      : ["Taken for ", h("b", { className: "chosen" }, label), ", expected ", h("b", { className: "expected" }, expected)];
+  box.className = `outcome ${wrong ? "wrong" : "right"}`;
+  return box.replaceChildren(
+    h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
+    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)));
+}
+
+/** Draw the bar above the frame. */
+export function drawStage() {
+  const clip = selectedClip();
+  byId("clip-bar").hidden = !clip;
+  if (!clip) return;
+  const ready = clip.status === "done";
+  byId("clip-name").textContent = clip.name;
+  byId("clip-meta").textContent = ready ? "" : clip.status === "failed" ? (clip.error ?? "") : "Its takes appear as soon as the poses are found.";
+  for (const id of ["save-gesture", "recognise", "expected"]) byId(id).disabled = !ready;
+  byId("clip-warnings").replaceChildren(...(clip.warnings ?? []).map((warning) => h("li", {}, warning)));
+  drawTimeline();
+}
+
+/** Wire the buttons. */
+export function stageButtons() {
+  byId("save-gesture").onclick = () => saveGesture().catch((error) => complain(error, "Saving the gesture"));
+  byId("recognise").onclick = recognise;
+}

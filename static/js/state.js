@@ -1,0 +1,66 @@
+// What the page shows, in one place. What a colleague should see from a link is in the URL.
+
+const IN_URL = { clip: "clip", take: "take", start: "start", end: "end", language: "language", recognition: "recognition" };
+const NUMBERS = new Set(["take", "start", "end"]);
+
+const values = {
+  clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
+  languages: [], gestures: null, result: null, connected: false,
+  clip: null, take: null, start: null, end: null, language: null, recognition: null,
+};
+
+const listeners = [];
+
+/** The present values; read only. */
+export const state = values;
+
+/** Change values, put what belongs there into the URL, and tell who listens to them. */
+export function update(change) {
+  const changed = Object.keys(change).filter((name) => values[name] !== change[name]);
+  if (!changed.length) return;
+  Object.assign(values, change);
+  if (changed.some((name) => name in IN_URL)) writeUrl();
+  for (const { names, react } of listeners) if (names.some((name) => changed.includes(name))) react(values);
+}
+
+/** Call `react` now, and whenever one of the named values changes. */
+export function follow(names, react) {
+  listeners.push({ names, react });
+  react(values);
+}
+
+/** Take over what the URL says. */
+export function readUrl() {
+  const query = new URLSearchParams(location.search);
+  const change = {};
+  for (const [name, key] of Object.entries(IN_URL)) {
+    const text = query.get(key);
+    const number = Number.parseFloat(text);
+    if (!NUMBERS.has(name)) change[name] = text;
+    else change[name] = Number.isFinite(number) ? number : null;
+  }
+  return change;
+}
+
+function writeUrl() {
+  const query = new URLSearchParams();
+  for (const [name, key] of Object.entries(IN_URL)) {
+    const value = values[name];
+    if (value !== null && value !== undefined) query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
+  }
+  const text = query.toString();
+  history.replaceState(null, "", text ? `?${text}` : location.pathname);
+}
+
+export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
+
+/** The range in seconds on which buttons act, and whether it is a take's own. */
+export function selectedRange() {
+  const clip = selectedClip();
+  if (!clip) return null;
+  const take = values.takes?.[values.take];
+  if (take) return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
+  const start = values.start ?? 0;
+  const end = values.end ?? clip.duration ?? 0;
+  return { start, end, shown: [start, end], take: null };
+}

@@ -1,0 +1,45 @@
+// Short messages that say what happened, why, and what to do next.
+
+import { byId, h, iconButton } from "./dom.js";
+
+const SHOWN_FOR = { info: 6000, error: 15000 };
+
+/**
+ * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
+ * One with the same text replaces the older one.
+ */
+export function toast(title, detail = "", { kind = "info", action = null } = {}) {
+  const box = byId("toasts");
+  for (const other of [...box.children]) if (other.dataset.text === title + detail) other.remove();
+  const close = () => element.remove();
+  const element = h(
+    "div",
+    { className: `toast ${kind}`, role: kind === "error" ? "alert" : "status" },
+    h("div", {}, h("b", {}, title), detail ? h("p", {}, detail) : null),
+    action ? h("button", { type: "button", onclick: () => { close(); action.run(); } }, action.label) : null,
+    iconButton("close", "Dismiss", close),
+  );
+  element.dataset.text = title + detail;
+  box.append(element);
+  let timer = setTimeout(close, SHOWN_FOR[kind]);
+  // Nobody loses a message while reading or reaching for it.
+  element.onpointerenter = element.onfocusin = () => clearTimeout(timer);
+  element.onpointerleave = element.onfocusout = () => { timer = setTimeout(close, SHOWN_FOR[kind]); };
+}
+
+/** Show what went wrong. */
+export function complain(error, doing) {
+  if (error.code === "cancelled") return;
+  if (!("status" in error)) console.error(error);
+  toast(doing ? `${doing} failed` : error.title ?? "Something went wrong", error.message, { kind: "error" });
+}
+
+/** Run a task and show its error, if any, as a toast; the answer is null then. */
+export async function attempt(doing, task) {
+  try {
+    return await task();
+  } catch (error) {
+    complain(error, doing);
+    return null;
+  }
+}

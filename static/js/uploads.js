@@ -1,0 +1,109 @@
+// Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
+
+import * as api from "./api.js";
+import { byId, h, icon, iconButton, reconcile } from "./dom.js";
+import { bytes, timeLeft } from "./format.js";
+import { importLanguage } from "./languages.js";
+import { state, update } from "./state.js";
+import { complain } from "./toasts.js";
+
+const AT_ONCE = 2; // More only share the same line, and each would finish later.
+
+let counter = 0;
+
+/** Take files in, whatever they are. */
+export function addFiles(files) {
+  const added = [];
+  for (const file of files) {
+    if (/\.json$/i.test(file.name)) importLanguage(file);
+    else added.push({ key: `${Date.now()}-${Math.random().toString(36).slice(2)}-${counter++}`, file, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null });
+  }
+  if (added.length) update({ uploads: [...state.uploads, ...added] });
+  startNext();
+}
+
+function change(key, patch) {
+  update({ uploads: state.uploads.map((upload) => (upload.key === key ? { ...upload, ...patch } : upload)) });
+}
+
+function forget(key) {
+  update({ uploads: state.uploads.filter((upload) => upload.key !== key) });
+}
+
+function startNext() {
+  const running = state.uploads.filter((upload) => upload.status === "uploading").length;
+  for (const upload of state.uploads.filter((each) => each.status === "waiting").slice(0, AT_ONCE - running)) start(upload);
+}
+
+async function start(upload) {
+  const call = api.upload(upload.file, upload.key, (loaded, total) => change(upload.key, { loaded, total }));
+  change(upload.key, { status: "uploading", started: performance.now(), cancel: call.cancel, loaded: 0, error: null });
+  try {
+    const accepted = await call.done;
+    forget(upload.key);
+    update({ clip: accepted.id, take: null, start: null, end: null, recognition: null, clips: await api.clips.list() });
+  } catch (error) {
+    if (error.code === "cancelled") forget(upload.key);
+    else change(upload.key, { status: "failed", error: error.message });
+  }
+  startNext();
+}
+
+function stage(upload) {
+  if (upload.status === "waiting") return "Waiting for the other uploads";
+  if (upload.status === "failed") return upload.error;
+  if (upload.loaded >= upload.total) return "Checking the video";
+  const elapsed = (performance.now() - upload.started) / 1000;
+  const left = upload.loaded ? ((upload.total - upload.loaded) / upload.loaded) * elapsed : null;
+  return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
+}
+
+function draw(upload) {
+  const failed = upload.status === "failed";
+  const { key } = upload;
+  const stop = () => (upload.status === "uploading" ? upload.cancel() : forget(key));
+  return h("li", { className: `clip${failed ? " failed" : ""}` },
+    h("div", { className: "poster blank" }, icon("plus")),
+    h("div", { className: "clip-text" },
+      h("b", {}, upload.file.name),
+      h("span", { className: "stage-text" }, stage(upload)),
+      failed ? null : h("progress", { max: Math.max(1, upload.total), value: upload.loaded, "aria-label": `Upload of ${upload.file.name}` })),
+    h("div", { className: "clip-buttons" },
+      failed ? iconButton("retry", `Retry ${upload.file.name}`, () => { change(key, { status: "waiting" }); startNext(); }) : null,
+      iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop)));
+}
+
+/** Draw the uploads. */
+export function drawUploads({ uploads }) {
+  reconcile(byId("uploads"), uploads, (upload) => upload.key, draw);
+}
+
+/** Make the whole window a place to drop files. */
+export function acceptFiles() {
+  const veil = byId("veil");
+  let depth = 0; // dragenter and dragleave fire for every element on the way.
+  const carriesFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+  addEventListener("dragenter", (event) => {
+    if (carriesFiles(event)) veil.hidden = ++depth === 0;
+  });
+  addEventListener("dragleave", (event) => {
+    if (carriesFiles(event)) veil.hidden = --depth <= 0;
+  });
+  addEventListener("dragover", (event) => carriesFiles(event) && event.preventDefault());
+  addEventListener("drop", (event) => {
+    if (!carriesFiles(event)) return;
+    event.preventDefault();
+    depth = 0;
+    veil.hidden = true;
+    addFiles(event.dataTransfer.files);
+  });
+  const input = byId("file");
+  input.onchange = () => {
+    try {
+      addFiles(input.files);
+    } catch (error) {
+      complain(error, "Adding the files");
+    }
+    input.value = "";
+  };
+}
