@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import sys
 import threading
 import webbrowser
 from collections.abc import AsyncIterator
@@ -33,13 +34,17 @@ from app.api import (
 from app.api.body_limit import BodyLimit
 from app.api.headers import SecurityHeaders
 from app.api.security import SameOrigin, TokenRequired
-from app.api.studio import running_studio
+from app.api.studio import check_store, running_studio
 from app.api.uploads import FRAME_BYTES
 from app.api.workspace_views import view_of
 from app.settings import Settings
+from app.store import StoreUnavailable
 from app.ui.registry import WorkspaceRegistry
 
 API = "/api/v1"
+
+BAD_STORE = 2
+"""Exit code when the data folder cannot be used: bad input, as everywhere in the command line."""
 
 GRACEFUL_SECONDS = 3
 """Time for open answers at the end; event streams never end by themselves, and the whole server
@@ -128,6 +133,12 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         settings,
         open_browser=open_browser,
     )
+    try:
+        # Before uvicorn, which would wrap the one line that says what is wrong in a traceback.
+        check_store(settings)
+    except StoreUnavailable as error:
+        print(f"osg-studio: {error}", file=sys.stderr)
+        raise SystemExit(BAD_STORE) from error
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
 

@@ -12,7 +12,6 @@ from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction import process
 from app.api.extraction.messages import Failed
 from app.api.media_types import HEAD_BYTES, video_type
 from app.api.problems import ProblemError, documented
@@ -69,6 +68,9 @@ async def upload_clip(
     if idempotency_key and (
         earlier := await run_in_threadpool(studio.clips.by_idempotency_key, idempotency_key)
     ):
+        # Read to the end: answering in the middle of a body would reach no browser.
+        async for _ in request.stream():
+            pass
         return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
     await _require_place_in_queue(request, studio)
     partial = studio.clips.new_partial()
@@ -78,7 +80,7 @@ async def upload_clip(
         clip.idempotency_key = idempotency_key
         added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
     finally:
-        await run_in_threadpool(partial.unlink, missing_ok=True)
+        partial.unlink(missing_ok=True)
     return await _announced(studio, added)
 
 
@@ -92,7 +94,7 @@ async def add_file(request: Request, studio: Studio, path: Path) -> ClipAccepted
         clip = await _examined(partial, studio, name=shown_name(path.name), size=len(content))
         added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
     finally:
-        await run_in_threadpool(partial.unlink, missing_ok=True)
+        partial.unlink(missing_ok=True)
     return await _announced(studio, added)
 
 
@@ -252,7 +254,7 @@ async def _examined(partial: Path, studio: Studio, *, name: str, size: int) -> C
             f"{name} is not a video this app knows, whatever its name says; "
             "send MP4, MOV, WebM, MKV, AVI or MPEG-TS",
         )
-    probed = await process.probe(partial, studio.settings)
+    probed = await studio.runner.probe(partial)
     if isinstance(probed, Failed):
         raise ProblemError(422, probed.code, f"{name}: {probed.detail}")
     return Clip(

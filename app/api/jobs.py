@@ -60,7 +60,9 @@ async def cancel_job(job_id: str, studio: CurrentStudio) -> JobView:
 def job_view(job: Job, progress: Progress | None) -> JobView:
     """Return what to tell about a job."""
     status = JobStatus(job.status)
-    shown = progress if progress and status is JobStatus.RUNNING else Progress(status.value)
+    frames = job.frames or 0
+    over = Progress(status.value, done=frames, total=frames)
+    shown = progress if progress and status is JobStatus.RUNNING else over
     return JobView(
         **job.model_dump(include={"id", "clip_id", "error", "error_code"}),
         **job.model_dump(include={"created", "started", "finished"}),

@@ -24,6 +24,7 @@ from app.settings import Settings
 from app.store import (
     ClipStore,
     Database,
+    FolderLock,
     JobStatus,
     JobStore,
     LanguageState,
@@ -125,7 +126,31 @@ def _recognizer(document: str, profile: str) -> Recognizer:
 
 @asynccontextmanager
 async def running_studio(settings: Settings) -> AsyncIterator[Studio]:
-    """Open the store, bring it in order, start the workers; stop them at the end."""
+    """Open the store, bring it in order, start the workers; stop them at the end.
+
+    Raises
+    ------
+    StoreUnavailable
+        When the data folder is another server's or cannot be used, or the database is damaged.
+
+    """
+    with FolderLock(settings.data_dir):
+        async with _studio(settings) as studio:
+            yield studio
+
+
+def check_store(settings: Settings) -> None:
+    """Raise StoreUnavailable with one line for a person when the store cannot be opened."""
+    with FolderLock(settings.data_dir):
+        database = Database(settings.database)
+        try:
+            database.migrate()
+        finally:
+            database.close()
+
+
+@asynccontextmanager
+async def _studio(settings: Settings) -> AsyncIterator[Studio]:
     database = Database(settings.database)
     clips = ClipStore(database, settings.data_dir / "clips")
     jobs, languages = JobStore(database), LanguageStore(database)

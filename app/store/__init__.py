@@ -3,6 +3,7 @@
 from app.store.clips import ClipStore, ClipWithJob
 from app.store.database import Database
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
+from app.store.folder_lock import FolderLock
 from app.store.jobs import JobStore
 from app.store.languages import Draft, LanguageState, LanguageStore
 from app.store.models import (
@@ -22,6 +23,7 @@ __all__ = [
     "Conflict",
     "Database",
     "Draft",
+    "FolderLock",
     "Job",
     "JobStatus",
     "JobStore",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, select
 
 from app.store.database import Database
@@ -52,21 +53,25 @@ class ClipStore:
     def add(self, clip: Clip, partial: Path, client: str) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
-        The file gets its place first: a row never refers to what is not on disk.
+        The file gets its place first: a row never refers to what is not on disk. When two
+        uploads with one idempotency key race, the second one gets the first one's clip.
         """
         target = self.video(clip.id)
         target.parent.mkdir()
+        job = Job(clip_id=clip.id, client=client)
         try:
             publish(partial, target)
             sync_directory(self.folder)
-            job = Job(clip_id=clip.id, client=client)
             with self._database.writing() as session:
                 session.add(clip)
                 session.flush()
                 session.add(job)
-        except BaseException:
+        except BaseException as error:
             shutil.rmtree(target.parent, ignore_errors=True)
-            raise
+            earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
+            if not earlier:
+                raise
+            return earlier
         return ClipWithJob(clip, job)
 
     def get(self, clip_id: str) -> ClipWithJob:
@@ -166,6 +171,10 @@ class ClipStore:
     def poster(self, clip_id: str) -> Path:
         """Return where the clip's still picture is, once its job is done."""
         return self._home(clip_id) / POSTER
+
+    def _same_upload(self, clip: Clip) -> ClipWithJob | None:
+        key = clip.idempotency_key
+        return None if key is None else self.by_idempotency_key(key)
 
     def _home(self, clip_id: str) -> Path:
         return self.folder / clip_id

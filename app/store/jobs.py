@@ -104,7 +104,7 @@ class JobStore:
             job = session.get(Job, job_id)
             if job is None or JobStatus(job.status).final:
                 return False
-            job.status, job.finished = JobStatus.DONE.value, now()
+            job.status, job.finished, job.frames = JobStatus.DONE.value, now(), frames
             job.warnings = json.dumps(list(warnings), ensure_ascii=False)
             session.add(job)
             if clip := session.get(Clip, job.clip_id):

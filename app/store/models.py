@@ -91,6 +91,8 @@ class Job(SQLModel, table=True):
     status: str = Field(default=JobStatus.QUEUED.value, max_length=16, index=True)
     attempts: int = 0
     """How often it was started; a job that ended the server several times is given up."""
+    frames: int | None = None
+    """Frames decoded, once it is done."""
     error_code: str | None = Field(default=None, max_length=64)
     error: str | None = Field(default=None, sa_column=Column(Text))
     warnings: str = Field(default="[]", sa_column=Column(Text, nullable=False))

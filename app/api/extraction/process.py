@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import sys
-from asyncio.subprocess import DEVNULL, PIPE, Process
+from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing, asynccontextmanager
 from pathlib import Path
@@ -20,11 +20,12 @@ _PACKAGE_PARENT = Path(__file__).resolve().parents[3]
 
 _DECODER_FAILED = Failed(
     code="decoder",
-    detail="the video decoder broke on this clip; convert it to an MP4 with H.264 and try again",
+    detail="the process that read this clip broke off: the clip is damaged, or it needs more "
+    "memory or time than a job may use; convert it to an MP4 with H.264 and try again",
 )
 _DECODER_HANGS = Failed(
     code="decoder",
-    detail="the video decoder made no progress on this clip and was ended; "
+    detail="the process that read this clip made no progress and was ended; "
     "convert it to an MP4 with H.264 and try again",
 )
 
@@ -83,7 +84,6 @@ async def _worker(command: list[str], settings: Settings) -> AsyncIterator[Proce
         *command,
         stdin=PIPE,
         stdout=PIPE,
-        stderr=DEVNULL,
         cwd=_PACKAGE_PARENT,
         # Ctrl-C in the terminal is for the server, which then ends its workers in order.
         start_new_session=True,

@@ -7,15 +7,19 @@ import logging
 import time
 from contextlib import aclosing
 from dataclasses import dataclass
+from pathlib import Path
 
 from starlette.concurrency import run_in_threadpool
 
 from app.api.broadcast import Broadcast
 from app.api.extraction import process
-from app.api.extraction.messages import Failed, Finished, Progressed
+from app.api.extraction.messages import Failed, Finished, Probed, Progressed
 from app.api.extraction.queue import FairQueue
 from app.settings import Settings
 from app.store import ClipStore, Job, JobStatus, JobStore
+
+MOST_PROBES = 2
+"""Received files looked into at the same time: a hundred uploads must not be as many processes."""
 
 logger = logging.getLogger(__name__)
 
@@ -65,6 +69,7 @@ class ExtractionRunner:
         self._queue = FairQueue()
         self._progress: dict[str, Progress] = {}
         self._running: dict[str, asyncio.Task[None]] = {}
+        self._probing = asyncio.Semaphore(MOST_PROBES)
         self._loops: list[asyncio.Task[None]] = []
 
     async def start(self) -> None:
@@ -86,6 +91,11 @@ class ExtractionRunner:
         """Let a job wait for its turn."""
         await self._queue.put(job.client, job.id)
         self._tell(job.id, job.clip_id)
+
+    async def probe(self, clip: Path) -> Probed | Failed:
+        """Look into a received file, in a process of its own."""
+        async with self._probing:
+            return await process.probe(clip, self._settings)
 
     async def cancel(self, job: Job) -> bool:
         """End a job that waits or runs; return whether it did."""

@@ -1,0 +1,72 @@
+"""One server per data folder: a second one would take the first one's uploads for orphans."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from app.store.errors import StoreUnavailable
+
+
+class FolderLock:
+    """Holds a folder while the context is open; the system lets go when the process ends.
+
+    Does nothing where POSIX file locks are absent.
+
+    Parameters
+    ----------
+    folder
+        Made when missing.
+
+    Raises
+    ------
+    StoreUnavailable
+        On entering, when another process holds it or the folder cannot be written to.
+
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "lock"
+        self._descriptor = -1
+
+    def __enter__(self) -> Self:
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            self._descriptor = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o600)
+        except OSError as error:
+            raise StoreUnavailable(
+                f"the data folder {self._path.parent} cannot be written to ({error.strerror}); "
+                "choose another one with --data-dir"
+            ) from error
+        if not self._acquired():
+            self._close()
+            raise StoreUnavailable(
+                f"the data folder {self._path.parent} is in use by another OSG Studio; "
+                "end that one, or choose another folder with --data-dir"
+            )
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._close()
+
+    def _acquired(self) -> bool:
+        if os.name != "posix":
+            return True
+        import fcntl
+
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return True
+
+    def _close(self) -> None:
+        os.close(self._descriptor)
+        self._descriptor = -1
