@@ -9,6 +9,7 @@ from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
+from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import DBAPIError, OperationalError
@@ -60,9 +61,14 @@ class Database:
             with self.engine.begin() as connection:
                 config.attributes["connection"] = connection
                 command.upgrade(config, "head")
+        except CommandError as error:
+            raise StoreUnavailable(
+                f"the database {self._name} was made by a newer version of this program "
+                f"({error}); install that version, or start with another data directory"
+            ) from error
         except DBAPIError as error:
             raise StoreUnavailable(
-                f"the database {self.engine.url.render_as_string()} cannot be used: {error.orig}; "
+                f"the database {self._name} cannot be used: {error.orig}; "
                 "restore a backup or start with another data directory"
             ) from error
 
@@ -92,6 +98,11 @@ class Database:
         """Close every connection."""
         self.engine.dispose()
 
+    @property
+    def _name(self) -> str:
+        """The address without its password."""
+        return self.engine.url.render_as_string()
+
     def _check(self) -> None:
         if not self._sqlite:
             return
@@ -99,7 +110,7 @@ class Database:
             verdict = connection.execute(text("PRAGMA quick_check(1)")).scalar_one()
         if verdict != "ok":
             raise StoreUnavailable(
-                f"the database {self.engine.url.database} is damaged ({verdict}); "
+                f"the database {self._name} is damaged ({verdict}); "
                 "restore a backup or start with another data directory"
             )
 

@@ -1,0 +1,106 @@
+"""Clips: file and row appear and disappear together, whatever breaks in between."""
+
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+
+from app.store import Clip, ClipStore, Database, JobStatus, JobStore, NotFound
+from app.store.models import now
+from tests.store.conftest import add_clip
+
+
+def test_a_clip_has_its_bytes_and_a_waiting_job(clips: ClipStore) -> None:
+    added = add_clip(clips)
+    found = clips.get(added.clip.id)
+    assert clips.video(found.clip.id).read_bytes() == b"video"
+    assert found.clip.name == "dive.mp4"
+    assert found.job.status == JobStatus.QUEUED
+    assert found.clip.created.tzinfo is not None
+
+
+def test_clips_are_listed_newest_first(clips: ClipStore) -> None:
+    first, second = add_clip(clips), add_clip(clips)
+    assert [found.clip.id for found in clips.all()] == [second.clip.id, first.clip.id]
+
+
+def test_a_clip_shows_its_newest_job(clips: ClipStore, jobs: JobStore) -> None:
+    added = add_clip(clips)
+    jobs.finish(added.job.id, JobStatus.FAILED, code="decoder", error="broke")
+    retried = jobs.retry(added.clip.id, "diver")
+    assert retried is not None
+    assert clips.get(added.clip.id).job.id == retried.id
+
+
+def test_no_file_stays_when_the_row_cannot_be_written(clips: ClipStore) -> None:
+    first = add_clip(clips)
+    partial = clips.new_partial()
+    partial.write_bytes(b"other")
+    taken = Clip(**first.clip.model_dump(exclude={"id"}), id="b" * 32)
+    taken.name = None  # type: ignore[assignment]
+    with pytest.raises(Exception, match="NOT NULL"):
+        clips.add(taken, partial, "diver")
+    assert [path.name for path in clips.folder.iterdir()] == [first.clip.id]
+
+
+def test_the_second_of_two_racing_uploads_gets_the_first_ones_clip(clips: ClipStore) -> None:
+    first = add_clip(clips, key="same")
+    second = add_clip(clips, key="same")
+    assert second.clip.id == first.clip.id
+    assert len(clips.all()) == 1
+    assert [path.name for path in clips.folder.iterdir()] == [first.clip.id]
+
+
+def test_a_deleted_clip_is_gone_until_it_is_restored(clips: ClipStore) -> None:
+    clip_id = add_clip(clips).clip.id
+    clips.delete(clip_id)
+    assert clips.all() == []
+    for use in (clips.get, clips.delete):
+        with pytest.raises(NotFound):
+            use(clip_id)
+    clips.restore(clip_id)
+    assert clips.get(clip_id).clip.id == clip_id
+    assert clips.video(clip_id).read_bytes() == b"video"
+
+
+def test_only_what_was_deleted_long_ago_is_purged(clips: ClipStore) -> None:
+    kept, fresh, old = add_clip(clips), add_clip(clips), add_clip(clips)
+    clips.delete(old.clip.id)
+    between = now()
+    clips.delete(fresh.clip.id)
+    assert clips.purge(between) == 1
+    assert not clips.video(old.clip.id).exists()
+    with pytest.raises(NotFound):
+        clips.restore(old.clip.id)
+    clips.restore(fresh.clip.id)
+    assert len(clips.all()) == 2
+    assert clips.purge(now() + timedelta(days=1)) == 0
+    assert clips.video(kept.clip.id).exists()
+
+
+def test_sweeping_removes_what_crashes_left_and_nothing_else(
+    clips: ClipStore, tmp_path: Path
+) -> None:
+    clip_id = add_clip(clips).clip.id
+    clips.recording(clip_id).write_bytes(b"recording")
+    clips.poster(clip_id).write_bytes(b"poster")
+    clips.new_partial().write_bytes(b"half an upl")
+    (clips.video(clip_id).parent / ".recording.npz.k3j2").write_bytes(b"half a record")
+    nameless = clips.folder / ("f" * 32)
+    nameless.mkdir()
+    (nameless / "video").write_bytes(b"renamed, but its row was never written")
+    assert clips.sweep() == 3
+    left = sorted(path.name for path in clips.folder.rglob("*"))
+    assert left == sorted([clip_id, "video", "recording.npz", "poster.jpg"])
+    assert clips.sweep() == 0
+
+
+def test_purging_a_clip_takes_its_jobs_along(
+    clips: ClipStore, jobs: JobStore, database: Database
+) -> None:
+    added = add_clip(clips)
+    clips.delete(added.clip.id)
+    clips.purge(now())
+    assert jobs.resume() == []
+    with pytest.raises(NotFound):
+        jobs.get(added.job.id)

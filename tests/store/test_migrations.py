@@ -1,0 +1,54 @@
+"""The migrations make from nothing exactly the tables that the models describe."""
+
+from pathlib import Path
+
+import pytest
+from alembic import command
+from alembic.autogenerate import compare_metadata
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from sqlalchemy import inspect
+from sqlmodel import SQLModel
+
+from app.store import Database
+from app.store.database import MIGRATIONS
+
+
+def test_an_empty_file_gets_the_tables_of_the_models(database: Database) -> None:
+    with database.engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, SQLModel.metadata) == []
+
+
+def test_migrating_again_changes_nothing(database: Database) -> None:
+    before = set(inspect(database.engine).get_table_names())
+    database.migrate()
+    assert set(inspect(database.engine).get_table_names()) == before
+
+
+def test_every_migration_can_be_taken_back(database: Database) -> None:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    with database.engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.downgrade(config, "base")
+    assert inspect(database.engine).get_table_names() == ["alembic_version"]
+
+
+def test_a_migration_that_breaks_off_leaves_the_database_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
+    upgrade = command.upgrade
+
+    def broken_upgrade(config: Config, revision: str) -> None:
+        upgrade(config, revision)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("app.store.database.command.upgrade", broken_upgrade)
+    with pytest.raises(KeyboardInterrupt):
+        database.migrate()
+    assert inspect(database.engine).get_table_names() == []
+    monkeypatch.undo()
+    database.migrate()
+    assert "clip" in inspect(database.engine).get_table_names()
