@@ -1,0 +1,106 @@
+"""The checkout: what its files must and must not contain."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from tests.conftest import ROOT
+
+LOCKS = ("requirements.txt", "requirements-test.txt", "requirements-mediapipe.txt")
+
+# Where packages come from is the user's pip configuration, mirrors and all, never ours.
+REGISTRY = re.compile(rb"pypi\.org|pythonhosted\.org|anaconda\.org|npmjs\.|--(extra-)?index-url")
+
+MOST_LINES = {".py": 400, ".js": 300}
+
+
+def tracked_files() -> list[Path]:
+    # safe.directory: in CI the checkout may belong to another user than the one who tests.
+    listed = subprocess.run(
+        ["git", "-c", "safe.directory=*", "ls-files", "-z"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if listed.returncode != 0:
+        pytest.skip("needs a git checkout: " + listed.stderr.strip())
+    return [path for name in listed.stdout.split("\0") if name and (path := ROOT / name).is_file()]
+
+
+def pins(lock: str) -> dict[str, list[Requirement]]:
+    """Pinned requirements of a lock by name; several where platforms differ."""
+    found: dict[str, list[Requirement]] = {}
+    for line in (ROOT / lock).read_text().splitlines():
+        if re.match(r"[a-z0-9]", line):
+            requirement = Requirement(line.removesuffix("\\"))
+            found.setdefault(canonicalize_name(requirement.name), []).append(requirement)
+    return found
+
+
+def declared(*extras: str) -> list[Requirement]:
+    """Return what `pyproject.toml` declares for the core and `extras`."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    lines = [*project["dependencies"]]
+    for extra in extras:
+        lines += project["optional-dependencies"][extra]
+    return [Requirement(line) for line in lines]
+
+
+def test_no_tracked_file_names_a_package_registry() -> None:
+    naming = [path for path in tracked_files() if REGISTRY.search(path.read_bytes())]
+    assert naming == []
+
+
+def test_no_source_file_is_too_long_to_read() -> None:
+    too_long = {
+        str(path.relative_to(ROOT)): lines
+        for path in tracked_files()
+        if (most := MOST_LINES.get(path.suffix))
+        and (lines := len(path.read_text(encoding="utf-8").splitlines())) > most
+    }
+    assert too_long == {}
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_every_pin_carries_hashes(lock: str) -> None:
+    entries = re.split(r"\n(?=[a-z0-9])", (ROOT / lock).read_text())[1:]
+    without = [entry.splitlines()[0] for entry in entries if "--hash=sha256:" not in entry]
+    assert len(entries) > 20
+    assert without == []
+
+
+@pytest.mark.parametrize(
+    ("lock", "extras"),
+    [
+        ("requirements.txt", ["studio"]),
+        ("requirements-test.txt", ["studio", "test"]),
+        ("requirements-mediapipe.txt", ["mediapipe"]),
+    ],
+)
+def test_a_lock_pins_what_the_project_declares(lock: str, extras: list[str]) -> None:
+    pinned = pins(lock)
+    stale = [
+        str(requirement)
+        for requirement in declared(*extras)
+        if not any(
+            requirement.specifier.contains(specifier.version)
+            for pin in pinned.get(canonicalize_name(requirement.name), [])
+            for specifier in pin.specifier
+        )
+    ]
+    assert stale == [], "run `make lock`"
+
+
+def test_the_locks_agree_so_that_what_is_tested_is_what_runs() -> None:
+    tested = pins("requirements-test.txt")
+    for name, requirements in pins("requirements.txt").items():
+        assert [r.specifier for r in tested[name]] == [r.specifier for r in requirements]
+    for name, requirements in pins("requirements-mediapipe.txt").items():
+        if name in tested:
+            assert [r.specifier for r in tested[name]] == [r.specifier for r in requirements]
