@@ -47,18 +47,19 @@ class Condition:
         return float(1 / (1 + np.exp(-slope)))
 
 
-# Chosen on rendered hands with known pose, checked on photographs (`benchmarks/salute.py`).
+# All thresholds: chosen on rendered hands with known pose, checked on photographs and drawings
+# (`benchmarks/salute.py`). Lengths are in palms, wrist to middle knuckle.
 STRAIGHT = Condition(0.87, 0.2)
 """Distance knuckle to tip over the finger's length along its joints; 1 is straight."""
 
 LONG = Condition(0.42, 0.32)
-"""Distance knuckle to tip of index, middle and ring finger, in palms: curled fingers are short."""
+"""Distance knuckle to tip of index, middle and ring finger; curled fingers are short."""
 
 LONG_LITTLE_FINGER = Condition(0.30, 0.28)
 """The same of the little finger, which is a quarter shorter."""
 
 STRETCHED_OUT = Condition(0.18, 0.32)
-"""How much farther than its middle joint the tip is from the wrist, in palms."""
+"""How much farther than its middle joint the tip is from the wrist."""
 
 SPREAD = Condition(10.0, 12.0)
 """Degrees between middle and ring finger: the V."""
@@ -74,10 +75,32 @@ TIP_GAP_RATIO = Condition(1.15, 0.6)
 """Gap between the tips of middle and ring finger over the wider gap inside the pairs."""
 
 PALM_WIDTH = Condition(0.38, 0.4)
-"""Index to little finger knuckle, in palms: seen edge-on the angles mean nothing."""
+"""Index to little finger knuckle: seen edge-on the angles mean nothing."""
 
 KNUCKLES_PER_PALM = 1.2
-"""Palm length (wrist to middle knuckle) over the width of the knuckles, for foreshortened palms."""
+"""Palm length over the width of the knuckles, for foreshortened palms."""
+
+# The same for hands whose ring and little finger the detector bends; narrower, since less is asked.
+WIDE_SPREAD = Condition(20.0, 4.0)
+"""Degrees of the V: far beyond an open hand's 12."""
+
+WIDEST_SPREAD = 40.0
+"""Degrees: a V of people's fingers is narrower, a folded ring finger points anywhere beyond."""
+
+WIDE_TIP_GAP_RATIO = Condition(1.4, 0.2)
+"""Tip gaps as in `TIP_GAP_RATIO`."""
+
+CLOSE_INDEX_PAIR, CLOSE_LITTLE_PAIR = 9.0, 15.0
+"""Degrees inside the pairs, at most; a bent finger's direction is less sure."""
+
+VISIBLE_RING, VISIBLE_LITTLE = Condition(0.27, 0.06), Condition(0.17, 0.06)
+"""Distance knuckle to tip, of which a folded finger shows almost nothing."""
+
+NOT_FOLDED = Condition(-0.19, 0.08)
+"""Tip against middle joint as in `STRETCHED_OUT`; a folded finger's tip is 0.3 nearer the wrist."""
+
+DEGREES_OF_DOUBT = 4.0
+"""Width of the thresholds on angles that must stay small."""
 
 ENTER_SCORE = 0.5
 """A salute begins where the test itself says so."""
@@ -101,7 +124,10 @@ def salute_score(hand_xy: FloatArray) -> float:
 
     The least fulfilled of eight conditions: four straight, long, stretched-out fingers, the V
     between middle and ring finger, wide in degrees and against the pairs, and a palm not seen
-    edge-on. Invariant to translation, rotation, mirroring (left or right hand) and uniform scale.
+    edge-on. Short or gloved ring and little fingers the hand model often reads as bent at the
+    tips; they salute too when the V is wide, the pairs are close, and index and middle finger
+    fulfil all of it. Translating, turning, mirroring (left or right hand) and uniformly scaling
+    the hand leave the score as it is.
 
     Parameters
     ----------
@@ -121,26 +147,79 @@ def salute_score(hand_xy: FloatArray) -> float:
     points = _checked(hand_xy)
     if not np.isfinite(points).all():
         return 0.0
-    points = _upright_hand(points)
-    joints = points[_JOINTS]
-    fingers = joints[:, 3] - joints[:, 0]
-    lengths = np.linalg.norm(fingers, axis=1)
-    bones = np.linalg.norm(np.diff(joints, axis=1), axis=2).sum(axis=1)
-    reach = np.linalg.norm(joints[:, 3], axis=1) - np.linalg.norm(joints[:, 1], axis=1)
-    directions = np.degrees(np.arctan2(fingers[:, 0], fingers[:, 1]))
-    within_index, spread, within_little = directions[:-1] - directions[1:]
-    pair_angle = max(abs(within_index), abs(within_little))
-    gaps = np.linalg.norm(np.diff(joints[:, 3], axis=0), axis=1)
-    pair_gap = max(gaps[0], gaps[2], 1e-6)
+    shape = _HandShape.of(_upright_hand(points))
+    return max(_clear_salute(shape), _wide_salute(shape))
+
+
+@dataclass(frozen=True, eq=False)
+class _HandShape:
+    """What the conditions look at, of index, middle, ring and little finger in this order.
+
+    ``straight`` (4,) shares; ``length`` (4,) and ``stretch`` (4,) palms; ``angle`` (3,) degrees
+    from each finger to the next, away from the thumb; ``gap`` (3,) palms between their tips;
+    ``width`` palms across the knuckles.
+    """
+
+    straight: FloatArray
+    length: FloatArray
+    stretch: FloatArray
+    angle: FloatArray
+    gap: FloatArray
+    width: float
+
+    @classmethod
+    def of(cls, points: FloatArray) -> _HandShape:
+        """Measure a hand as `_upright_hand` turns it."""
+        joints = points[_JOINTS]
+        fingers = joints[:, 3] - joints[:, 0]
+        length = np.linalg.norm(fingers, axis=1)
+        bones = np.linalg.norm(np.diff(joints, axis=1), axis=2).sum(axis=1)
+        from_wrist = np.linalg.norm(joints, axis=2)
+        direction = np.degrees(np.arctan2(fingers[:, 0], fingers[:, 1]))
+        return cls(
+            straight=length / np.maximum(bones, 1e-9),
+            length=length,
+            stretch=from_wrist[:, 3] - from_wrist[:, 1],
+            angle=direction[:-1] - direction[1:],
+            gap=np.linalg.norm(np.diff(joints[:, 3], axis=0), axis=1),
+            width=float(np.linalg.norm(joints[0, 0] - joints[3, 0])),
+        )
+
+    @property
+    def gap_ratio(self) -> float:
+        """Gap between the pairs over the wider one inside them."""
+        return float(self.gap[1] / max(self.gap[0], self.gap[2], 1e-6))
+
+
+def _clear_salute(shape: _HandShape) -> float:
+    index_pair, spread, little_pair = shape.angle.tolist()
     return min(
-        STRAIGHT.fulfilment(float((lengths / np.maximum(bones, 1e-9)).min())),
-        LONG.fulfilment(lengths[:3].min()),
-        LONG_LITTLE_FINGER.fulfilment(lengths[3]),
-        STRETCHED_OUT.fulfilment(reach.min()),
+        STRAIGHT.fulfilment(shape.straight.min()),
+        LONG.fulfilment(shape.length[:3].min()),
+        LONG_LITTLE_FINGER.fulfilment(shape.length[3]),
+        STRETCHED_OUT.fulfilment(shape.stretch.min()),
         SPREAD.fulfilment(spread),
-        SPREAD_EXCESS.fulfilment(spread - PAIR_MARGIN * pair_angle),
-        TIP_GAP_RATIO.fulfilment(gaps[1] / pair_gap),
-        PALM_WIDTH.fulfilment(float(np.linalg.norm(joints[0, 0] - joints[3, 0]))),
+        SPREAD_EXCESS.fulfilment(spread - PAIR_MARGIN * max(abs(index_pair), abs(little_pair))),
+        TIP_GAP_RATIO.fulfilment(shape.gap_ratio),
+        PALM_WIDTH.fulfilment(shape.width),
+    )
+
+
+def _wide_salute(shape: _HandShape) -> float:
+    index_pair, spread, little_pair = shape.angle.tolist()
+    return min(
+        STRAIGHT.fulfilment(shape.straight[:2].min()),
+        LONG.fulfilment(shape.length[:2].min()),
+        STRETCHED_OUT.fulfilment(shape.stretch[:2].min()),
+        VISIBLE_RING.fulfilment(shape.length[2]),
+        VISIBLE_LITTLE.fulfilment(shape.length[3]),
+        NOT_FOLDED.fulfilment(shape.stretch[2:].min()),
+        WIDE_SPREAD.fulfilment(spread),
+        Condition(0, DEGREES_OF_DOUBT).fulfilment(WIDEST_SPREAD - spread),
+        Condition(0, DEGREES_OF_DOUBT).fulfilment(CLOSE_INDEX_PAIR - abs(index_pair)),
+        Condition(0, DEGREES_OF_DOUBT).fulfilment(CLOSE_LITTLE_PAIR - abs(little_pair)),
+        WIDE_TIP_GAP_RATIO.fulfilment(shape.gap_ratio),
+        PALM_WIDTH.fulfilment(shape.width),
     )
 
 
