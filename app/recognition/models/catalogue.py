@@ -76,10 +76,13 @@ SOURCES: Final[dict[ModelName, str]] = {
 """TensorFlow Lite files in the wheel that the ONNX models are made from."""
 
 MODEL_SCHEMA_SOURCE: Final = "mediapipe/tasks/metadata/schema_py_generated.py"
+"""In the wheel: Python module that reads and writes TensorFlow Lite models."""
+
 METADATA_SCHEMA_SOURCE: Final = "mediapipe/tasks/metadata/metadata_schema_py_generated.py"
+"""In the wheel: Python module that writes the description of a model's input."""
 
 LICENSE_SOURCE: Final = "mediapipe-0.10.21.dist-info/LICENSE"
-"""Files in the wheel: the readers of the models' format, and the licence."""
+"""In the wheel: MediaPipe's licence."""
 
 BUNDLE_PARTS: Final[dict[TaskBundleName, dict[str, ModelName]]] = {
     "pose_landmarker_full": {

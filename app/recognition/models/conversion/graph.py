@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from onnx import NodeProto, TensorProto, helper, numpy_helper
 
+from app.recognition.errors import ModelError
 from app.recognition.models.conversion.tflite import Tensor, TfliteModel
 
 Layout = Literal["stored", "channels_first"]
@@ -90,11 +91,14 @@ class GraphBuilder:
 
         Raises
         ------
-        ValueError
+        ModelError
             When the tensor is computed instead.
 
         """
         constant = self.model.tensors[index].constant
         if constant is None:
-            raise ValueError(f"tensor {self.model.tensors[index].name!r} holds no constant")
+            raise ModelError(
+                f"tensor {self.model.tensors[index].name!r} is computed, and only a constant is "
+                f"known there"
+            )
         return constant

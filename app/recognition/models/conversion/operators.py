@@ -6,9 +6,10 @@ Sources: TensorFlow Lite's ``schema.fbs`` and reference kernels; ONNX operators,
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.errors import ModelError
 from app.recognition.models.conversion.graph import GraphBuilder
@@ -50,7 +51,7 @@ def _depthwise_convolution(graph: GraphBuilder, operator: Operator) -> None:
 
 
 def _add_convolution(
-    graph: GraphBuilder, operator: Operator, kernel: np.ndarray, groups: int
+    graph: GraphBuilder, operator: Operator, kernel: npt.NDArray[Any], groups: int
 ) -> None:
     options = operator.options
     strides = [options.strideH, options.strideW]

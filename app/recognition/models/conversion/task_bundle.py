@@ -124,7 +124,7 @@ class _SteadyBuilder(flatbuffers.Builder):  # type: ignore[misc]
     """
 
     def StartObject(self, numfields: int) -> None:  # noqa: N802
-        self.vtables = {}
+        self.vtables: dict[Any, int] = {}
         super().StartObject(numfields)
 
     def StartVector(self, elemSize: int, numElems: int, alignment: int) -> Any:  # noqa: N802, N803

@@ -1,0 +1,1 @@
+"""Tests of the models: obtaining, keeping and converting them."""
