@@ -38,6 +38,14 @@ PALM_SCALE: Final = 2.6
 PALM_SHIFT: Final = 0.5
 """The whole hand's region from the palm's box: its side, and the shift to the fingers."""
 
+PALM_TURN: Final = 90 - 14 * 2 * math.pi - math.pi / 2
+"""Radians, about 0.46: how far MediaPipe turns a palm's region beyond upright.
+
+Its graph gives the angle to turn the hand to as 90 where radians are expected, and so turns it
+to 90 radians. The next frame's region, made from landmarks, is upright again. Kept, for which
+hands are found at all depends on it, and parity with the library is what users can check.
+"""
+
 HAND_SCALE: Final = 2.0
 HAND_SHIFT: Final = 0.1
 """The next frame's region from the box of a hand's landmarks: its side, and the shift."""
@@ -136,8 +144,8 @@ class HandTracker:
 
 
 def region_of_palm(palm: Detection) -> Region:
-    """Return the region of the whole hand, upright from wrist to middle knuckle."""
-    rotation = upright(palm.keypoints[0], palm.keypoints[2])
+    """Return the region of the whole hand, from wrist to middle knuckle `PALM_TURN` off upright."""
+    rotation = upright(palm.keypoints[0], palm.keypoints[2]) + PALM_TURN
     width, height = palm.box[1] - palm.box[0]
     centre = palm.box.mean(axis=0) + PALM_SHIFT * height * _up(rotation)
     side = PALM_SCALE * max(width, height)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import importlib
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 
-from app.recognition.errors import EstimatorError, ModelError
+from app.recognition.errors import EstimatorError
 from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image, Side, check_image
 from app.recognition.estimation.hands import MOST_HANDS
+from app.recognition.models import task_bundle_path
 from app.recognition.poses import FloatArray
-
-BundleName = Literal["pose_landmarker_full", "hand_landmarker"]
 
 MILLISECONDS: Final = 1000
 """MediaPipe counts time in whole milliseconds."""
@@ -27,9 +26,9 @@ class MediaPipeEstimator:
 
     Parameters
     ----------
-    bundles
+    models
         Folder with ``pose_landmarker_full.task`` and ``hand_landmarker.task``; by default the
-        ones built from the installed models.
+        one of the installed models.
 
     Raises
     ------
@@ -40,11 +39,10 @@ class MediaPipeEstimator:
 
     """
 
-    def __init__(self, bundles: Path | None = None) -> None:
+    def __init__(self, models: Path | None = None) -> None:
         self._mediapipe = _library()
-        self._bundles = {
-            name: _bundle(name, bundles) for name in ("pose_landmarker_full", "hand_landmarker")
-        }
+        self._pose_bundle = task_bundle_path("pose_landmarker_full", models)
+        self._hand_bundle = task_bundle_path("hand_landmarker", models)
         self._start()
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
@@ -92,12 +90,12 @@ class MediaPipeEstimator:
         try:
             self._pose = vision.PoseLandmarker.create_from_options(
                 vision.PoseLandmarkerOptions(
-                    base_options=self._base_options("pose_landmarker_full"), running_mode=video
+                    base_options=self._base_options(self._pose_bundle), running_mode=video
                 )
             )
             self._hand = vision.HandLandmarker.create_from_options(
                 vision.HandLandmarkerOptions(
-                    base_options=self._base_options("hand_landmarker"),
+                    base_options=self._base_options(self._hand_bundle),
                     running_mode=video,
                     num_hands=MOST_HANDS,
                 )
@@ -110,8 +108,8 @@ class MediaPipeEstimator:
         self._origin: float | None = None
         self._stamp = 0
 
-    def _base_options(self, name: BundleName) -> Any:
-        return self._mediapipe.tasks.BaseOptions(model_asset_path=str(self._bundles[name]))
+    def _base_options(self, bundle: Path) -> Any:
+        return self._mediapipe.tasks.BaseOptions(model_asset_path=str(bundle))
 
     def _next_stamp(self, time: float) -> int:
         """Milliseconds since the first frame, from 1 on: at 0 MediaPipe's filters do not start."""
@@ -130,17 +128,6 @@ def _library() -> Any:
             f"the backend 'mediapipe' cannot be imported ({error}); "
             f"run `pip install 'osg-studio[mediapipe]'` or use the backend 'onnx'"
         ) from error
-
-
-def _bundle(name: BundleName, folder: Path | None) -> Path:
-    if folder is None:
-        from app.recognition.models import task_bundle_path
-
-        return task_bundle_path(name)
-    path = folder / f"{name}.task"
-    if not path.is_file():
-        raise ModelError(f"no model file {path}; run `osg-studio models install`")
-    return path
 
 
 def _body(result: Any, size: FloatArray) -> Body | None:

@@ -50,7 +50,7 @@ class OnnxPoseEstimator:
         check_provider(provider)
 
         def load(name: ModelName, signature: Signature) -> ModelSession:
-            path = model_path(name) if models is None else models / f"{name}.onnx"
+            path = model_path(name, models)
             return ModelSession(path, signature, threads=threads, provider=provider)
 
         persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 
-REACH: Final = 4
-"""Heat-map cells looked at on each side of a landmark: MediaPipe's 9 x 9 window."""
+REACH: Final = 3
+"""Heat-map cells looked at on each side of a landmark: the 7 x 7 window of MediaPipe Tasks."""
 
 LEAST_PEAK: Final = 0.5
 """A heat map whose highest cell in the window is below this leaves the landmark as it is."""

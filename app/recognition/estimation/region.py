@@ -16,8 +16,15 @@ from app.recognition.poses import FloatArray
 TINIEST_SIDE: Final = 1.0
 """Pixels. A region smaller than one pixel shows nothing, whatever the model answers to it."""
 
-LARGEST_SIDE: Final = 1e6
-"""Pixels. Far beyond any image; above it a crop is one colour and its arithmetic loses digits."""
+LARGEST_SIDE: Final = 16384.0
+"""Pixels. Positions within a crop are kept in 16 bits, and this leaves room to turn it."""
+
+SUBPIXEL_BITS: Final = 5
+"""A crop is sampled at positions rounded to 1/32 pixel.
+
+That is what OpenCV did up to 4.x and what MediaPipe does; from OpenCV 5 on its own functions
+sample exactly, which moves landmarks by up to 0.04 of the frame in hard images.
+"""
 
 ZERO_BORDER: Final = cv2.BORDER_CONSTANT
 """Black where the region leaves the image: what the detectors were trained on."""
@@ -95,7 +102,7 @@ class Region:
     def crop(
         self, image: Image, size: int, border: int, out: npt.NDArray[np.uint8] | None = None
     ) -> npt.NDArray[np.uint8]:
-        """Cut the region out of `image`, upright and scaled to `size` x `size`, bilinearly.
+        """Cut the region, a `usable` one, out of `image`, upright and scaled, bilinearly.
 
         Parameters
         ----------
@@ -109,15 +116,29 @@ class Region:
             ``(size, size, 3)`` array to write into, so that no memory is taken per frame.
 
         """
-        cropped = cv2.warpAffine(
-            image,
-            self.matrix(size),
-            (size, size),
-            dst=out,
-            flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-            borderMode=border,
-        )
+        whole, fraction = self._positions(size)
+        cropped = cv2.remap(image, whole, fraction, cv2.INTER_LINEAR, dst=out, borderMode=border)
         return np.asarray(cropped, dtype=np.uint8)
+
+    def _positions(self, size: int) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint16]]:
+        """Where in the image each pixel of the crop lies, in OpenCV's fixed-point form.
+
+        Returns
+        -------
+        ``(size, size, 2)`` whole pixels (x, y), and ``(size, size)`` the fractions of both.
+        """
+        matrix = self.matrix(size) * (1 << SUBPIXEL_BITS)
+        along = np.arange(size)
+        x, y = (
+            np.rint(np.add.outer(row * along + origin, column * along)).astype(np.int32)
+            for column, row, origin in matrix
+        )
+        whole = np.empty((size, size, 2), np.int16)
+        np.right_shift(x, SUBPIXEL_BITS, out=whole[..., 0], casting="unsafe")
+        np.right_shift(y, SUBPIXEL_BITS, out=whole[..., 1], casting="unsafe")
+        mask = (1 << SUBPIXEL_BITS) - 1
+        fraction = ((y & mask) << SUBPIXEL_BITS) | (x & mask)
+        return whole, fraction.astype(np.uint16)
 
     def to_image(self, points: npt.NDArray[np.floating], size: int) -> FloatArray:
         """Map ``(N, 2)`` pixels of the `size` x `size` crop to pixels of the image."""
@@ -127,7 +148,8 @@ class Region:
     def to_crop(self, points: npt.NDArray[np.floating], size: int) -> FloatArray:
         """Map ``(N, 2)`` pixels of the image to pixels of the `size` x `size` crop."""
         matrix = self.matrix(size)
-        return np.linalg.solve(matrix[:, :2], (points - matrix[:, 2]).T).T
+        offsets = (points - matrix[:, 2]).T
+        return np.asarray(np.linalg.solve(matrix[:, :2], offsets).T, dtype=np.float64)
 
     def overlap(self, other: Region) -> float:
         """Return intersection over union of the two squares, both taken as if upright.

@@ -74,6 +74,6 @@ def overlaps(box: FloatArray, boxes: FloatArray) -> FloatArray:
     end = np.minimum(box[1], boxes[:, 1])
     shared = np.clip(end - start, 0, None).prod(axis=-1)
     union = (box[1] - box[0]).prod() + (boxes[:, 1] - boxes[:, 0]).prod(axis=-1) - shared
-    ratio = np.zeros_like(shared)
+    ratio: FloatArray = np.zeros(len(boxes))
     np.divide(shared, union, out=ratio, where=union > 0)
     return ratio
