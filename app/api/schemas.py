@@ -219,6 +219,12 @@ class SampleView(BaseModel):
     size: int = Field(description="Bytes")
 
 
+class SampleChoice(Body):
+    """Which sample clip to add."""
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+
+
 class Health(BaseModel):
     """Whether the server works."""
 

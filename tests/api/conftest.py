@@ -1,0 +1,70 @@
+"""The real app on a real port, with a store and samples of the test's own."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.api.studio import Studio
+from app.recognition.models import installed_models
+from app.settings import Settings
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import PATIENCE_SECONDS, Running, running
+from tests.recognition.damaged_clips import write_clip
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "samples")
+
+
+@pytest.fixture
+def server(settings: Settings) -> Iterator[Running]:
+    with running(settings) as server:
+        yield server
+
+
+@pytest.fixture
+def client(server: Running) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.address, timeout=PATIENCE_SECONDS) as client:
+        yield client
+
+
+@pytest.fixture
+def studio(server: Running) -> Studio:
+    return server.studio
+
+
+@pytest.fixture
+def circle_clip(studio: Studio) -> str:
+    """Return the id of a clip with one take, a circle."""
+    return add_recorded_clip(studio, recording_of("circle"))
+
+
+@pytest.fixture
+def line_clip(studio: Studio) -> str:
+    """Return the id of a clip with one take, a line."""
+    return add_recorded_clip(studio, recording_of("line"))
+
+
+@pytest.fixture
+def language_id(client: httpx.Client) -> str:
+    """Return the id of an empty language."""
+    answer = client.post("/api/v1/languages", json={"name": "pool"})
+    assert answer.status_code == 201
+    return str(answer.json()["id"])
+
+
+@pytest.fixture
+def small_clip(tmp_path: Path) -> Path:
+    """Return a clip of twelve frames in which nobody is."""
+    return write_clip(tmp_path / "small.mp4")
+
+
+@pytest.fixture
+def models() -> None:
+    """Skip where the pose models are not installed."""
+    missing = [model.name for model in installed_models() if model.state != "ok"]
+    if missing:
+        pytest.skip(f"needs the models {missing}: run `osg-studio models install`")

@@ -1,0 +1,81 @@
+"""Recordings of a diver whose right hand draws, between two salutes; made of numbers, not video."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.api.studio import Studio
+from app.recognition import PoseSequence, Recording
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses import FloatArray
+from app.store import Clip
+
+RATE = 20
+SALUTE_SECONDS = 0.6
+STROKE_SECONDS = 2.0
+FRAME_SIZE = (640, 480)
+
+
+def circle(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of a circle, `share` in [0, 1] of the way round, in radii."""
+    angle = 2 * np.pi * share
+    return np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+
+
+def line(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of a line to the side and a little down."""
+    return np.stack([2 * share - 1, 0.3 * share], axis=1)
+
+
+SHAPES = {"circle": circle, "line": line}
+
+
+def recording_of(*shapes: str) -> Recording:
+    """Return a recording of takes, one per shape, with a salute before and after each."""
+    paths, scores = [], []
+    rest = np.zeros((round(SALUTE_SECONDS * RATE), 2))
+    between = np.zeros((RATE // 2, 2))
+    for shape in shapes:
+        stroke = SHAPES[shape](np.linspace(0, 1, round(STROKE_SECONDS * RATE)))
+        for path, score in ((rest, 1.0), (stroke, 0.0), (rest, 1.0), (between, 0.0)):
+            paths.append(path)
+            scores.append(np.full(len(path), score))
+    if not shapes:
+        paths, scores = [np.zeros((RATE, 2))], [np.zeros(RATE)]
+    return _recording(np.concatenate(paths), np.concatenate(scores))
+
+
+def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp4") -> str:
+    """Store a clip whose job is done, and return its id."""
+    partial = studio.clips.new_partial()
+    partial.write_bytes(bytes(range(256)) * 4)
+    width, height = recording.poses.frame_size
+    clip = Clip(name=name, media_type="video/mp4", size=1024, width=width, height=height)
+    added = studio.clips.add(clip, partial, "test")
+    studio.jobs.start(added.job.id)
+    recording.save(studio.clips.recording(clip.id))
+    studio.jobs.complete(added.job.id, len(recording.poses), recording.warnings)
+    return clip.id
+
+
+def _recording(wrist: FloatArray, salute: FloatArray) -> Recording:
+    frames = len(wrist)
+    xy = np.full((frames, len(POSE_LANDMARKS), 2), np.nan)
+    for name, place in {
+        "nose": (320, 100),
+        "left_shoulder": (370, 160),
+        "right_shoulder": (270, 160),
+        "left_hip": (350, 320),
+        "right_hip": (290, 320),
+        "left_wrist": (390, 320),
+    }.items():
+        xy[:, POSE_LANDMARKS.index(name)] = place
+    xy[:, POSE_LANDMARKS.index("right_wrist")] = (200, 200) + 80 * wrist
+    poses = PoseSequence(
+        landmarks=POSE_LANDMARKS,
+        xy=xy,
+        confidence=np.ones(xy.shape[:2]),
+        time=np.arange(frames) / RATE,
+        frame_size=FRAME_SIZE,
+    )
+    return Recording(poses=poses, hands=((),) * frames, salute=salute)

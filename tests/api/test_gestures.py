@@ -1,0 +1,151 @@
+"""Gestures over HTTP: saved from takes and ranges, changed, removed, shown."""
+
+from typing import Any
+
+import httpx
+import pytest
+
+from app.api.studio import Studio
+from app.recognition.png import decode_png
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import assert_problem
+from tests.api.test_languages import LANGUAGES, add_gesture
+
+
+def place(language_id: str, label: str = "") -> str:
+    return f"{LANGUAGES}/{language_id}/gestures{label and '/'}{label}"
+
+
+def test_a_take_becomes_a_gesture(client: httpx.Client, language_id: str, circle_clip: str) -> None:
+    saved = add_gesture(client, language_id, circle_clip)
+    assert saved.status_code == 201
+    assert saved.headers["etag"] == '"2"'
+    (gesture,) = saved.json()["gestures"]
+    assert gesture["label"] == "circle"
+    assert gesture["salient"] == ["right_wrist"]
+    image = client.get(gesture["thumbnail"])
+    assert image.headers["content-type"] == "image/png"
+    assert decode_png(image.content, (224, 224)).any()
+
+
+def test_from_salute_to_salute_means_the_stroke_and_any_other_range_itself(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    (take,) = client.get(f"/api/v1/clips/{circle_clip}/takes").json()
+    for label, start, end in (
+        ("by take", take["start"], take["end"]),
+        ("by stroke", take["stroke_start"], take["stroke_end"]),
+        ("by hand", take["start"] + 0.2, take["end"] - 0.5),
+    ):
+        body = {"label": label, "clip_id": circle_clip, "start": start, "end": end}
+        assert client.post(place(language_id), json=body).status_code == 201
+    images = [
+        client.get(gesture["thumbnail"]).content
+        for gesture in client.get(f"{LANGUAGES}/{language_id}").json()["gestures"]
+    ]
+    assert images[0] == images[1]
+    assert images[2] != images[0]
+
+
+def test_a_label_of_any_characters_can_be_addressed(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    label = "../up & 50% away/now?"
+    (gesture,) = add_gesture(client, language_id, circle_clip, label).json()["gestures"]
+    assert gesture["label"] == label
+    assert client.get(gesture["thumbnail"]).status_code == 200
+    address = gesture["thumbnail"].partition("/image")[0]
+    changed = client.patch(address, json={"label": "plain"}).json()
+    assert changed["labels"] == ["plain"]
+
+
+def test_a_gesture_changes_in_what_is_given_only(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip)
+    body = {"description": "round", "command": {"move": [1, 0]}}
+    client.patch(place(language_id, "circle"), json=body)
+    changed = client.patch(place(language_id, "circle"), json={"command": None})
+    (gesture,) = changed.json()["gestures"]
+    assert gesture["description"] == "round"
+    assert gesture["command"] is None
+    assert changed.json()["revision"] == 4
+
+
+def test_other_salient_keypoints_give_another_image(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    (before,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
+    body = {"salient": ["right_wrist", "left_wrist"]}
+    changed = client.patch(place(language_id, "circle"), json=body)
+    (after,) = changed.json()["gestures"]
+    assert set(after["salient"]) == {"right_wrist", "left_wrist"}
+    images = [client.get(gesture["thumbnail"]).content for gesture in (before, after)]
+    assert images[0] != images[1]
+
+
+def test_a_removed_gesture_is_gone_from_the_newest_revision_only(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip)
+    assert client.delete(place(language_id, "circle")).json()["labels"] == []
+    assert_problem(client.delete(place(language_id, "circle")), 404, "not_found")
+    older = client.get(f"{LANGUAGES}/{language_id}", params={"revision": 2})
+    assert older.json()["labels"] == ["circle"]
+
+
+def test_a_label_cannot_be_taken_twice(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip, "one")
+    add_gesture(client, language_id, circle_clip, "two")
+    assert_problem(add_gesture(client, language_id, circle_clip, "one"), 409, "label_taken")
+    renamed = client.patch(place(language_id, "two"), json={"label": "one"})
+    assert_problem(renamed, 409, "label_taken")
+    same = client.patch(place(language_id, "two"), json={"label": "two"})
+    assert same.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        ({"start": 3.0, "end": 1.0}, "range_empty"),
+        ({"start": 500.0, "end": 501.0}, "range_empty"),
+        ({"start": 1.0, "end": 1.01}, "gesture_unusable"),
+        ({"start": 0.0, "end": 0.5}, "gesture_unusable"),
+        ({"salient": ["third_hand"]}, "gesture_unusable"),
+        ({"label": "\u202e"}, "gesture_unusable"),
+        ({"label": " "}, "request_invalid"),
+        ({"start": -1}, "request_invalid"),
+    ],
+    ids=["reversed", "behind", "one frame", "still", "landmark", "direction", "blank", "negative"],
+)
+def test_a_demonstration_that_is_none_is_refused_and_changes_nothing(
+    client: httpx.Client, language_id: str, circle_clip: str, body: dict[str, Any], code: str
+) -> None:
+    refused = client.post(place(language_id), json={"label": "x", "clip_id": circle_clip, **body})
+    assert_problem(refused, 422, code)
+    assert client.get(f"{LANGUAGES}/{language_id}").json()["revision"] == 1
+
+
+def test_several_takes_want_a_choice(
+    client: httpx.Client, studio: Studio, language_id: str
+) -> None:
+    clip_id = add_recorded_clip(studio, recording_of("circle", "line"))
+    problem = assert_problem(add_gesture(client, language_id, clip_id), 422, "take_ambiguous")
+    assert "2 takes" in str(problem["detail"])
+    takes = client.get(f"/api/v1/clips/{clip_id}/takes").json()
+    body = {"label": "line", "clip_id": clip_id}
+    body |= {"start": takes[1]["start"], "end": takes[1]["end"]}
+    assert client.post(place(language_id), json=body).status_code == 201
+
+
+def test_an_imported_gesture_keeps_its_salient_keypoints(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip)
+    parameters = {"format": "osg-reference"}
+    exported = client.get(f"{LANGUAGES}/{language_id}/export", params=parameters).content
+    imported = client.post(f"{LANGUAGES}/import", content=exported).json()["id"]
+    changed = client.patch(place(imported, "circle"), json={"salient": ["left_wrist"]})
+    assert_problem(changed, 422, "gesture_unusable")

@@ -1,0 +1,71 @@
+"""Recognitions over HTTP: in full, repeatable, and kept."""
+
+import httpx
+import pytest
+
+from app.api.studio import Studio
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import assert_problem
+from tests.api.test_languages import LANGUAGES, add_gesture
+
+RECOGNITIONS = "/api/v1/recognitions"
+
+
+@pytest.fixture
+def spoken(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+    """Return the id of a language of a circle and a line."""
+    assert add_gesture(client, language_id, circle_clip, "circle").status_code == 201
+    assert add_gesture(client, language_id, line_clip, "line").status_code == 201
+    return language_id
+
+
+@pytest.mark.parametrize("shape", ["circle", "line"])
+def test_a_take_is_recognised_with_every_voters_distances(
+    client: httpx.Client, studio: Studio, spoken: str, shape: str
+) -> None:
+    clip_id = add_recorded_clip(studio, recording_of(shape))
+    body = {"clip_id": clip_id, "language_id": spoken, "expected": shape}
+    answer = client.post(RECOGNITIONS, json=body)
+    assert answer.status_code == 201
+    result = answer.json()
+    assert (result["label"], result["expected"]) == (shape, shape)
+    assert result["gestures"] == ["circle", "line"]
+    assert len(result["voters"]) == 7
+    assert [len(row) for row in result["distances"]] == [2] * 7
+    assert set(result["votes"]) == set(result["voters"])
+    assert (result["profile"], result["revision"]) == ("paper", 3)
+    assert client.get(f"{RECOGNITIONS}/{result['id']}").json() == result
+
+
+def test_a_recognition_outlives_what_its_language_becomes(
+    client: httpx.Client, spoken: str, line_clip: str
+) -> None:
+    body = {"clip_id": line_clip, "language_id": spoken}
+    result = client.post(RECOGNITIONS, json=body).json()
+    client.delete(f"{LANGUAGES}/{spoken}/gestures/line")
+    assert client.get(f"{RECOGNITIONS}/{result['id']}").json()["label"] == "line"
+    assert client.post(RECOGNITIONS, json=body).json()["gestures"] == ["circle"]
+    listed = client.get(RECOGNITIONS, params={"clip_id": line_clip}).json()
+    assert [row["revision"] for row in listed] == [4, 3]
+
+
+def test_a_clip_without_salutes_is_recognised_whole(
+    client: httpx.Client, studio: Studio, spoken: str
+) -> None:
+    clip_id = add_recorded_clip(studio, recording_of())
+    refused = client.post(RECOGNITIONS, json={"clip_id": clip_id, "language_id": spoken})
+    # Nothing moves in this one: it is taken, and said to be empty.
+    assert_problem(refused, 422, "poses_unusable")
+
+
+def test_what_cannot_be_recognised_says_why(
+    client: httpx.Client, language_id: str, circle_clip: str, spoken: str
+) -> None:
+    empty = client.post(LANGUAGES, json={"name": "empty"}).json()["id"]
+    body = {"clip_id": circle_clip, "language_id": empty}
+    assert_problem(client.post(RECOGNITIONS, json=body), 422, "language_invalid")
+    unknown = {"clip_id": circle_clip, "language_id": spoken, "profile": "psychic"}
+    problem = assert_problem(client.post(RECOGNITIONS, json=unknown), 422, "recognition")
+    assert "paper" in str(problem["detail"])
+    for missing in ({"clip_id": "x", "language_id": spoken}, body | {"language_id": "x"}):
+        assert_problem(client.post(RECOGNITIONS, json=missing), 404, "not_found")
