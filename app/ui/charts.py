@@ -150,7 +150,7 @@ def _nearness(distances: FloatArray) -> FloatArray:
     low = np.nanmin(np.where(np.isnan(finite), np.inf, finite), axis=1, keepdims=True)
     high = np.nanmax(np.where(np.isnan(finite), -np.inf, finite), axis=1, keepdims=True)
     span = np.where(high > low, high - low, 1.0)
-    return np.nan_to_num(1.0 - (finite - low) / span, nan=0.0, posinf=0.0, neginf=0.0)
+    return np.asarray(np.nan_to_num(1.0 - (finite - low) / span, nan=0.0), dtype=np.float64)
 
 
 def image_row(images: Sequence[tuple[str, npt.NDArray[np.uint8]]]) -> str:

@@ -18,6 +18,9 @@ from app.ui.style import PANEL_STYLE
 
 SPEEDS: Final = ("0.25x", "0.5x", "1x", "2x")
 
+HIDDEN_BAR: Final = '<style>[data-testid="floating-panel"] { display: none !important }</style>'
+"""In the place of the charts' cursor while there is nothing to play."""
+
 
 @dataclass(frozen=True)
 class PlaybackControls:
@@ -36,7 +39,7 @@ class PlaybackBar:
         self._times: FloatArray = np.zeros(1)
         gui.set_panel_label("Playback")
         gui.add_html(PANEL_STYLE)
-        self._cursor = gui.add_html(charts.cursor(0.0))
+        self._cursor = gui.add_html(HIDDEN_BAR)
         self.slider = gui.add_slider("Frame", 0, 1, 1, 0)
         self._clock = gui.add_html("")
         self.play = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY)
@@ -52,20 +55,22 @@ class PlaybackBar:
         self.speed.on_click(lambda _: controls.set_speed(float(self.speed.value.rstrip("x"))))
 
     def load(self, times: FloatArray) -> None:
-        """Take over the timestamps ``(T,)`` of another recording."""
+        """Take over the timestamps ``(T,)`` of another recording; `show` must follow."""
         self._times = times
-        self.slider.value = 0
+        self._move_slider(0)
         self.slider.max = max(1, len(times) - 1)
         self.set_playing(False)
-        self.show(0)
 
     def show(self, frame: int) -> None:
         """Show where playback stands."""
         times = self._times
-        self.slider.value = frame
+        self._move_slider(frame)
         self._clock.content = charts.clock(frame, len(times), float(times[frame]))
         span = float(times[-1] - times[0])
         self._cursor.content = charts.cursor(float(times[frame] - times[0]) / span if span else 0.0)
+
+    def _move_slider(self, frame: int) -> None:
+        self.slider.value = frame  # type: ignore[misc]  # mypy takes viser's setter for none
 
     def set_playing(self, playing: bool) -> None:
         """Let the button say what it does next."""

@@ -32,6 +32,7 @@ class Playback:
         self._speed = 1.0
         self._playing = False
         self._pending = False
+        self._untouched = True
         self._closed = False
         self._anchor = 0.0
         self._thread = Thread(target=self._run, name="playback", daemon=True)
@@ -47,16 +48,27 @@ class Playback:
         """Whether the clock runs."""
         return self._playing
 
-    def load(self, times: Sequence[float]) -> None:
-        """Take over the timestamps (seconds, increasing) of another recording, and stop."""
+    def load(self, times: Sequence[float], frame: int = 0) -> None:
+        """Take over another recording and stop at `frame`; playing begins at the start even so.
+
+        Parameters
+        ----------
+        times
+            Seconds, increasing, one per frame.
+        frame
+            Where to stand until someone plays or seeks.
+
+        """
         with self._changed:
             self._times = tuple(float(moment) for moment in times) or (0.0,)
             self._playing = False
-            self._set(0)
+            self._untouched = True
+            self._set(frame)
 
     def seek(self, frame: int) -> None:
         """Show `frame`, or the nearest there is, and go on from there if playing."""
         with self._changed:
+            self._untouched = False
             self._set(frame)
 
     def redraw(self, frame: int) -> None:
@@ -70,8 +82,9 @@ class Playback:
         """Play or pause; from the end it starts over. Returns whether it plays now."""
         with self._changed:
             self._playing = not self._playing and len(self._times) > 1
-            if self._playing and self._frame >= len(self._times) - 1:
+            if self._playing and (self._untouched or self._frame >= len(self._times) - 1):
                 self._frame = 0
+            self._untouched = False
             self._set(self._frame)
             return self._playing
 

@@ -19,11 +19,11 @@ WALL_GAP = 0.03
 LAYERS: Final = {"rim": 0.002, "trail": 0.004, "bones": 0.006, "joints": 0.009}
 """How far in front of the video plane things are drawn, so that they do not flicker into it."""
 
-DIM = 0.35
+DIM = 0.5
 """Brightness of the part of a trail that is still to come."""
 
-CAMERA_POSITION: Final = (-2.3, -1.15, -2.25)
-CAMERA_TARGET: Final = (-0.02, 0.2, 0.62)
+CAMERA_POSITION: Final = (-2.75, -1.15, -1.85)
+CAMERA_TARGET: Final = (0.0, 0.2, 0.66)
 """Left of the video and above it: frame, trails and back wall are all seen, none edge-on."""
 
 
@@ -48,7 +48,7 @@ class SpaceTimeCube:
         server.initial_camera.position = CAMERA_POSITION
         server.initial_camera.look_at = CAMERA_TARGET
         server.initial_camera.up = (0.0, -1.0, 0.0)
-        server.initial_camera.fov = 0.62
+        server.initial_camera.fov = 0.57
         self.clear()
 
     def clear(self) -> None:
@@ -114,7 +114,7 @@ class SpaceTimeCube:
         )
         for second in ticks[:: max(1, len(ticks) // 4)]:
             text = text_image(f"{second:g} s", theme.ink)
-            height = 0.04
+            height = 0.048
             width = height * text.shape[1] / text.shape[0]
             scene.add_image(
                 f"/cube/seconds/{second:g}",
@@ -253,7 +253,8 @@ class Wall:
         self.image = drawing.image
         paths = cube.points[:, [cube.landmarks.index(name) for name in salient], :2]
         low, high = np.nanmin(paths, axis=(0, 1)), np.nanmax(paths, axis=(0, 1))
-        self.centre = tuple(float(value) for value in (low + high) / 2)
+        middle = (low + high) / 2
+        self.centre = (float(middle[0]), float(middle[1]))
         extent = float((high - low).max())
         if drawing.trajectory is not None and torso_length is not None:
             xy = drawing.trajectory.xy

@@ -103,6 +103,8 @@ div:has(> .osg-player) ~ div:nth-child(5) button { min-width: 96px; }
     grid-template: "slider slider" "play clock" "step speed" / auto minmax(0, 1fr); }
   div:has(> .osg-player) ~ div:nth-child(6) { padding-inline: 10px 0 !important; }
 }
+/* The sheet that takes the panels' place on a phone is as wide as the phone. */
+div[style*="width: 20em"] { width: 100% !important; }
 @media (max-width: 560px) {
   div:has(> div > .osg-player) {
     grid-template: "slider slider" "play clock" "step step" "speed speed" / auto minmax(0, 1fr); }

@@ -99,9 +99,9 @@ def time_colours(share: FloatArray) -> npt.NDArray[np.uint8]:
     """
     stops = np.linspace(0, 1, len(_TIME_RAMP))
     channels = [np.interp(share, stops, _TIME_RAMP[:, channel]) for channel in range(3)]
-    return np.rint(np.stack(channels, axis=-1)).astype(np.uint8)
+    return np.asarray(np.rint(np.stack(channels, axis=-1)), dtype=np.uint8)
 
 
 def linear(srgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     """Undo the sRGB transfer curve: viser shows colours per vertex of a line without doing so."""
-    return np.rint((srgb / 255.0) ** 2.2 * 255.0).astype(np.uint8)
+    return np.asarray(np.rint((srgb / 255.0) ** 2.2 * 255.0), dtype=np.uint8)

@@ -27,6 +27,10 @@ from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube, Wall
 from app.ui.theme import DARK, LIGHT
 
+FIRST_LOOK = 0.45
+"""Share of a range at which it is first shown: half of the trail is behind it, half ahead, and
+the back wall is still in view."""
+
 
 @dataclass(frozen=True)
 class WorkspaceView:
@@ -122,7 +126,7 @@ class Workspace:
         self._lock = Lock()
         self._view: WorkspaceView | None = None
         self._filmstrip: Filmstrip | None = None
-        self._first = 0
+        self._first = self._frames = 0
         self._painted = -1
         with _quiet():
             self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
@@ -200,14 +204,14 @@ class Workspace:
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
             wall = _wall(drawing, cube, salient, shown.poses)
-        self._first, self._painted = shown.first, -1
+        self._first, self._frames, self._painted = shown.first, len(shown.poses), -1
         last = shown.first + len(shown.poses) - 1
         self._filmstrip = Filmstrip(
             view.video, shown.first, last, lambda index: self.playback.redraw(index - shown.first)
         )
         self._scene.show(cube, salient, wall)
         self._bar.load(shown.poses.time)
-        self.playback.load(shown.poses.time.tolist())
+        self.playback.load(shown.poses.time.tolist(), first_look(len(shown.poses)))
         start = float(shown.poses.time[0])
         self._inspector.show_tracks(trajectory, start, (shown.poses.time, shown.salute))
         self._filmstrip.start()
@@ -221,14 +225,19 @@ class Workspace:
 
     def _draw(self, frame: int) -> None:
         """Draw a frame; called by the playback alone."""
+        with self._lock:
+            if self._frames:
+                # A frame that was due before another view was shown may lie beyond its end.
+                self._draw_locked(min(frame, self._frames - 1))
+
+    def _draw_locked(self, frame: int) -> None:
         image = None
         if self._filmstrip is not None:
             nearest = self._filmstrip.nearest(self._first + frame)
             if nearest is not None and nearest[0] != self._painted:
                 self._painted, image = nearest
         self._scene.seek(frame, image)
-        if self._view is not None:
-            self._bar.show(frame)
+        self._bar.show(frame)
 
     def _configure_theme(self) -> None:
         self._server.gui.configure_theme(
@@ -237,6 +246,11 @@ class Workspace:
             show_share_button=False,
             brand_color=self._theme.accent,
         )
+
+
+def first_look(frames: int) -> int:
+    """Return the frame to stand at first: past and future trails are both seen from there."""
+    return round(FIRST_LOOK * (frames - 1))
 
 
 def _salient_motion(
@@ -268,8 +282,9 @@ def _compared_images(
         gesture.label: gesture for gesture in (view.language.gestures if view.language else ())
     }
     chosen = view.recognition.nearest
-    captions = [(chosen, f"{chosen} (chosen)")]
-    if view.expected is not None and view.expected != chosen:
+    both = " and expected" if view.expected == chosen else ""
+    captions = [(chosen, f"{chosen} (chosen{both})")]
+    if view.expected is not None and not both:
         captions.insert(0, (view.expected, f"{view.expected} (expected)"))
     images += [(caption, known[label].image) for label, caption in captions if label in known]
     return images

@@ -6,7 +6,7 @@ import { duration, plural, timeLeft } from "./format.js";
 import { state, update } from "./state.js";
 import { attempt, toast } from "./toasts.js";
 
-const BUSY = new Set(["queued", "running"]);
+export const BUSY = new Set(["queued", "running"]);
 const STAGES = { queued: "Waiting for its turn", starting: "Starting", poses: "Finding poses", saving: "Saving" };
 
 export async function reloadClips() {
@@ -26,7 +26,8 @@ export function followJob(job) {
   if (!clip || clip.status !== job.status) reloadClips();
 }
 
-function statusText(clip, job) {
+/** Say in words how far a clip is. */
+export function statusText(clip, job) {
   if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
   if (clip.status === "cancelled") return "Cancelled before its poses were found";
   if (BUSY.has(clip.status)) {
@@ -63,6 +64,15 @@ function buttons(clip) {
   return [again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
 }
 
+/** The clip's picture; once made it is kept, since progress redraws the rest often. */
+function posterOf(clip, element) {
+  const known = element?.querySelector(".poster:not(.blank)");
+  if (known) return known;
+  const poster = h("img", { className: "poster", src: api.clips.poster(clip.id), alt: "", loading: "lazy", width: 64, height: 48 });
+  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
+  return poster;
+}
+
 function draw(clip, element) {
   const job = state.jobs.get(clip.job_id);
   const busy = BUSY.has(clip.status);
@@ -73,11 +83,9 @@ function draw(clip, element) {
   drawn.dataset.signature = signature;
   drawn.className = `clip ${clip.status}${chosen ? " chosen" : ""}`;
   const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
-  const poster = h("img", { className: "poster", src: api.clips.poster(clip.id), alt: "", loading: "lazy", width: 64, height: 48 });
-  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
   drawn.replaceChildren(
     h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },
-      poster,
+      posterOf(clip, element),
       h("span", { className: "clip-text" },
         h("b", {}, clip.name),
         h("span", { className: "stage-text" }, statusText(clip, job)),
@@ -104,21 +112,16 @@ async function addSample(sample, button) {
   select(accepted.id);
 }
 
-/** Offer the sample clips: openly while there is nothing else, folded away later. */
-export function drawSamples({ samples, clips, uploads }) {
-  const box = byId("samples");
-  if (!samples.length) return box.replaceChildren();
-  const open = box.querySelector("details")?.open ?? !(clips.length || uploads.length);
-  const known = box.querySelectorAll("button").length;
-  if (known === samples.length) {
-    if (clips.length && box.dataset.first) { box.querySelector("details").open = false; delete box.dataset.first; }
-    return undefined;
-  }
-  if (!clips.length) box.dataset.first = "yes";
-  const list = h("ul", {}, samples.map((sample) => {
+/** Make the list of sample clips, each a button that adds it. */
+export function samplesList(samples) {
+  return h("ul", { className: "samples" }, samples.map((sample) => {
     const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
     button.onclick = () => addSample(sample, button);
     return h("li", {}, button);
   }));
-  return box.replaceChildren(h("details", { open }, h("summary", {}, "No clip at hand? Try a sample"), list));
+}
+
+/** Offer the sample clips in the library, folded away. */
+export function drawSamples({ samples }) {
+  byId("samples").replaceChildren(...(samples.length ? [h("details", {}, h("summary", {}, "Sample clips"), samplesList(samples))] : []));
 }

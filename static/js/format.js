@@ -17,6 +17,9 @@ export function duration(seconds) {
   return `${Math.floor(whole / 60)} min ${String(whole % 60).padStart(2, "0")} s`;
 }
 
-export const timeLeft = (seconds) => (seconds >= 1 ? `${duration(Math.ceil(seconds))} left` : "almost done");
+export function timeLeft(seconds) {
+  if (seconds < 1) return "almost done";
+  return `${seconds < 60 ? `${Math.ceil(seconds)} s` : duration(seconds)} left`;
+}
 
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

@@ -80,7 +80,7 @@ function draw(gesture, element) {
   return card;
 }
 
-export function drawGestures({ gestures }) {
+export function drawGestures({ gestures, result }) {
   const members = gestures?.gestures ?? [];
   byId("gesture-count").textContent = members.length ? String(members.length) : "";
   const empty = byId("gestures-empty");
@@ -90,7 +90,7 @@ export function drawGestures({ gestures }) {
     : "No language yet. Make one with +, or drop a language file (.json).";
   reconcile(byId("gestures"), members, (gesture) => gesture.label, draw);
   const expected = byId("expected");
-  const chosen = expected.value;
+  const chosen = result?.expected ?? expected.value;
   expected.replaceChildren(h("option", { value: "" }, "not told"), ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)));
   expected.value = members.some((gesture) => gesture.label === chosen) ? chosen : "";
 }

@@ -9,6 +9,7 @@ import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButt
 import { follow, readUrl, selectedClip, state, update } from "./state.js";
 import { attempt } from "./toasts.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
+import { drawWelcome } from "./welcome.js";
 import { followTheme, openWorkspace, restart } from "./workspace.js";
 
 /** Hear of every change on the server; after a break, load everything again. */
@@ -47,7 +48,8 @@ function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
-  follow(["samples", "clips", "uploads"], drawSamples);
+  follow(["samples"], drawSamples);
+  follow(["samples", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExport);
   follow(["gestures", "result"], drawGestures);
@@ -83,7 +85,7 @@ async function start() {
     reloadLanguages(),
     openWorkspace().catch(() => null),
   ]);
-  update({ clips: clips ?? [], samples: samples ?? [] });
+  update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
   if (state.clip && clips && !selectedClip()) update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();
