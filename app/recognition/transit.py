@@ -56,7 +56,7 @@ CORNER_REACH = 0.15
 """Seconds before and after a minimum in which the hand's direction is measured: longer than the
 smoothing rounds a corner."""
 
-PAUSE = 0.15
+PAUSE = 0.1
 """Share of a neighbouring peak below which the hand pauses; of a minimum-jerk stroke this cuts off
 less than a hundredth of the way."""
 
@@ -152,12 +152,12 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     pieces = _pieces(motion)
     if len(pieces) < 2:
         return whole
+    if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):
+        # There and back: the two pieces may be the whole gesture, a line drawn twice.
+        return whole
     moving = float(motion.time[pieces[-1].last] - motion.time[pieces[0].first])
     goes = _is_reach(motion, pieces[0], moving)
     comes = last_salute is not None and _is_reach(motion, pieces[-1], moving)
-    if goes and comes and len(pieces) == 2:
-        # There and back: the two pieces may be the whole gesture, a line drawn twice.
-        return whole
     return Span(
         start=max(whole.start, float(motion.time[pieces[1].first])) if goes else whole.start,
         end=min(whole.end, float(motion.time[pieces[-2].last])) if comes else whole.end,
@@ -264,13 +264,15 @@ def _is_reach(motion: _Motion, piece: _Piece, moving: float) -> bool:
 
     `moving` is how many seconds all movement between the salutes takes.
     """
-    inside = slice(piece.first, piece.last + 1)
-    path = motion.xy[inside]
-    way = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     lasts = float(motion.time[piece.last] - motion.time[piece.first])
-    return bool(
-        way > 0
-        and np.linalg.norm(path[-1] - path[0]) >= STRAIGHT_REACH * way
-        and lasts <= min(LONGEST_REACH, LARGEST_SHARE * moving)
-        and motion.known[inside].all()
+    return (
+        lasts <= min(LONGEST_REACH, LARGEST_SHARE * moving)
+        and _is_straight(motion, piece)
+        and bool(motion.known[piece.first : piece.last + 1].all())
     )
+
+
+def _is_straight(motion: _Motion, piece: _Piece) -> bool:
+    path = motion.xy[piece.first : piece.last + 1]
+    way = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    return bool(0 < STRAIGHT_REACH * way <= np.linalg.norm(path[-1] - path[0]))

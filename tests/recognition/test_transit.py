@@ -1,0 +1,313 @@
+"""Transit: the reaches between salute and stroke are found, and nothing is cut in doubt."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.transit import LARGEST_SHARE, Span, find_stroke
+from tests.recognition.motions import (
+    RESTING_PLACE,
+    SALUTE_PLACE,
+    Movement,
+    Performance,
+    circle,
+    perform,
+    still,
+)
+
+TOP = np.array([-0.9, -0.3])
+HOLD = 0.5
+
+
+def moved(place: FloatArray, right: float, down: float) -> FloatArray:
+    return np.asarray(place + np.array([right, down]), dtype=np.float64)
+
+
+STROKES = {
+    "circle": (Movement(circle(TOP), 1.6),),
+    "line": (Movement(moved(TOP, 0.9, 0.0), 0.8),),
+    "wedge": (Movement(moved(TOP, 0.4, 0.8), 0.7), Movement(moved(TOP, 0.8, 0.0), 0.7)),
+    "triangle": (
+        Movement(moved(TOP, 0.4, 0.8), 0.7),
+        Movement(moved(TOP, -0.4, 0.8), 0.7),
+        Movement(TOP, 0.7),
+    ),
+}
+
+
+def gesture(
+    strokes: tuple[Movement, ...],
+    *,
+    pause: float = 0.15,
+    reach: float = 0.5,
+    noise: float = 0.0,
+    rate: float = 25.0,
+) -> Performance:
+    """Salute, reach, pause, strokes, pause, return, salute."""
+    start, end = TOP, np.atleast_2d(strokes[-1].path)[-1]
+    return perform(
+        [
+            still(SALUTE_PLACE, HOLD),
+            Movement(start, reach),
+            still(start, pause),
+            *strokes,
+            still(end, pause),
+            Movement(SALUTE_PLACE, reach),
+            still(SALUTE_PLACE, HOLD),
+        ],
+        noise=noise,
+        rate=rate,
+    )
+
+
+def salutes(performance: Performance) -> tuple[Span, Span]:
+    """Say when the salutes of `gesture` are seen: exactly while the hand is still."""
+    moments = performance.moments
+    return Span(0.0, moments[1]), Span(moments[-2], moments[-1])
+
+
+def stroke_of(performance: Performance) -> Span:
+    return find_stroke(performance.poses, *salutes(performance))
+
+
+def true_stroke(performance: Performance) -> Span:
+    """From the end of the first pause to the beginning of the second."""
+    return Span(performance.moments[3], performance.moments[-4])
+
+
+@pytest.mark.parametrize("name", STROKES)
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize("pause", [0.0, 0.15, 0.6])
+def test_both_reaches_are_left_out(name: str, noise: float, pause: float) -> None:
+    performance = gesture(STROKES[name], noise=noise, pause=pause)
+    found, true = stroke_of(performance), true_stroke(performance)
+    assert found.start == pytest.approx(true.start, abs=0.2)
+    assert found.end == pytest.approx(true.end, abs=0.2)
+    wrist = performance.poses.between(found.start, found.end).column("right_wrist")
+    whole = performance.poses.between(true.start, true.end).column("right_wrist")
+    assert np.allclose(np.ptp(wrist, axis=0), np.ptp(whole, axis=0), atol=12)
+
+
+@pytest.mark.parametrize("rate", [10.0, 15.0, 30.0, 60.0])
+def test_the_frame_rate_does_not_matter(rate: float) -> None:
+    performance = gesture(STROKES["circle"], rate=rate)
+    found, true = stroke_of(performance), true_stroke(performance)
+    assert (found.start, found.end) == pytest.approx((true.start, true.end), abs=0.2)
+
+
+def test_a_salute_kept_up_while_leaving_and_taken_before_arriving_changes_nothing() -> None:
+    performance = gesture(STROKES["wedge"])
+    moments = performance.moments
+    early = find_stroke(
+        performance.poses, Span(0.0, moments[1] + 0.25), Span(moments[-2] - 0.25, moments[-1])
+    )
+    assert (early.start, early.end) == pytest.approx(
+        (true_stroke(performance).start, true_stroke(performance).end), abs=0.2
+    )
+
+
+def test_a_salute_kept_up_to_the_stroke_costs_nothing_of_it() -> None:
+    performance = gesture(STROKES["wedge"])
+    true = true_stroke(performance)
+    found = find_stroke(
+        performance.poses,
+        Span(0.0, true.start),
+        Span(true.end, performance.moments[-1]),
+    )
+    assert (found.start, found.end) == pytest.approx((true.start, true.end), abs=0.1)
+
+
+def test_raising_the_hand_into_the_salute_is_not_taken_for_the_reach() -> None:
+    performance = perform(
+        [
+            Movement(moved(SALUTE_PLACE, 0.3, 1.2), 0.01),
+            Movement(SALUTE_PLACE, 0.5),
+            still(SALUTE_PLACE, HOLD),
+            Movement(TOP, 0.5),
+            Movement(circle(TOP), 1.6),
+            Movement(SALUTE_PLACE, 0.5),
+            still(SALUTE_PLACE, HOLD),
+        ]
+    )
+    moments = performance.moments
+    found = find_stroke(performance.poses, Span(0.3, moments[3]), Span(moments[-2], moments[-1]))
+    assert (found.start, found.end) == pytest.approx((moments[4], moments[5]), abs=0.2)
+
+
+def test_two_hands_that_set_out_together_are_followed_together() -> None:
+    left_start = np.array([0.9, -0.3])
+    pause = 0.15
+    right = [
+        still(SALUTE_PLACE, HOLD),
+        Movement(TOP, 0.5),
+        still(TOP, pause),
+        Movement(moved(TOP, 0.0, 0.9), 0.8),
+        still(moved(TOP, 0.0, 0.9), pause),
+        Movement(SALUTE_PLACE, 0.5),
+        still(SALUTE_PLACE, HOLD),
+    ]
+    left = [
+        still(RESTING_PLACE, HOLD),
+        Movement(left_start, 0.5),
+        still(left_start, pause),
+        Movement(moved(left_start, 0.0, 0.9), 0.8),
+        still(moved(left_start, 0.0, 0.9), pause),
+        Movement(RESTING_PLACE, 0.5),
+    ]
+    performance = perform(right, left)
+    found, true = stroke_of(performance), true_stroke(performance)
+    assert (found.start, found.end) == pytest.approx((true.start, true.end), abs=0.2)
+
+
+def untouched(performance: Performance) -> bool:
+    first, last = salutes(performance)
+    return stroke_of(performance) == Span(first.end, last.start)
+
+
+def test_a_line_there_and_back_is_kept_whole() -> None:
+    there = moved(SALUTE_PLACE, 0.9, 0.3)
+    assert untouched(
+        perform(
+            [
+                still(SALUTE_PLACE, HOLD),
+                Movement(there, 0.7),
+                Movement(SALUTE_PLACE, 0.7),
+                still(SALUTE_PLACE, HOLD),
+            ]
+        )
+    )
+
+
+def test_one_flowing_movement_is_kept_whole() -> None:
+    assert untouched(
+        perform(
+            [
+                still(SALUTE_PLACE, HOLD),
+                Movement(circle(SALUTE_PLACE), 2.0),
+                still(SALUTE_PLACE, HOLD),
+            ]
+        )
+    )
+
+
+def test_a_bent_way_is_no_reach() -> None:
+    """A hook, a pause and a wave: nothing here is a straight way to somewhere."""
+    hook = np.vstack([moved(SALUTE_PLACE, 0.5, 0.0), moved(SALUTE_PLACE, 0.5, 0.5), SALUTE_PLACE])
+    back = circle(SALUTE_PLACE, 0.3)
+    assert untouched(
+        perform(
+            [
+                still(SALUTE_PLACE, HOLD),
+                Movement(hook, 1.0),
+                still(SALUTE_PLACE, 0.2),
+                Movement(back, 1.0),
+                still(SALUTE_PLACE, HOLD),
+            ]
+        )
+    )
+
+
+def test_a_long_slow_way_is_no_reach() -> None:
+    far = moved(SALUTE_PLACE, 1.5, 0.8)
+    assert untouched(
+        perform(
+            [
+                still(SALUTE_PLACE, HOLD),
+                Movement(far, 3.0),
+                Movement(circle(far), 1.6),
+                Movement(SALUTE_PLACE, 3.0),
+                still(SALUTE_PLACE, HOLD),
+            ]
+        )
+    )
+
+
+def test_hands_that_do_not_move_are_kept_whole() -> None:
+    assert untouched(perform([still(SALUTE_PLACE, HOLD)] * 3, noise=0.01))
+
+
+def test_a_hand_lost_on_its_way_keeps_that_way() -> None:
+    performance = gesture(STROKES["circle"])
+    moments = performance.moments
+    xy = performance.poses.xy.copy()
+    lost = (performance.poses.time > moments[1] - 0.1) & (performance.poses.time < moments[2])
+    xy[lost] = np.nan
+    found = find_stroke(replace(performance.poses, xy=xy), *salutes(performance))
+    assert found.start == moments[1]
+    assert found.end == pytest.approx(true_stroke(performance).end, abs=0.2)
+
+
+def test_an_unclosed_take_loses_only_its_first_reach() -> None:
+    performance = gesture(STROKES["circle"])
+    first, _ = salutes(performance)
+    true = true_stroke(performance)
+    open_ended = performance.poses.between(0, true.end)
+    found = find_stroke(open_ended, first, None)
+    assert found.start == pytest.approx(true.start, abs=0.2)
+    assert found.end == open_ended.time[-1]
+
+
+def test_poses_without_wrists_are_kept_whole() -> None:
+    performance = gesture(STROKES["circle"])
+    first, last = salutes(performance)
+    nose_only = PoseSequence(
+        landmarks=("nose",),
+        xy=performance.poses.column("right_wrist")[:, None],
+        time=performance.poses.time,
+        frame_size=(640, 640),
+    )
+    assert find_stroke(nose_only, first, last) == Span(first.end, last.start)
+
+
+@given(
+    scale=st.floats(0.2, 5),
+    shift=st.tuples(st.floats(-300, 300), st.floats(-300, 300)),
+    later=st.integers(-50, 50),
+    name=st.sampled_from(sorted(STROKES)),
+)
+@settings(max_examples=30, deadline=None)
+def test_distance_place_and_clock_do_not_matter(
+    scale: float, shift: tuple[float, float], later: int, name: str
+) -> None:
+    performance = gesture(STROKES[name], noise=0.005)
+    first, last = salutes(performance)
+    elsewhere = replace(
+        performance.poses,
+        xy=performance.poses.xy * scale + np.array(shift),
+        time=performance.poses.time + later,
+    )
+    found = find_stroke(
+        elsewhere,
+        Span(first.start + later, first.end + later),
+        Span(last.start + later, last.end + later),
+    )
+    before = find_stroke(performance.poses, first, last)
+    assert (found.start, found.end) == pytest.approx(
+        (before.start + later, before.end + later), abs=0.02
+    )
+
+
+@given(seed=st.integers(0, 10**6), count=st.integers(0, 6))
+@settings(max_examples=40, deadline=None)
+def test_a_stroke_always_remains_inside_the_take(seed: int, count: int) -> None:
+    random = np.random.default_rng(seed)
+    movements = [
+        Movement(random.uniform(-1, 1, 2), float(random.uniform(0.2, 1.5))) for _ in range(count)
+    ]
+    performance = perform(
+        [
+            still(SALUTE_PLACE, HOLD),
+            *movements,
+            Movement(SALUTE_PLACE, 0.5),
+            still(SALUTE_PLACE, HOLD),
+        ]
+    )
+    first, last = salutes(performance)
+    found = stroke_of(performance)
+    assert first.end <= found.start < found.end <= last.start
+    whole = performance.moments[-2] - performance.moments[1]
+    assert found.end - found.start >= (1 - 2 * LARGEST_SHARE) * whole - 0.2
