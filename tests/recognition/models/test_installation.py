@@ -14,15 +14,27 @@ import sys
 for library in ("onnx", "flatbuffers"):
     sys.modules[library] = None  # importing it fails, as where it is not installed
 from pathlib import Path
+from app.recognition.errors import ModelError
 from app.recognition.models import install_models, model_path
-install_models(source=Path(sys.argv[1]))
-print(model_path("pose_detection"))
+try:
+    install_models(source=Path(sys.argv[1]))
+    print(model_path("pose_detection"))
+except ModelError as error:
+    print(error)
 """
-"""A robot's program that installs from an exported folder without the converter's libraries."""
+"""A robot's program: it installs from an argument, without the converter's libraries."""
 
 
 def states(directory: Path) -> set[str]:
     return {one.state for one in installed_models(directory)}
+
+
+def output_of_robot(source: Path) -> str:
+    finished = subprocess.run(
+        [sys.executable, "-c", ROBOT, str(source)], capture_output=True, text=True, check=False
+    )
+    assert finished.stderr == ""
+    return finished.stdout.strip()
 
 
 def contents(directory: Path) -> dict[str, bytes]:
@@ -45,11 +57,16 @@ def test_a_robot_installs_an_export_without_the_converters_libraries(
     exported: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path))
-    finished = subprocess.run(
-        [sys.executable, "-c", ROBOT, str(exported)], capture_output=True, text=True, check=False
-    )
-    assert finished.stderr == ""
-    assert finished.stdout.strip() == str(tmp_path / "pose_detection.onnx")
+    assert output_of_robot(exported) == str(tmp_path / "pose_detection.onnx")
+
+
+def test_converting_without_the_libraries_says_which_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path))
+    message = output_of_robot(tmp_path / "mediapipe.whl")
+    assert "converting the models needs onnx, which is not installed; run `pip install" in message
+    assert "osg-studio models install --source DIR" in message
 
 
 def test_a_complete_installation_needs_neither_network_nor_source(

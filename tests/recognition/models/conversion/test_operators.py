@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.errors import ModelError
@@ -50,7 +50,6 @@ windows = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=30)
 @given(case=windows, channels=st.tuples(st.integers(1, 4), st.integers(1, 4)))
 def test_convolution(schemas: Schemas, case: dict[str, Any], channels: tuple[int, int]) -> None:
     generator = np.random.default_rng(case["seed"])
@@ -72,7 +71,6 @@ def test_convolution(schemas: Schemas, case: dict[str, Any], channels: tuple[int
     assert_equal_on_both(operator, schemas, case["seed"])
 
 
-@settings(max_examples=30)
 @given(case=windows, channels=st.integers(1, 4))
 def test_depthwise_convolution(schemas: Schemas, case: dict[str, Any], channels: int) -> None:
     generator = np.random.default_rng(case["seed"])
@@ -92,7 +90,6 @@ def test_depthwise_convolution(schemas: Schemas, case: dict[str, Any], channels:
     assert_equal_on_both(operator, schemas, case["seed"])
 
 
-@settings(max_examples=30)
 @given(case=windows)
 def test_max_pooling(schemas: Schemas, case: dict[str, Any]) -> None:
     options = schemas.model.Pool2DOptionsT()
@@ -116,7 +113,6 @@ def output_shape(case: dict[str, Any], dilation: int, channels: int) -> tuple[in
     border=st.tuples(*[st.tuples(st.integers(0, 2), st.integers(0, 3))] * 3),
     seed=st.integers(0, 9),
 )
-@settings(max_examples=15)
 def test_padding(schemas: Schemas, border: tuple[tuple[int, int], ...], seed: int) -> None:
     rows = np.array([(0, 0), *border], np.int32)
     shape = tuple(int(size) for size in np.array([1, 4, 5, 3]) + rows.sum(axis=1))

@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.models import TaskBundleName, task_bundle_path
@@ -52,7 +52,6 @@ def test_every_model_of_an_installed_bundle_is_described(
             assert description(bundle.read(part), schemas).subgraphMetadata[0].inputTensorMetadata
 
 
-@settings(max_examples=20)
 @given(sizes=st.lists(st.integers(0, 200), min_size=1, max_size=4))
 def test_parts_of_any_length_are_aligned(schemas: Schemas, sizes: list[int]) -> None:
     parts = {
