@@ -62,7 +62,7 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
 
     """
     _require_space(request, target, settings)
-    parser = _FilePart(_boundary(request), settings.max_clip_bytes)
+    parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
             async for chunk in _paced(request, settings):
@@ -173,6 +173,22 @@ class _FilePart:
         self._ended = True
 
 
+def _file_part(request: Request, settings: Settings) -> _FilePart:
+    kind, options = parse_options_header(request.headers.get("content-type", ""))
+    if kind != b"multipart/form-data":
+        raise ProblemError(
+            415,
+            "unsupported_media_type",
+            "the clip must be sent as multipart/form-data with a part named 'file'",
+        )
+    if not (boundary := options.get(b"boundary")):
+        raise _malformed("the Content-Type header names no boundary")
+    try:
+        return _FilePart(boundary, settings.max_clip_bytes)
+    except FormParserError as error:
+        raise _malformed(f"the form is not valid multipart: {error}") from error
+
+
 async def _flush(parser: _FilePart, file: BinaryIO) -> None:
     data = bytes(parser.pending)
     parser.pending.clear()
@@ -196,19 +212,6 @@ async def _paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
         if excess > 0 and received < excess * settings.upload_bytes_per_second:
             raise _too_slow()
         yield chunk
-
-
-def _boundary(request: Request) -> bytes:
-    kind, options = parse_options_header(request.headers.get("content-type", ""))
-    if kind != b"multipart/form-data":
-        raise ProblemError(
-            415,
-            "unsupported_media_type",
-            "the clip must be sent as multipart/form-data with a part named 'file'",
-        )
-    if not (boundary := options.get(b"boundary")):
-        raise _malformed("the Content-Type header names no boundary")
-    return boundary
 
 
 def _require_space(request: Request, target: Path, settings: Settings) -> None:

@@ -1,0 +1,226 @@
+"""Clips over HTTP: what is accepted, what is refused, and that refusals leave nothing behind."""
+
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.api.studio import Studio
+from app.settings import Settings
+from app.store import Clip
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import assert_problem, running, until
+
+CLIPS = "/api/v1/clips"
+
+
+def upload(client: httpx.Client, path: Path, name: str = "dive.mp4", **more: str) -> httpx.Response:
+    with path.open("rb") as file:
+        return client.post(CLIPS, files={"file": (name, file)}, headers=more)
+
+
+def assert_nothing_kept(client: httpx.Client, settings: Settings) -> None:
+    assert client.get(CLIPS).json() == []
+    assert list((settings.data_dir / "clips").iterdir()) == []
+    assert client.get("/healthz").status_code == 200
+
+
+def test_a_clip_is_stored_and_its_job_waits(client: httpx.Client, small_clip: Path) -> None:
+    answer = upload(client, small_clip)
+    assert answer.status_code == 202
+    clip = client.get(f"{CLIPS}/{answer.json()['id']}").json()
+    assert clip["job_id"] == answer.json()["job_id"]
+    assert (clip["width"], clip["height"], clip["name"]) == (64, 48, "dive.mp4")
+    assert clip["size"] == small_clip.stat().st_size
+    assert client.get(f"{CLIPS}/{clip['id']}/video").content == small_clip.read_bytes()
+    assert client.get(CLIPS).json()[0]["id"] == clip["id"]
+
+
+@pytest.mark.usefixtures("models")
+def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: Path) -> None:
+    clip_id = upload(client, small_clip).json()["id"]
+    until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "done")
+    clip = client.get(f"{CLIPS}/{clip_id}").json()
+    assert clip["frames"] == 12
+    assert any("no person in 12 of 12 frames" in warning for warning in clip["warnings"])
+    poses = client.get(f"{CLIPS}/{clip_id}/poses").json()
+    assert len(poses["time"]) == len(poses["xy"]) == 12
+    assert poses["xy"][0][0] == [None, None]
+    assert client.get(f"{CLIPS}/{clip_id}/takes").json() == []
+    poster = client.get(f"{CLIPS}/{clip_id}/poster")
+    assert poster.headers["content-type"] == "image/jpeg"
+    assert poster.content[:2] == b"\xff\xd8"
+
+
+def test_without_models_the_app_works_and_the_job_says_what_is_missing(
+    settings: Settings, small_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path / "no models"))
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert client.get("/healthz").json()["status"] == "models_missing"
+        clip_id = upload(client, small_clip).json()["id"]
+        until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "failed")
+        clip = client.get(f"{CLIPS}/{clip_id}").json()
+        assert clip["error_code"] == "model_missing"
+        assert "osg-studio models install" in clip["error"]
+        assert_problem(client.get(f"{CLIPS}/{clip_id}/poses"), 409, "clip_not_ready")
+        assert_problem(client.get(f"{CLIPS}/{clip_id}/takes"), 409, "clip_not_ready")
+        again = client.post(f"{CLIPS}/{clip_id}/jobs")
+        assert again.status_code == 202
+        assert again.json()["job_id"] != clip["job_id"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<html><script>alert(1)</script></html>",
+        b"<svg xmlns='http://www.w3.org/2000/svg'/>",
+        b"PK\x03\x04" + bytes(100),
+        b"%PDF-1.7\n",
+        b"\x7fELF" + bytes(100),
+        b"#EXTM3U\n#EXTINF:1,\nhttp://127.0.0.1:1/secret\n",
+        b"ffconcat version 1.0\nfile /etc/passwd\n",
+        b"just text",
+    ],
+    ids=["html", "svg", "zip", "pdf", "elf", "playlist", "concat", "text"],
+)
+def test_what_is_no_video_is_415_whatever_its_name(
+    client: httpx.Client, settings: Settings, tmp_path: Path, content: bytes
+) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(content)
+    assert_problem(upload(client, path), 415, "unsupported_media_type")
+    assert_nothing_kept(client, settings)
+
+
+@pytest.mark.parametrize("share", [0, 0.02, 0.5], ids=["empty", "header only", "half"])
+def test_a_damaged_video_is_422(
+    client: httpx.Client, settings: Settings, small_clip: Path, share: float
+) -> None:
+    content = small_clip.read_bytes()
+    small_clip.write_bytes(content[: int(len(content) * share)])
+    assert_problem(upload(client, small_clip), 422, "video_unreadable")
+    assert_nothing_kept(client, settings)
+
+
+@pytest.mark.parametrize("form", ["multipart", "chunked"])
+def test_a_clip_beyond_the_limit_is_413(settings: Settings, tmp_path: Path, form: str) -> None:
+    small = settings.model_copy(update={"max_clip_bytes": 50_000})
+    path = tmp_path / "large.mp4"
+    path.write_bytes(b"\0\0\0\x18ftypmp42" + bytes(400_000))
+    with running(small) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        if form == "chunked":
+            head = b'--b\r\nContent-Disposition: form-data; name="file"; filename="x"\r\n\r\n'
+            parts = [head, *[path.read_bytes()[:10_000]] * 20, b"\r\n--b--\r\n"]
+            kind = {"Content-Type": "multipart/form-data; boundary=b"}
+            answer = client.post(CLIPS, content=iter(parts), headers=kind)
+        else:
+            answer = upload(client, path)
+        assert assert_problem(answer, 413, "too_large")["limit"]
+        assert_nothing_kept(client, small)
+
+
+def test_a_full_disk_is_507_and_says_when_to_come_back(
+    settings: Settings, small_clip: Path
+) -> None:
+    full = settings.model_copy(update={"free_disk_bytes": 2**62})
+    with running(full) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        answer = upload(client, small_clip)
+        assert_problem(answer, 507, "disk_full")
+        assert answer.headers["retry-after"]
+        assert_nothing_kept(client, full)
+
+
+def test_a_repeated_upload_is_one_clip(client: httpx.Client, small_clip: Path) -> None:
+    key = {"Idempotency-Key": "7f3c"}
+    first = upload(client, small_clip, **key).json()
+    assert upload(client, small_clip, **key).json() == first
+    assert upload(client, small_clip, **{"Idempotency-Key": "other"}).json() != first
+    assert len(client.get(CLIPS).json()) == 2
+
+
+def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
+    narrow = settings.model_copy(update={"max_jobs_per_client": 1})
+    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        # Stored behind the runner's back, so that it waits for as long as the test wants.
+        partial = server.studio.clips.new_partial()
+        partial.write_bytes(b"video")
+        clip = Clip(name="first", media_type="video/mp4", size=5, width=1, height=1)
+        server.studio.clips.add(clip, partial, "127.0.0.1")
+        answer = upload(client, small_clip)
+        assert_problem(answer, 429, "queue_full")
+        assert answer.headers["retry-after"]
+        (waiting,) = client.get(CLIPS).json()
+        assert client.delete(f"/api/v1/jobs/{waiting['job_id']}").json()["status"] == "cancelled"
+        assert upload(client, small_clip).status_code == 202
+
+
+def test_a_deleted_clip_can_be_restored(client: httpx.Client, circle_clip: str) -> None:
+    place = f"{CLIPS}/{circle_clip}"
+    assert client.delete(place).status_code == 204
+    for address in ("", "/video", "/poster", "/poses", "/takes"):
+        assert_problem(client.get(place + address), 404, "not_found")
+    assert_problem(client.delete(place), 404, "not_found")
+    assert client.post(f"{place}/restore").json()["status"] == "done"
+    assert client.get(f"{place}/takes").json() != []
+
+
+@pytest.mark.parametrize(
+    ("asked", "status", "content_range", "length"),
+    [
+        ("bytes=0-99", 206, "bytes 0-99/1024", 100),
+        ("bytes=1000-", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=-24", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=1000-9999", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=5-2", 200, None, 1024),
+        ("bytes=x", 200, None, 1024),
+        ("lines=0-1", 200, None, 1024),
+        ("bytes=" + ",".join(f"{i}-{i}" for i in range(5000)), 200, None, 1024),
+    ],
+    ids=["first", "open", "last", "beyond", "reversed", "garbage", "unit", "thousands"],
+)
+def test_a_video_is_sent_in_ranges(
+    client: httpx.Client,
+    circle_clip: str,
+    asked: str,
+    status: int,
+    content_range: str | None,
+    length: int,
+) -> None:
+    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
+    assert answer.status_code == status
+    assert answer.headers.get("content-range") == content_range
+    assert len(answer.content) == length
+    assert answer.headers["content-type"] == "video/mp4"
+
+
+@pytest.mark.parametrize("asked", ["bytes=1024-", "bytes=99999-100000", "bytes=-0"])
+def test_a_range_outside_the_file_is_416(
+    client: httpx.Client, circle_clip: str, asked: str
+) -> None:
+    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
+    assert_problem(answer, 416, "range_not_satisfiable")
+    assert answer.headers["content-range"] == "bytes */1024"
+
+
+def test_what_users_gave_us_cannot_run_in_a_browser(client: httpx.Client, studio: Studio) -> None:
+    clip_id = add_recorded_clip(studio, recording_of("line"), name='"><b>\u202e.mp4')
+    headers = client.get(f"{CLIPS}/{clip_id}/video").headers
+    assert headers["x-content-type-options"] == "nosniff"
+    assert "sandbox" in headers["content-security-policy"]
+    assert headers["content-disposition"].startswith("inline; filename*=utf-8''")
+
+
+def test_takes_give_seconds_of_salutes_and_stroke(client: httpx.Client, studio: Studio) -> None:
+    clip_id = add_recorded_clip(studio, recording_of("circle", "line"))
+    takes = client.get(f"{CLIPS}/{clip_id}/takes").json()
+    assert [take["closed"] for take in takes] == [True, True]
+    for take in takes:
+        assert take["start"] <= take["stroke_start"] < take["stroke_end"] <= take["end"]
+    assert takes[0]["end"] < takes[1]["start"]
+
+
+@pytest.mark.parametrize("clip_id", ["x", "0" * 32, "..%2F..%2Fetc%2Fpasswd", "a" * 5000, "%00"])
+def test_an_id_that_names_nothing_is_404(client: httpx.Client, clip_id: str) -> None:
+    assert_problem(client.get(f"{CLIPS}/{clip_id}"), 404, "not_found")
+    assert_problem(client.delete(f"{CLIPS}/{clip_id}"), 404, "not_found")

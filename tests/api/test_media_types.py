@@ -1,0 +1,33 @@
+"""Files are known by their first bytes."""
+
+from pathlib import Path
+
+import pytest
+
+from app.api.media_types import HEAD_BYTES, video_type
+from tests.recognition.damaged_clips import write_clip
+
+
+@pytest.mark.parametrize(
+    ("ending", "codec", "media_type"),
+    [
+        ("mp4", "libx264", "video/mp4"),
+        ("mov", "libx264", "video/quicktime"),
+        ("webm", "libvpx", "video/webm"),
+        ("mkv", "libx264", "video/x-matroska"),
+        ("avi", "mpeg4", "video/x-msvideo"),
+        ("ts", "libx264", "video/mp2t"),
+    ],
+)
+def test_every_container_we_open_is_known(
+    tmp_path: Path, ending: str, codec: str, media_type: str
+) -> None:
+    path = write_clip(tmp_path / f"clip.{ending}", codec=codec)
+    assert video_type(path.read_bytes()[:HEAD_BYTES]) == media_type
+
+
+@pytest.mark.parametrize(
+    "head", [b"", b"G", b"G" * 100, b"RIFF\0\0\0\0WAVE", b"\x1aE\xdf", b"ftyp"]
+)
+def test_what_only_resembles_one_is_not(head: bytes) -> None:
+    assert video_type(head) is None

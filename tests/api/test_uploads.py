@@ -1,0 +1,158 @@
+"""Receiving a file: names that lie, forms that are broken, senders that stall or vanish."""
+
+import socket
+from pathlib import Path
+
+import httpx
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.api.uploads import LONGEST_NAME, MOST_PARTS, shown_name
+from app.settings import Settings
+from tests.api.running import Running, assert_problem, running, until
+from tests.api.test_clips import CLIPS, assert_nothing_kept, upload
+
+FORM = {"Content-Type": "multipart/form-data; boundary=b"}
+PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\r\n'
+
+
+@pytest.mark.parametrize(
+    ("given_name", "shown"),
+    [
+        ("dive.mp4", "dive.mp4"),
+        ("../../etc/passwd", "passwd"),
+        ("C:\\dives\\reef.mov", "reef.mov"),
+        ("a\0b\r\nc.mp4", "abc.mp4"),
+        ("\u202egpj.exe.mp4", "gpj.exe.mp4"),
+        ("-rf", "-rf"),
+        ("CON", "CON"),
+        ("🤿 blue.mp4", "🤿 blue.mp4"),
+        ("", "clip"),
+        ("..", ".."),
+        ("folder/", "clip"),
+        ("x" * 4000 + ".webm", "x" * 194 + "….webm"),
+    ],
+)
+def test_a_name_is_shown_without_what_could_do_harm(given_name: str, shown: str) -> None:
+    assert shown_name(given_name) == shown
+
+
+@given(st.text(max_size=500))
+def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
+    shown = shown_name(name)
+    assert 1 <= len(shown) <= LONGEST_NAME
+    assert not set(shown) & set("/\\\0\r\n\u202e")
+    assert shown_name(shown) == shown
+
+
+@pytest.mark.parametrize(
+    ("headers", "body"),
+    [
+        ({"Content-Type": "multipart/form-data"}, PART % b"file"),
+        ({"Content-Type": "multipart/form-data; boundary=" + "x" * 5000}, b""),
+        (FORM, b"no boundary in here at all"),
+        (FORM, PART % b"file" + b"cut short"),
+        (FORM, PART % b"other" + b"data\r\n--b--\r\n"),
+        (FORM, PART % b"file" + b"1\r\n" + PART % b"file" + b"2\r\n--b--\r\n"),
+        (FORM, (PART % b"note" + b"x\r\n") * (MOST_PARTS + 1) + b"--b--\r\n"),
+        (FORM, b"--b\r\n" + b"X-Header: " + b"y" * 20_000 + b"\r\n\r\n"),
+        (FORM, b"--b\r\n" + b"X: y\r\n" * 10_000 + b"\r\n"),
+    ],
+    ids=[
+        "no boundary",
+        "long boundary",
+        "no form",
+        "cut short",
+        "no file",
+        "two files",
+        "many parts",
+        "long header",
+        "many headers",
+    ],
+)
+def test_a_malformed_form_is_400(
+    client: httpx.Client, settings: Settings, headers: dict[str, str], body: bytes
+) -> None:
+    answer = client.post(CLIPS, content=body, headers=headers)
+    assert_problem(answer, 400, "malformed_upload")
+    assert_nothing_kept(client, settings)
+
+
+def test_a_body_that_is_no_form_is_415(client: httpx.Client, small_clip: Path) -> None:
+    answer = client.post(
+        CLIPS, content=small_clip.read_bytes(), headers={"Content-Type": "video/mp4"}
+    )
+    assert_problem(answer, 415, "unsupported_media_type")
+
+
+def test_small_fields_beside_the_file_are_ignored(client: httpx.Client, small_clip: Path) -> None:
+    files = {"file": ("dive.mp4", small_clip.read_bytes())}
+    answer = client.post(CLIPS, files=files, data={"note": "first dive"})
+    assert answer.status_code == 202
+
+
+def test_a_name_that_looks_like_a_path_is_only_shown(
+    client: httpx.Client, settings: Settings, small_clip: Path
+) -> None:
+    clip_id = upload(client, small_clip, name="../../../evil.mp4").json()["id"]
+    assert client.get(f"{CLIPS}/{clip_id}").json()["name"] == "evil.mp4"
+    assert not list(settings.data_dir.parent.rglob("*evil*"))
+
+
+def begin_upload(server: Running, length: int) -> socket.socket:
+    """Send the head of an upload and the beginning of its body."""
+    connection = socket.create_connection(("127.0.0.1", server.port))
+    head = (
+        f"POST {CLIPS} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+        f"Content-Type: {FORM['Content-Type']}\r\nContent-Length: {length}\r\n\r\n"
+    )
+    connection.sendall(head.encode() + PART % b"file" + b"beginning")
+    return connection
+
+
+def partials(settings: Settings) -> list[Path]:
+    return list((settings.data_dir / "clips").glob("*.part"))
+
+
+def test_a_sender_that_vanishes_leaves_nothing(
+    client: httpx.Client, server: Running, settings: Settings
+) -> None:
+    with begin_upload(server, 100_000):
+        until(lambda: partials(settings))
+    until(lambda: not partials(settings))
+    assert_nothing_kept(client, settings)
+
+
+def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
+    impatient = settings.model_copy(update={"upload_grace_seconds": 0.2})
+    with running(impatient) as server, begin_upload(server, 100_000) as connection:
+        connection.settimeout(60)
+        answer = connection.recv(10_000)
+        assert answer.startswith(b"HTTP/1.1 408 ")
+        assert b'"upload_too_slow"' in answer or b'"upload_too_slow"' in connection.recv(10_000)
+        with httpx.Client(base_url=server.address, timeout=60) as client:
+            assert_nothing_kept(client, impatient)
+
+
+def test_a_sender_that_trickles_is_dismissed(settings: Settings) -> None:
+    impatient = settings.model_copy(
+        update={"upload_grace_seconds": 0.5, "upload_bytes_per_second": 1_000_000}
+    )
+    with running(impatient) as server, begin_upload(server, 100_000) as connection:
+        connection.settimeout(0.1)
+        answer = b""
+
+        def trickled() -> bool:
+            nonlocal answer
+            try:
+                connection.sendall(b".")
+                answer += connection.recv(10_000)
+            except TimeoutError:
+                return False
+            except OSError:
+                return True
+            return b" 408 " in answer
+
+        until(trickled)
+        until(lambda: not partials(impatient))
