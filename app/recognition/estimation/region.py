@@ -19,13 +19,6 @@ TINIEST_SIDE: Final = 1.0
 LARGEST_SIDE: Final = 16384.0
 """Pixels. Positions within a crop are kept in 16 bits, and this leaves room to turn it."""
 
-SUBPIXEL_BITS: Final = 5
-"""A crop is sampled at positions rounded to 1/32 pixel.
-
-That is what OpenCV did up to 4.x and what MediaPipe does; from OpenCV 5 on its own functions
-sample exactly, which moves landmarks by up to 0.04 of the frame in hard images.
-"""
-
 ZERO_BORDER: Final = cv2.BORDER_CONSTANT
 """Black where the region leaves the image: what the detectors were trained on."""
 
@@ -116,29 +109,29 @@ class Region:
             ``(size, size, 3)`` array to write into, so that no memory is taken per frame.
 
         """
-        whole, fraction = self._positions(size)
-        cropped = cv2.remap(image, whole, fraction, cv2.INTER_LINEAR, dst=out, borderMode=border)
+        positions, fractions = self._positions(size)
+        cropped = cv2.remap(
+            image, positions, fractions, cv2.INTER_LINEAR, dst=out, borderMode=border
+        )
         return np.asarray(cropped, dtype=np.uint8)
 
     def _positions(self, size: int) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint16]]:
-        """Where in the image each pixel of the crop lies, in OpenCV's fixed-point form.
+        """Tell where in the image each pixel of the crop lies, in OpenCV's fixed-point form.
 
-        Returns
-        -------
-        ``(size, size, 2)`` whole pixels (x, y), and ``(size, size)`` the fractions of both.
+        Whole pixels and 1/32 of them: that is how OpenCV up to 4.x and MediaPipe sample every
+        crop. From 5 on OpenCV's `warpAffine` samples exactly, which moves landmarks by up to
+        0.04 of the frame in hard images; positions that are rounded already look the same to
+        every version.
         """
-        matrix = self.matrix(size) * (1 << SUBPIXEL_BITS)
-        along = np.arange(size)
+        steps = np.arange(size)
         x, y = (
-            np.rint(np.add.outer(row * along + origin, column * along)).astype(np.int32)
-            for column, row, origin in matrix
+            np.add.outer(
+                (row * steps + origin).astype(np.float32), (column * steps).astype(np.float32)
+            )
+            for column, row, origin in self.matrix(size)
         )
-        whole = np.empty((size, size, 2), np.int16)
-        np.right_shift(x, SUBPIXEL_BITS, out=whole[..., 0], casting="unsafe")
-        np.right_shift(y, SUBPIXEL_BITS, out=whole[..., 1], casting="unsafe")
-        mask = (1 << SUBPIXEL_BITS) - 1
-        fraction = ((y & mask) << SUBPIXEL_BITS) | (x & mask)
-        return whole, fraction.astype(np.uint16)
+        positions, fractions = cv2.convertMaps(x, y, cv2.CV_16SC2)
+        return np.asarray(positions, dtype=np.int16), np.asarray(fractions, dtype=np.uint16)
 
     def to_image(self, points: npt.NDArray[np.floating], size: int) -> FloatArray:
         """Map ``(N, 2)`` pixels of the `size` x `size` crop to pixels of the image."""
