@@ -1,0 +1,1 @@
+"""Tests of the viser side of the studio."""

@@ -1,0 +1,183 @@
+"""Charts: what they say, and that nothing a user wrote becomes markup."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.recognition import Recognition
+from app.ui import charts
+
+VOTERS = ("hu", "aspect_ratio", "solidity")
+MARKUP = "<img src=x onerror=alert(1)>'\"&"
+
+
+class Elements(HTMLParser):
+    """Collects a document's tags, its text, and its cells by row."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.rows: list[list[str]] = []
+        self._in_cell = False
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attributes)))
+        if tag == "tr":
+            self.rows.append([])
+        if tag in {"td", "th"}:
+            self.rows[-1].append("")
+            self._in_cell = True
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in {"td", "th"}:
+            self._in_cell = False
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+        if self._in_cell:
+            self.rows[-1][-1] += data
+
+    def named(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def recognition(
+    *, label: str | None = "wedge", gestures: tuple[str, ...] = ("circle", "wedge", "line")
+) -> Recognition:
+    """Return a recognition in which two voters of three take the second gesture."""
+    distances = np.full((3, len(gestures)), 1.0)
+    distances[0, 1], distances[1, 1], distances[2, 0] = 0.25, 0.004, 0.5
+    return Recognition(
+        label=label,
+        nearest=gestures[1],
+        confidence=0.62,
+        profile="paper",
+        voters=VOTERS,
+        gestures=gestures,
+        distances=distances,
+        votes={"hu": gestures[1], "aspect_ratio": gestures[1], "solidity": gestures[0]},
+    )
+
+
+@pytest.mark.parametrize(
+    ("label", "expected", "words"),
+    [
+        ("wedge", None, "Recognised as wedge"),
+        ("wedge", "wedge", "Recognised as wedge, as expected"),
+        ("wedge", "circle", "Taken for wedge, expected circle"),
+        (None, "circle", "Not recognised. Nearest is wedge"),
+    ],
+)
+def test_the_verdict_says_in_words_what_came_out(
+    label: str | None, expected: str | None, words: str
+) -> None:
+    text = Elements(charts.verdict(recognition(label=label), expected)).text
+    assert words in text
+    assert "2 of 3 voters, confidence 62%" in text
+
+
+def test_the_vote_table_has_a_row_per_gesture_with_the_most_votes_first() -> None:
+    _, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
+    assert [row[0] for row in rows] == ["wedgechosen", "circleexpected", "line"]
+    assert [row[1:] for row in rows] == [
+        [".25", ".004", "1.00", "2"],
+        ["1.00", "1.00", ".50", "1"],
+        ["1.00", "1.00", "1.00", "0"],
+    ]
+
+
+def test_each_voters_choice_is_marked_once_and_not_by_colour_alone() -> None:
+    cells = Elements(charts.vote_table(recognition(), None)).named("td")
+    chosen = [cell for cell in cells if cell.get("class") == "choice"]
+    assert len(chosen) == len(VOTERS)
+    assert "a voter\N{RIGHT SINGLE QUOTATION MARK}s choice" in charts.vote_table(recognition(), "x")
+
+
+def test_the_votes_are_also_told_as_sentences() -> None:
+    text = Elements(charts.vote_sentence(recognition().votes)).text
+    assert "wedge: hu, aspect ratio." in text
+    assert "circle: solidity." in text
+
+
+def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
+    uncomparable = recognition()
+    uncomparable.distances[:, 2] = np.inf
+    rows = Elements(charts.vote_table(uncomparable, None)).rows
+    assert rows[-1] == ["line", *["\N{INFINITY}"] * 3, "0"]
+
+
+def test_a_large_language_shows_its_nearest_gestures_and_counts_the_rest() -> None:
+    gestures = tuple(f"gesture {number}" for number in range(200))
+    html = charts.vote_table(recognition(label="gesture 1", gestures=gestures), None)
+    assert len(Elements(html).rows) == charts.MAX_ROWS + 1
+    assert f"{200 - charts.MAX_ROWS} farther gestures are not shown" in html
+
+
+@given(st.text(min_size=1))
+def test_no_text_of_a_user_becomes_markup(name: str) -> None:
+    plain = recognition()
+    named = recognition(label=name, gestures=("circle", name, "line"))
+    for draw in (charts.verdict, charts.vote_table):
+        expected = [tag for tag, _ in Elements(draw(plain, "circle")).tags]
+        assert [tag for tag, _ in Elements(draw(named, "circle")).tags] == expected
+
+
+def test_captions_hints_and_legends_are_escaped() -> None:
+    moments = np.arange(3.0)
+    for html in (
+        charts.hint(MARKUP, MARKUP),
+        charts.image_row([(MARKUP, np.zeros((4, 4), np.uint8))]),
+        charts.line_chart(MARKUP, moments, [charts.Curve(MARKUP, moments, "red")]),
+        charts.vote_sentence({MARKUP: MARKUP}),
+    ):
+        elements = Elements(html)
+        assert MARKUP in elements.text
+        assert not [image for image in elements.named("img") if image.get("src") == "x"]
+
+
+def test_a_curve_is_interrupted_where_it_is_not_known() -> None:
+    moments = np.arange(5.0)
+    values = np.array([0.0, 1.0, np.nan, 1.0, 0.0])
+    html = charts.line_chart("height", moments, [charts.Curve("y", values, "red")])
+    (path,) = Elements(html).named("path")
+    assert (path["d"] or "").count("M") == 2
+    assert "nan" not in html
+
+
+def test_a_chart_draws_no_more_points_than_it_has_pixels() -> None:
+    moments = np.arange(10_000.0)
+    html = charts.line_chart("height", moments, [charts.Curve("y", moments, "red")])
+    (path,) = Elements(html).named("path")
+    assert (path["d"] or "").count("L") <= charts.MAX_CHART_POINTS + 1
+
+
+@pytest.mark.parametrize("values", [np.zeros(2), np.full(2, np.nan)])
+def test_a_flat_or_unknown_curve_is_still_a_chart(values: np.ndarray) -> None:
+    html = charts.line_chart("height", np.arange(2.0), [charts.Curve("y", values, "red")])
+    assert "<svg" in html
+    assert "nan" not in html
+
+
+def test_a_single_moment_is_no_chart() -> None:
+    assert charts.line_chart("height", np.zeros(1), [charts.Curve("y", np.zeros(1), "red")]) == ""
+
+
+@pytest.mark.parametrize(("share", "shown"), [(0.25, "25.00%"), (-1.0, "0.00%"), (2.0, "100.00%")])
+def test_the_cursor_stays_inside_the_chart(share: float, shown: str) -> None:
+    assert f"--osg-now: {shown}" in charts.cursor(share)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (0.0004, "4e-4"), (0.016, ".016"), (0.25, ".25"), (1.07, "1.07"), (12.345, "12.3"),
+     (250.4, "250"), (float("inf"), "\N{INFINITY}")],
+)  # fmt: skip
+def test_distances_are_written_short(value: float, text: str) -> None:
+    assert charts.short_number(value) == text

@@ -1,0 +1,87 @@
+"""The scene, in a real viser server: what is drawn, and where it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import viser
+
+from app.recognition.trajectory import Trajectory
+from app.recognition.trajectory_image import MARGIN, SIZE, draw
+from app.ui.geometry import CubeGeometry
+from app.ui.scene import SpaceTimeCube, Wall, text_image
+from app.ui.theme import DARK, LIGHT
+from app.ui.workspace import Range
+from tests.ui.views import view_in
+
+SALIENT = ("right_wrist",)
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[viser.ViserServer]:
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def shown(tmp_path: Path) -> Range:
+    return Range.of(view_in(tmp_path))
+
+
+def wall_behind(shown: Range) -> Wall:
+    drawing = draw(Trajectory.from_poses(shown.poses).select(SALIENT))
+    cube = CubeGeometry.from_poses(shown.poses)
+    return Wall(drawing, cube, SALIENT, shown.poses.torso_length(), shown.poses.frame_size[1])
+
+
+def test_the_trajectory_image_hangs_behind_the_trail_it_flattens(shown: Range) -> None:
+    wall = wall_behind(shown)
+    wrist = CubeGeometry.from_poses(shown.poses).trail("right_wrist")[..., :2]
+    low, high = wrist.min(axis=(0, 1)), wrist.max(axis=(0, 1))
+    np.testing.assert_allclose(wall.centre, (low + high) / 2, atol=1e-3)
+    inside = wall.side * (SIZE - 1 - 2 * MARGIN) / SIZE
+    assert inside == pytest.approx(float((high - low).max()), rel=0.02)
+
+
+def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, shown: Range) -> None:
+    scene = SpaceTimeCube(server, DARK)
+    cube = CubeGeometry.from_poses(shown.poses)
+    scene.show(cube, SALIENT, wall_behind(shown))
+    image = np.full((12, 16, 3), 200, np.uint8)
+    scene.seek(10, image)
+    video = server.scene.get_handle_by_name("/video")
+    assert isinstance(video, viser.ImageHandle)
+    np.testing.assert_allclose(video.position, [0, 0, cube.depth[10]], atol=1e-6)
+    np.testing.assert_array_equal(video.image, image)
+    trail = server.scene.get_handle_by_name("/trails/right_wrist/past")
+    assert isinstance(trail, viser.LineSegmentsHandle)
+    assert len(trail.points) == len(trail.colors) == 10
+    scene.seek(3, None)
+    assert len(trail.points) == 3
+    np.testing.assert_array_equal(video.image, image)
+
+
+def test_another_recording_leaves_nothing_of_the_last_one(
+    server: viser.ViserServer, shown: Range
+) -> None:
+    scene = SpaceTimeCube(server, DARK)
+    cube = CubeGeometry.from_poses(shown.poses)
+    scene.show(cube, SALIENT, wall_behind(shown))
+    scene.show(cube, ("nose",), None)
+    assert server.scene.get_handle_by_name("/trails/right_wrist/past") is None
+    assert server.scene.get_handle_by_name("/wall/image") is None
+    scene.clear()
+    assert server.scene.get_handle_by_name("/video") is None
+    scene.seek(0, None)
+
+
+def test_text_has_ink_and_nothing_around_it() -> None:
+    image = text_image("1.5 s", LIGHT.ink)
+    assert (image[..., :3] == LIGHT.ink).all()
+    border = np.concatenate([image[0, :, 3], image[-1, :, 3], image[:, 0, 3], image[:, -1, 3]])
+    assert not border.any()
+    assert image[..., 3].max() == 255

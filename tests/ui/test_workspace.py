@@ -1,0 +1,103 @@
+"""A workspace: what it shows of a view, with a real viser server behind it."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition import PoseError
+from app.ui.workspace import Range, Workspace, first_look
+from tests.api.recordings import recording_of
+from tests.api.running import until
+from tests.ui.views import view_in
+
+
+@pytest.fixture
+def workspace() -> Iterator[Workspace]:
+    workspace = Workspace()
+    yield workspace
+    workspace.close()
+
+
+def test_a_view_shows_the_frames_of_its_range(tmp_path: Path) -> None:
+    view = view_in(tmp_path)
+    shown = Range.of(view)
+    time = view.recording.poses.time
+    assert view.start is not None
+    assert view.end is not None
+    assert shown.poses.time[0] >= view.start
+    assert shown.poses.time[-1] <= view.end
+    assert time[shown.first] == shown.poses.time[0]
+    assert len(shown.salute) == len(shown.poses)
+    assert len(Range.of(replace(view, start=None, end=None)).poses) == len(time)
+
+
+def test_a_range_without_frames_is_refused_with_its_seconds(tmp_path: Path) -> None:
+    with pytest.raises(PoseError, match=r"between 90 s and 91 s"):
+        Range.of(replace(view_in(tmp_path), start=90.0, end=91.0))
+
+
+def test_its_server_listens_on_loopback_only(workspace: Workspace) -> None:
+    with socket.create_connection(("127.0.0.1", workspace.port), timeout=5):
+        pass
+    # Another address of this machine: a server on all addresses would answer here.
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", workspace.port), timeout=5)
+
+
+def test_showing_a_view_stands_where_past_and_future_are_seen(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    view = view_in(tmp_path)
+    workspace.show(view)
+    frames = len(Range.of(view).poses)
+    assert workspace.view == view
+    assert workspace.playback.frame == first_look(frames)
+    assert 0 < first_look(frames) < frames - 1
+
+
+def test_a_recognition_of_the_same_take_keeps_the_frame(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    view = view_in(tmp_path, recognised=True, expected="line")
+    workspace.show(replace(view, recognition=None))
+    workspace.playback.seek(3)
+    workspace.show(view)
+    assert workspace.playback.frame == 3
+    assert workspace.view == view
+
+
+def test_changing_the_colours_keeps_what_is_shown(workspace: Workspace, tmp_path: Path) -> None:
+    view = view_in(tmp_path)
+    workspace.set_dark(False)
+    workspace.show(view)
+    workspace.set_dark(True)
+    assert workspace.view == view
+
+
+def test_a_clip_in_which_nobody_moves_is_shown_all_the_same(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    still = recording_of()
+    nobody = replace(still, poses=replace(still.poses, xy=np.full_like(still.poses.xy, np.nan)))
+    for recording in (still, nobody):
+        view = replace(view_in(tmp_path), recording=recording, start=None, end=None)
+        workspace.show(view)
+        assert workspace.view == view
+
+
+def test_views_in_quick_succession_end_with_the_last(workspace: Workspace, tmp_path: Path) -> None:
+    view = view_in(tmp_path)
+    workspace.playback.set_speed(4)
+    for end in (1.0, 2.4, 1.2, 2.0):
+        workspace.show(replace(view, end=end))
+        workspace.playback.toggle()
+    assert workspace.view is not None
+    assert workspace.view.end == 2.0
+    workspace.playback.seek(1)
+    until(lambda: workspace.playback.frame >= 1)
