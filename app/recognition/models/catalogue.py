@@ -25,7 +25,8 @@ class Wheel:
     sha256
         Of the wheel file.
     platform, python, abi, implementation
-        The tags that single out this one file, whatever machine asks.
+        The tags that single out this one file, whatever machine asks: the models are the same in
+        the wheels for other systems, and their hashes are not.
 
     """
 
@@ -65,7 +66,7 @@ WHEEL: Final = Wheel(
     abi="cp312",
     implementation="cp",
 )
-"""The last release of MediaPipe whose wheels carry the models; later ones download them."""
+"""A release of MediaPipe whose wheel still carries the models; that of 1.2.2 holds none."""
 
 SOURCES: Final[dict[ModelName, str]] = {
     "pose_detection": "mediapipe/modules/pose_detection/pose_detection.tflite",
@@ -132,6 +133,7 @@ TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = {
         "6bbbde8c9ceef075c7daa9ccca97dcc45396ba44eaa19eea243e9ea0d2904ccc",
     ),
 }
+"""The bundles, as reproducible as the models."""
 
 LICENSE: Final = InstalledFile(
     "license",

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from onnx import NodeProto, TensorProto, helper, numpy_helper
 
 from app.recognition.errors import ModelError
-from app.recognition.models.conversion.tflite import Tensor, TfliteModel
+from app.recognition.models.conversion.tflite import TfliteModel
 
 Layout = Literal["stored", "channels_first"]
 """Order of a value's axes: as in the TensorFlow Lite file, or batch, channels, height, width."""
@@ -43,10 +43,6 @@ class GraphBuilder:
     nodes: list[NodeProto] = field(default_factory=list)
     weights: list[TensorProto] = field(default_factory=list)
     _values: dict[tuple[int, Layout], str] = field(default_factory=dict)
-
-    def tensor(self, index: int) -> Tensor:
-        """Return a tensor of the model being converted."""
-        return self.model.tensors[index]
 
     def shape(self, index: int) -> tuple[int, ...]:
         """Return a tensor's shape in the order of axes of the TensorFlow Lite file."""
