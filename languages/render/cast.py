@@ -1,0 +1,304 @@
+"""Who performs which take: the people, the places and the twenty-five clips."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from languages.render.gear import Kit
+from languages.render.performance import Manner
+from languages.render.scene import Diver, View
+from languages.render.suit import Suit
+from languages.render.water import Water
+
+
+def _shape(
+    sex: str, origin: str, muscle: str = "average", weight: str = "average", tall: float = 0
+) -> dict[str, float]:
+    """Name the MakeHuman targets of a young adult; `tall` from -1 to 1 moves the height."""
+    build = f"young-{muscle}muscle-{weight}weight"
+    shape = {
+        f"macrodetails/{origin}-{sex}-young": 1.0,
+        f"macrodetails/universal-{sex}-{build}": 1.0,
+    }
+    if tall:
+        end = "maxheight" if tall > 0 else "minheight"
+        shape[f"macrodetails/height/{sex}-{build}-{end}"] = abs(tall)
+    return shape
+
+
+DIVERS = {
+    "instructor": Diver(
+        _shape("male", "caucasian"),
+        Suit(main=(40, 66, 118), panel=(24, 28, 38), trim=(244, 142, 44)),
+        Kit(regulator=(228, 190, 40)),
+    ),
+    "biologist": Diver(
+        _shape("female", "asian", tall=-0.2),
+        Suit(
+            main=(44, 46, 54),
+            panel=(196, 52, 110),
+            trim=(244, 214, 228),
+            hood=(48, 44, 52),
+            skin=(222, 178, 144),
+            brows=(40, 32, 30),
+        ),
+        Kit(mask=(196, 52, 110), regulator=(200, 60, 116), cylinder=(210, 212, 214)),
+    ),
+    "surveyor": Diver(
+        _shape("male", "african", muscle="max", tall=0.25),
+        Suit(
+            main=(34, 38, 42),
+            panel=(196, 44, 40),
+            trim=(230, 230, 226),
+            hood=(30, 31, 34),
+            skin=(122, 82, 60),
+            brows=(24, 20, 18),
+        ),
+        Kit(mask=(190, 40, 38), regulator=(190, 44, 40), cylinder=(60, 108, 176)),
+    ),
+    "student": Diver(
+        _shape("female", "caucasian", weight="max", tall=0.1),
+        Suit(
+            main=(22, 116, 122),
+            panel=(20, 50, 62),
+            trim=(250, 226, 92),
+            hood=(26, 74, 82),
+            skin=(232, 188, 164),
+            brows=(120, 84, 52),
+        ),
+        Kit(mask=(240, 240, 236), regulator=(250, 226, 92), cylinder=(196, 60, 44)),
+    ),
+    "archaeologist": Diver(
+        _shape("male", "asian", weight="max"),
+        Suit(
+            main=(96, 98, 104),
+            panel=(36, 38, 42),
+            trim=(120, 214, 90),
+            hood=(52, 54, 58),
+            skin=(206, 158, 122),
+            brows=(30, 26, 24),
+        ),
+        Kit(mask=(60, 160, 70), regulator=(120, 214, 90), cylinder=(236, 236, 230)),
+    ),
+    "engineer": Diver(
+        _shape("female", "african", muscle="max", tall=0.3),
+        Suit(
+            main=(92, 58, 140),
+            panel=(40, 30, 62),
+            trim=(120, 224, 236),
+            hood=(36, 30, 48),
+            skin=(148, 100, 74),
+            brows=(28, 22, 20),
+        ),
+        Kit(mask=(120, 200, 226), regulator=(120, 224, 236), cylinder=(240, 150, 50)),
+    ),
+}
+"""Six people of different sex, build and height, each with equipment of their own."""
+
+WATERS = {
+    "lagoon": Water((78, 168, 196), (12, 58, 104), (164, 160, 128)),
+    "reef": Water((64, 176, 188), (6, 74, 110), (196, 186, 150), visibility=11, shafts=0.8),
+    "lake": Water((116, 158, 108), (28, 62, 46), (112, 104, 76), visibility=4.5, shafts=0.35),
+    "harbour": Water((108, 140, 122), (30, 52, 52), (96, 96, 80), visibility=3.2, shafts=0.15),
+    "open sea": Water((46, 118, 190), (6, 26, 78), (60, 80, 100), visibility=9, floor_depth=5.0),
+    "pool": Water((150, 210, 222), (58, 146, 178), (190, 214, 214), visibility=14, shafts=0.5),
+}
+"""Places; the harbour is the murkiest."""
+
+
+@dataclass(frozen=True)
+class Clip:
+    """One clip to render.
+
+    Parameters
+    ----------
+    name
+        File name without suffix.
+    gesture
+        A label of `DRAWINGS`; None for ordinary movement without a gesture.
+    diver, water
+        Names in `DIVERS` and `WATERS`.
+    view, manner
+        Where the camera is, and how the gesture is performed.
+    seed
+        Of everything left to chance.
+
+    """
+
+    name: str
+    gesture: str | None
+    diver: str
+    water: str
+    view: View
+    manner: Manner
+    seed: int
+
+
+UPPER_BODY = View(1.72, aim=(0, -0.06))
+WIDE = View(1.8)
+"""Room for both arms stretched out."""
+
+
+def _demonstration(gesture: str, seed: int, view: View = UPPER_BODY) -> Clip:
+    """All demonstrations: one person, clear water, straight before the camera, unhurried."""
+    name = f"{gesture}-demonstration"
+    return Clip(name, gesture, "instructor", "lagoon", view, Manner(wobble=0.01), seed)
+
+
+def _test(gesture: str, take: int, who: str, where: str, view: View, manner: Manner) -> Clip:
+    seed = 100 * take + len(gesture)
+    return Clip(f"{gesture}-test-{take}", gesture, who, where, view, manner, seed)
+
+
+CLIPS = (
+    _demonstration("circle", 1),
+    _demonstration("wedge", 2),
+    _demonstration("three", 3),
+    _demonstration("infinity", 4),
+    _demonstration("sweep", 5, WIDE),
+    _demonstration("triangle", 6),
+    _demonstration("square", 7),
+    _demonstration("line", 8),
+    _test(
+        "circle",
+        1,
+        "biologist",
+        "reef",
+        View(1.62, yaw=10, aim=(0.05, -0.05)),
+        Manner(tempo=1.15, size=0.85, aspect=1.08, tilt=-6, wobble=0.03, hand="pointing"),
+    ),
+    _test(
+        "circle",
+        2,
+        "archaeologist",
+        "lake",
+        View(1.9, yaw=-12, pitch=4, aim=(-0.05, -0.1)),
+        Manner(tempo=0.85, size=1.12, aspect=0.93, wobble=0.04, drift=0.03),
+    ),
+    _test(
+        "wedge",
+        1,
+        "surveyor",
+        "open sea",
+        View(1.85, yaw=-8, pitch=-3, aim=(-0.1, -0.08)),
+        Manner(tempo=1.2, size=1.1, aspect=1.1, tilt=4, wobble=0.03),
+    ),
+    _test(
+        "wedge",
+        2,
+        "engineer",
+        "harbour",
+        View(1.68, yaw=14, aim=(0.08, -0.06)),
+        Manner(
+            tempo=0.9, size=0.88, aspect=0.92, tilt=-5, wobble=0.02, hand="pointing", drift=0.03
+        ),
+    ),
+    _test(
+        "three",
+        1,
+        "student",
+        "pool",
+        View(1.7, yaw=-6, pitch=5, aim=(0.0, -0.05)),
+        Manner(tempo=0.95, size=0.92, aspect=1.08, tilt=5, wobble=0.03, hand="pointing"),
+    ),
+    _test(
+        "three",
+        2,
+        "surveyor",
+        "lake",
+        View(1.8, yaw=12, aim=(-0.08, -0.1)),
+        Manner(tempo=1.2, size=1.08, aspect=0.95, tilt=-4, wobble=0.03, drift=0.025),
+    ),
+    _test(
+        "infinity",
+        1,
+        "engineer",
+        "reef",
+        View(1.75, yaw=-10, aim=(0.05, -0.04)),
+        Manner(tempo=1.1, size=0.9, aspect=1.1, tilt=-4, wobble=0.03),
+    ),
+    _test(
+        "infinity",
+        2,
+        "biologist",
+        "open sea",
+        View(1.66, yaw=8, pitch=-4, aim=(-0.06, -0.08)),
+        Manner(tempo=0.9, size=1.05, aspect=0.92, tilt=5, wobble=0.03, hand="pointing", drift=0.03),
+    ),
+    _test(
+        "sweep",
+        1,
+        "student",
+        "lagoon",
+        View(1.86, yaw=-6, aim=(0.02, 0.02)),
+        Manner(tempo=1.15, size=0.95, wobble=0.015),
+    ),
+    _test(
+        "sweep",
+        2,
+        "archaeologist",
+        "open sea",
+        View(1.95, yaw=8, pitch=3, aim=(-0.04, 0.0)),
+        Manner(tempo=0.9, size=1.02, wobble=0.02, hand="relaxed", drift=0.03),
+    ),
+    _test(
+        "triangle",
+        1,
+        "biologist",
+        "harbour",
+        View(1.6, yaw=-10, aim=(0.03, -0.05)),
+        Manner(tempo=1.05, size=0.9, aspect=1.06, tilt=-5, wobble=0.02),
+    ),
+    _test(
+        "triangle",
+        2,
+        "student",
+        "lake",
+        View(1.82, yaw=10, pitch=-3, aim=(-0.08, -0.06)),
+        Manner(
+            tempo=0.9, size=1.12, aspect=0.94, tilt=4, wobble=0.03, hand="pointing", drift=0.025
+        ),
+    ),
+    _test(
+        "square",
+        1,
+        "surveyor",
+        "reef",
+        View(1.78, yaw=6, pitch=3, aim=(0.0, -0.08)),
+        Manner(tempo=1.2, size=1.08, aspect=1.06, tilt=4, wobble=0.02, hand="pointing"),
+    ),
+    _test(
+        "square",
+        2,
+        "engineer",
+        "pool",
+        View(1.72, yaw=-12, aim=(0.06, -0.04)),
+        Manner(tempo=0.95, size=0.9, aspect=0.95, tilt=-4, wobble=0.03, drift=0.03),
+    ),
+    _test(
+        "line",
+        1,
+        "archaeologist",
+        "harbour",
+        View(1.7, yaw=-8, aim=(0.0, -0.06)),
+        Manner(tempo=0.9, size=0.9, tilt=4, wobble=0.02, hand="pointing"),
+    ),
+    _test(
+        "line",
+        2,
+        "biologist",
+        "lagoon",
+        View(1.75, yaw=12, pitch=4, aim=(-0.06, -0.1)),
+        Manner(tempo=1.25, size=1.12, tilt=-5, wobble=0.03, drift=0.03),
+    ),
+    Clip(
+        "ordinary-movement",
+        None,
+        "student",
+        "reef",
+        View(1.75, yaw=5, aim=(0, -0.06)),
+        Manner(),
+        31,
+    ),
+)
+"""Table 2 of the paper, its first three gestures being Table 1, and one clip without a gesture."""

@@ -1,0 +1,1 @@
+"""Tests of the sample languages and their clips."""
