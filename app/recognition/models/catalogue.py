@@ -25,8 +25,8 @@ class Wheel:
     sha256
         Of the wheel file.
     platform, python, abi, implementation
-        The tags that single out this one file, whatever machine asks: the models are the same in
-        the wheels for other systems, and their hashes are not.
+        The tags that single out this one file, whatever machine asks: it is only read,
+        never installed, so that one wheel and one hash serve all systems.
 
     """
 
