@@ -71,7 +71,7 @@ PAIR_MARGIN = 1.1
 """How many times the V must exceed the angle inside a pair; the fingers of a pair need not touch,
 but a fan of evenly spread fingers is an open hand."""
 
-TIP_GAP_RATIO = Condition(1.15, 0.6)
+TIP_GAP_RATIO = Condition(1.1, 0.6)
 """Gap between the tips of middle and ring finger over the wider gap inside the pairs."""
 
 PALM_WIDTH = Condition(0.38, 0.4)

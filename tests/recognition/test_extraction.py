@@ -1,0 +1,173 @@
+"""From a clip to a recording: every frame counted, nothing invented, cancelled at once."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition.errors import VideoError
+from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
+from app.recognition.extraction import extract_poses, record
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.recording import Recording
+from app.recognition.takes import takes_in
+from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
+from tests.recognition.parametric_hand import hand_xy, salute
+
+FLAT_HAND = np.zeros((21, 2))
+
+
+class ScriptedEstimator:
+    """Finds what it is told to: a body in all but some frames, a salute in some of them.
+
+    It stands for the models where a test is about what becomes of their answers.
+    """
+
+    def __init__(
+        self,
+        *,
+        bodiless: frozenset[int] = frozenset(),
+        saluting: frozenset[int] = frozenset(),
+        unseen: int | None = None,
+    ) -> None:
+        self.bodiless, self.saluting, self.unseen = bodiless, saluting, unseen
+        self.times: list[float] = []
+        self.closed = False
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        assert image.shape == (HEIGHT, WIDTH, 3)
+        index = len(self.times)
+        self.times.append(time)
+        xy = np.tile([[float(index), 10.0]], (33, 1))
+        if self.unseen is not None:
+            xy[self.unseen] = [np.inf, 5.0]
+        body = None if index in self.bodiless else Body(xy, np.full(33, 0.9), 0.9)
+        hands: tuple[Hand, ...] = ()
+        if index in self.saluting:
+            small, large = hand_xy(salute()), 5 * FLAT_HAND + np.arange(21)[:, None]
+            hands = (Hand(small, "right", 0.9), Hand(large, "left", 0.9))
+        return FrameLandmarks(body, hands)
+
+    def reset(self) -> None:
+        self.times.clear()
+
+    def close(self) -> None:
+        self.closed = True
+
+
+@pytest.fixture
+def clip(tmp_path: Path) -> Path:
+    return write_clip(tmp_path / "clip.mp4", frames=20)
+
+
+def test_every_frame_is_recorded_with_its_time(clip: Path) -> None:
+    estimator = ScriptedEstimator(saluting=frozenset(range(20)))
+    recording = record(clip, estimator=estimator)
+    assert recording.poses.landmarks == POSE_LANDMARKS
+    assert recording.poses.frame_size == (WIDTH, HEIGHT)
+    assert recording.poses.time == pytest.approx(np.arange(20) / 25)
+    assert recording.poses.time.tolist() == estimator.times
+    assert (recording.salute > 0.5).all()
+    assert recording.warnings == ()
+    assert not estimator.closed
+
+
+def test_the_larger_hand_comes_first(clip: Path) -> None:
+    recording = record(clip, estimator=ScriptedEstimator(saluting=frozenset({0})))
+    assert [hand.side for hand in recording.hands[0]] == ["left", "right"]
+
+
+def test_frames_without_a_person_stay_and_are_counted(clip: Path) -> None:
+    bodiless = frozenset({0, 7, 8})
+    recording = record(
+        clip, estimator=ScriptedEstimator(bodiless=bodiless, saluting=frozenset({1, 2}))
+    )
+    assert np.flatnonzero(~recording.poses.seen.any(axis=1)).tolist() == sorted(bodiless)
+    assert recording.poses.confidence is not None
+    assert (recording.poses.confidence[7] == 0).all()
+    assert recording.warnings == ("no person in 3 of 20 frames",)
+
+
+def test_a_clip_without_anybody_is_no_silent_success(clip: Path) -> None:
+    recording = record(clip, estimator=ScriptedEstimator(bodiless=frozenset(range(20))))
+    assert not recording.poses.seen.any()
+    assert recording.warnings[0] == "no person in 20 of 20 frames"
+    assert "no hand in any of 20 frames" in recording.warnings[1]
+    assert takes_in(recording) == ()
+
+
+def test_a_landmark_that_is_no_number_becomes_unseen(clip: Path) -> None:
+    poses = extract_poses(clip, estimator=ScriptedEstimator(unseen=5))
+    assert not poses.seen[:, 5].any()
+    assert poses.seen[:, :5].all()
+
+
+def test_progress_counts_up_to_the_end(clip: Path) -> None:
+    calls: list[tuple[int, int]] = []
+    record(
+        clip,
+        estimator=ScriptedEstimator(),
+        progress=lambda done, total: calls.append((done, total)),
+    )
+    assert calls[-1] == (20, 20)
+    assert [done for done, _ in calls] == sorted(done for done, _ in calls)
+    assert all(done <= total for done, total in calls)
+
+
+def test_progress_estimates_the_count_where_the_container_has_none(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mkv", frames=20)
+    totals: list[int] = []
+    record(clip, estimator=ScriptedEstimator(), progress=lambda _, total: totals.append(total))
+    assert totals[10] == pytest.approx(20, abs=3)
+
+
+def test_an_exception_in_progress_cancels_and_frees_the_clip(clip: Path) -> None:
+    class CancelledError(Exception):
+        pass
+
+    def cancel_at_five(done: int, _: int) -> None:
+        if done == 5:
+            raise CancelledError
+
+    estimator = ScriptedEstimator()
+    with pytest.raises(CancelledError):
+        record(clip, estimator=estimator, progress=cancel_at_five)
+    assert len(estimator.times) == 5
+    clip.unlink()
+
+
+def test_an_estimator_used_before_starts_afresh(clip: Path) -> None:
+    estimator = ScriptedEstimator()
+    first = record(clip, estimator=estimator)
+    assert record(clip, estimator=estimator).poses == first.poses
+
+
+def test_a_damaged_clip_is_recorded_as_far_as_it_goes(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=60, options={"movflags": "faststart"})
+    recording = record(cut_off(clip, 0.8), estimator=ScriptedEstimator())
+    assert 0 < len(recording.poses) < 60
+    assert f"{len(recording.poses)} of 60 frames were read" in recording.warnings[0]
+
+
+def test_what_is_no_clip_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "clip.mp4").write_text("a dive log")
+    with pytest.raises(VideoError):
+        record(tmp_path / "clip.mp4", estimator=ScriptedEstimator())
+
+
+@pytest.mark.slow
+def test_a_real_diver_is_followed_in_every_frame(shared_data: Path) -> None:
+    recording = record(shared_data / "clips" / "diver_follow_me.webm")
+    assert len(recording.poses) == 83
+    assert recording.poses.duration == pytest.approx(6.0, abs=0.01)
+    assert recording.poses.seen.all(axis=1).mean() > 0.9
+    assert takes_in(recording) == ()
+
+
+@pytest.mark.slow
+def test_a_recording_of_a_real_clip_survives_the_disk(shared_data: Path, tmp_path: Path) -> None:
+    saved = record(shared_data / "clips" / "slt_person205_front.mp4")
+    saved.save(tmp_path / "clip.npz")
+    loaded = Recording.load(tmp_path / "clip.npz")
+    assert loaded.poses == saved.poses
+    assert [len(hands) for hands in loaded.hands] == [len(hands) for hands in saved.hands]

@@ -1,0 +1,130 @@
+"""Recordings: what is saved is what is loaded, and damage is told plainly."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition.errors import PoseError
+from app.recognition.estimation.base import Hand
+from app.recognition.poses import PoseSequence
+from app.recognition.recording import FILE_VERSION, Recording
+from tests.recognition.parametric_hand import hand_xy, salute
+
+FRAMES = 7
+
+
+def recording(*, with_confidence: bool = True) -> Recording:
+    random = np.random.default_rng(3)
+    xy = random.uniform(0, 640, (FRAMES, 2, 2))
+    xy[2] = np.nan
+    hand = hand_xy(salute())
+    return Recording(
+        poses=PoseSequence(
+            landmarks=("left_wrist", "right_wrist"),
+            xy=xy,
+            confidence=random.uniform(0, 1, (FRAMES, 2)) if with_confidence else None,
+            time=np.arange(FRAMES) / 25,
+            frame_size=(640, 480),
+        ),
+        hands=(
+            (),
+            (Hand(hand, "left", 0.9),),
+            (Hand(2 * hand, "right", 0.8), Hand(hand, "left", 0.7)),
+            *[()] * (FRAMES - 3),
+        ),
+        salute=random.uniform(0, 1, FRAMES),
+        warnings=("no person in 1 of 7 frames",),
+    )
+
+
+@pytest.mark.parametrize("with_confidence", [True, False])
+def test_a_saved_recording_loads_as_it_was(tmp_path: Path, with_confidence: bool) -> None:
+    saved = recording(with_confidence=with_confidence)
+    saved.save(tmp_path / "clip.npz")
+    loaded = Recording.load(tmp_path / "clip.npz")
+    assert loaded.poses == saved.poses
+    assert np.array_equal(loaded.salute, saved.salute)
+    assert loaded.warnings == saved.warnings
+    assert [len(hands) for hands in loaded.hands] == [len(hands) for hands in saved.hands]
+    for before, after in zip(sum(saved.hands, ()), sum(loaded.hands, ()), strict=True):
+        assert np.array_equal(before.xy, after.xy)
+        assert (before.side, before.score) == (after.side, after.score)
+
+
+def test_a_recording_without_frames_or_hands_survives(tmp_path: Path) -> None:
+    poses = recording().poses.between(90, 91)
+    Recording(poses=poses, hands=(), salute=np.empty(0)).save(tmp_path / "clip.npz")
+    assert len(Recording.load(tmp_path / "clip.npz").poses) == 0
+
+
+def test_saving_leaves_nothing_else_behind(tmp_path: Path) -> None:
+    target = tmp_path / "clip.npz"
+    for _ in range(2):
+        recording().save(target)
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_a_failed_save_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "clip.npz"
+    recording().save(target)
+    before = target.read_bytes()
+
+    def full_disk(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full_disk)
+    with pytest.raises(OSError, match="No space left"):
+        recording().save(target)
+    assert target.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [target]
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"not a recording" * 50])
+def test_a_damaged_file_is_named(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "clip.npz").write_bytes(content)
+    with pytest.raises(PoseError, match=r"clip\.npz is not a readable recording.*again"):
+        Recording.load(tmp_path / "clip.npz")
+
+
+@pytest.mark.parametrize("share", [0.3, 0.7, 0.99])
+def test_a_truncated_file_is_named(tmp_path: Path, share: float) -> None:
+    target = tmp_path / "clip.npz"
+    recording().save(target)
+    target.write_bytes(target.read_bytes()[: int(target.stat().st_size * share)])
+    with pytest.raises(PoseError, match=r"clip\.npz is not a readable recording"):
+        Recording.load(target)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(PoseError, match=r"none\.npz is not a readable recording"):
+        Recording.load(tmp_path / "none.npz")
+
+
+def test_pickled_objects_are_never_opened(tmp_path: Path) -> None:
+    np.savez(tmp_path / "clip.npz", version=np.array({"a": 1}, dtype=object))
+    with pytest.raises(PoseError, match="not a readable recording"):
+        Recording.load(tmp_path / "clip.npz")
+
+
+def test_a_newer_file_is_refused_as_such(tmp_path: Path) -> None:
+    target = tmp_path / "clip.npz"
+    recording().save(target)
+    with np.load(target) as archive:
+        arrays = dict(archive)
+    arrays["version"] = np.array(FILE_VERSION + 1)
+    np.savez(target, **arrays)
+    with pytest.raises(PoseError, match=f"file version {FILE_VERSION + 1}"):
+        Recording.load(target)
+
+
+def test_parts_of_different_length_are_refused() -> None:
+    good = recording()
+    with pytest.raises(PoseError, match="7 poses has 6 frames of hands"):
+        Recording(poses=good.poses, hands=good.hands[:-1], salute=good.salute)
+
+
+def test_scores_are_shares() -> None:
+    good = recording()
+    with pytest.raises(PoseError, match=r"outside \[0, 1\]"):
+        Recording(poses=good.poses, hands=good.hands, salute=good.salute + 2)
