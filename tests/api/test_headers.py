@@ -1,0 +1,36 @@
+"""What every answer tells browsers to distrust."""
+
+import httpx
+import pytest
+
+
+@pytest.mark.parametrize("path", ["/api/v1/clips", "/healthz", "/nothing", "/api/v1/nothing"])
+def test_every_answer_carries_the_security_headers(client: httpx.Client, path: str) -> None:
+    headers = client.get(path).headers
+    assert headers["x-content-type-options"] == "nosniff"
+    assert headers["referrer-policy"] == "no-referrer"
+    assert headers["cross-origin-opener-policy"] == "same-origin"
+    assert headers["permissions-policy"].startswith("camera=(self)")
+    assert "frame-ancestors 'self'" in headers["content-security-policy"]
+
+
+def test_the_page_may_load_its_own_scripts_only(client: httpx.Client) -> None:
+    policy = client.get("/healthz").headers["content-security-policy"]
+    directives = dict(part.strip().split(" ", 1) for part in policy.split(";"))
+    assert directives["script-src"] == "'self'"
+    assert directives["connect-src"] == "'self'"
+    assert directives["object-src"] == "'none'"
+    assert directives["base-uri"] == "'none'"
+
+
+def test_viser_has_a_policy_of_its_own_that_keeps_it_here(client: httpx.Client) -> None:
+    url = client.post("/api/v1/workspaces").json()["url"]
+    policy = client.get(url).headers["content-security-policy"]
+    directives = dict(part.strip().split(" ", 1) for part in policy.split(";"))
+    assert "'unsafe-inline'" in directives["script-src"]
+    assert directives["connect-src"].split()[0] == "'self'"
+    assert "ws:" not in directives["connect-src"]
+
+
+def test_answers_of_the_api_are_not_stored(client: httpx.Client) -> None:
+    assert client.get("/api/v1/clips").headers["cache-control"] == "no-store"

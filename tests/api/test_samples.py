@@ -1,0 +1,62 @@
+"""Samples: there at the first start, once, and gone when deleted."""
+
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.recognition import Gesture, Language
+from app.settings import Settings
+from tests.api.recordings import recording_of
+from tests.api.running import assert_problem, running
+from tests.recognition.damaged_clips import write_clip
+
+LANGUAGES = "/api/v1/languages"
+
+
+@pytest.fixture
+def samples(settings: Settings) -> Path:
+    """Return a samples' folder with a language, a broken one and a clip."""
+    folder = settings.samples_dir
+    (folder / "clips").mkdir(parents=True)
+    gesture = Gesture.from_demonstration("circle", recording_of("circle").poses)
+    Language("Table 1", [gesture]).save(folder / "table-1.json")
+    (folder / "broken.json").write_text("{")
+    write_clip(folder / "clips" / "circle_a.mp4")
+    return folder
+
+
+@pytest.mark.usefixtures("samples")
+def test_a_new_user_finds_the_sample_languages(settings: Settings) -> None:
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (language,) = client.get(LANGUAGES).json()
+        assert (language["name"], language["sample"]) == ("Table 1", True)
+
+
+def test_samples_are_brought_once_and_later_ones_are_added(
+    settings: Settings, samples: Path
+) -> None:
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (language,) = client.get(LANGUAGES).json()
+        client.delete(f"{LANGUAGES}/{language['id']}")
+    Language("Table 2").save(samples / "table-2.json")
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert [language["name"] for language in client.get(LANGUAGES).json()] == ["Table 2"]
+
+
+@pytest.mark.usefixtures("samples")
+def test_a_sample_clip_is_added_like_an_upload(settings: Settings) -> None:
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (sample,) = client.get("/api/v1/samples").json()
+        assert sample["name"] == "circle_a.mp4"
+        accepted = client.post("/api/v1/samples", json={"name": sample["name"]})
+        assert accepted.status_code == 202
+        clip = client.get(f"/api/v1/clips/{accepted.json()['id']}").json()
+        assert (clip["name"], clip["size"]) == (sample["name"], sample["size"])
+        for name in ("../../secret", "missing.mp4"):
+            refused = client.post("/api/v1/samples", json={"name": name})
+            assert_problem(refused, 404, "not_found")
+
+
+def test_without_samples_the_app_starts(client: httpx.Client) -> None:
+    assert client.get("/api/v1/samples").json() == []

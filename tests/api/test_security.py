@@ -1,0 +1,179 @@
+"""Who is let in: our host names, our own pages, and whoever has the token; websockets too."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from pydantic import SecretStr
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from app.api.security import COOKIE
+from app.settings import Settings
+from tests.api.running import Running, assert_problem, running
+
+LANGUAGES = "/api/v1/languages"
+TOKEN = "correct-horse-battery"
+
+
+@pytest.fixture
+def guarded(tmp_path: Path) -> Iterator[Running]:
+    """Return a server that wants a token."""
+    settings = Settings(
+        data_dir=tmp_path / "data", samples_dir=tmp_path / "none", token=SecretStr(TOKEN)
+    )
+    with running(settings) as server:
+        yield server
+
+
+@pytest.fixture
+def stranger(guarded: Running) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=guarded.address, timeout=60) as client:
+        yield client
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Host": "evil.example:8000"},
+        {"Host": "127.0.0.1.evil.example"},
+        {"Host": "localhost@evil.example"},
+        {"Host": ""},
+        {"Host": "[::1"},
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": "http://127.0.0.1:1"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "same-site"},
+        {
+            "Sec-Fetch-Site": "cross-site",
+            "Sec-Fetch-Mode": "navigate",
+            "Sec-Fetch-Dest": "document",
+        },
+    ],
+    ids=str,
+)
+def test_changes_from_elsewhere_are_refused(client: httpx.Client, headers: dict[str, str]) -> None:
+    answer = client.post(LANGUAGES, json={"name": "theirs"}, headers=headers)
+    assert_problem(answer, 403, "foreign_origin")
+    assert client.get(LANGUAGES).json() == []
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Origin": "http://evil.example"},
+        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "no-cors", "Sec-Fetch-Dest": "image"},
+        {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "iframe"},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("path", [LANGUAGES, "/healthz", "/openapi.json", "/viser/x/", "/nothing"])
+def test_other_sites_read_nothing(client: httpx.Client, path: str, headers: dict[str, str]) -> None:
+    assert_problem(client.get(path, headers=headers), 403, "foreign_origin")
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {},
+        {"Sec-Fetch-Site": "same-origin"},
+        {"Sec-Fetch-Site": "none"},
+        {
+            "Sec-Fetch-Site": "cross-site",
+            "Sec-Fetch-Mode": "navigate",
+            "Sec-Fetch-Dest": "document",
+        },
+    ],
+    ids=str,
+)
+def test_scripts_our_pages_and_followed_links_are_let_in(
+    client: httpx.Client, headers: dict[str, str]
+) -> None:
+    assert client.get(LANGUAGES, headers=headers).status_code == 200
+
+
+def test_our_own_page_may_change_things(client: httpx.Client, server: Running) -> None:
+    headers = {"Origin": server.address, "Sec-Fetch-Site": "same-origin"}
+    assert client.post(LANGUAGES, json={"name": "ours"}, headers=headers).status_code == 201
+    by_name = {"Host": f"localhost:{server.port}", "Origin": f"http://localhost:{server.port}"}
+    assert client.post(LANGUAGES, json={"name": "ours"}, headers=by_name).status_code == 201
+
+
+def test_more_host_names_can_be_allowed(settings: Settings) -> None:
+    named = settings.model_copy(update={"allowed_hosts": ("dive-box.local",)})
+    with running(named) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert client.get(LANGUAGES, headers={"Host": "dive-box.local:80"}).status_code == 200
+        answer = client.get(LANGUAGES, headers={"Host": "dive-box.example"})
+        assert_problem(answer, 403, "foreign_origin")
+
+
+@pytest.mark.parametrize("path", ["/viser/x", "/anything"])
+@pytest.mark.parametrize("origin", ["http://evil.example", "null"])
+def test_websockets_from_foreign_pages_are_refused(server: Running, path: str, origin: str) -> None:
+    address = f"ws://127.0.0.1:{server.port}{path}"
+    with (
+        pytest.raises(InvalidStatus, match="403"),
+        connect(address, additional_headers={"Origin": origin}, proxy=None),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("path", [LANGUAGES, "/openapi.json", "/", "/static/x", "/viser/x/"])
+def test_without_the_token_nothing_is_told(stranger: httpx.Client, path: str) -> None:
+    answer = stranger.get(path)
+    assert_problem(answer, 401, "token_required")
+    assert answer.headers["www-authenticate"] == "Bearer"
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("Authorization", "Bearer wrong"),
+        ("Authorization", TOKEN),
+        ("Authorization", f"Basic {TOKEN}"),
+        ("Cookie", f"{COOKIE}={TOKEN}"),
+        ("Cookie", f"{COOKIE}=\u00e9"),
+        ("Cookie", ";;=;"),
+    ],
+)
+def test_a_wrong_token_is_none(stranger: httpx.Client, name: str, value: str) -> None:
+    header = (name.encode(), value.encode())
+    assert_problem(stranger.get(LANGUAGES, headers=[header]), 401, "token_required")
+    assert_problem(stranger.get("/", params={"token": "wrong"}), 401, "token_required")
+
+
+def test_the_token_opens_as_bearer(stranger: httpx.Client) -> None:
+    headers = {"Authorization": f"Bearer {TOKEN}"}
+    assert stranger.get(LANGUAGES, headers=headers).status_code == 200
+
+
+def test_the_token_in_the_address_becomes_a_cookie_and_leaves_the_address(
+    stranger: httpx.Client,
+) -> None:
+    answer = stranger.get("/", params={"token": TOKEN, "clip": "a b"})
+    assert answer.status_code == 303
+    assert answer.headers["location"] == "/?clip=a+b"
+    cookie = answer.headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "SameSite=strict" in cookie
+    assert TOKEN not in cookie
+    assert stranger.get(LANGUAGES).status_code == 200
+
+
+def test_the_redirect_stays_on_this_server(stranger: httpx.Client) -> None:
+    answer = stranger.get(f"{stranger.base_url}//evil.example/", params={"token": TOKEN})
+    assert answer.headers["location"] == "/evil.example/"
+
+
+def test_health_is_told_to_everybody(stranger: httpx.Client) -> None:
+    assert stranger.get("/healthz").status_code == 200
+
+
+def test_websockets_want_the_token_too(guarded: Running) -> None:
+    address = f"ws://127.0.0.1:{guarded.port}/viser/x"
+    with pytest.raises(InvalidStatus, match="403"), connect(address, proxy=None):
+        pass
