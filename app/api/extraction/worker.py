@@ -141,7 +141,8 @@ def main() -> None:
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
     except RecognitionError as error:
-        detail = str(error).removeprefix(f"{chosen.clip.name}: ")
+        # Our own name of the file means nothing to whoever sent it.
+        detail = str(error).replace(chosen.clip.name, "the clip")
         report(Failed(code="video_unreadable", detail=detail))
     except OSError as error:
         detail = f"the server's storage cannot be used ({error.strerror}); free space and retry"

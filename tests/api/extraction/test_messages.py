@@ -1,0 +1,27 @@
+"""What workers tell survives the way through the pipe; anything else is refused."""
+
+import pytest
+
+from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, dump, parse
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        Probed(width=64, height=48, duration=None, frames=3, rotation=90, codec="h264"),
+        Progressed(stage="poses", done=1, total=9),
+        Finished(frames=9, warnings=("no hand in any of 9 frames\n\u2028",)),
+        Failed(code="decoder", detail="broke"),
+    ],
+    ids=lambda message: message.kind,
+)
+def test_a_message_is_one_line_and_comes_back(message: Message) -> None:
+    line = dump(message)
+    assert "\n" not in line
+    assert parse(line.encode()) == message
+
+
+@pytest.mark.parametrize("line", [b"", b"{", b"{}", b'{"kind": "hello"}', b'{"kind": "failed"}'])
+def test_what_is_no_message_is_an_error(line: bytes) -> None:
+    with pytest.raises(ValueError, match="validation error"):
+        parse(line)

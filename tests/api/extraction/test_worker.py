@@ -1,0 +1,77 @@
+"""The worker process: one answer per line, and an end when the server is gone."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from app.api.extraction.worker import POSTER_WIDTH, write_poster
+from app.recognition import Recording
+from tests.recognition.damaged_clips import write_clip
+
+COMMAND = [sys.executable, "-m", "app.api.extraction.worker"]
+
+
+def answers(*arguments: str | Path) -> list[dict[str, Any]]:
+    """Run a worker to its end with its stdin open, and return what it told."""
+    command = [*COMMAND, *(str(argument) for argument in arguments)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        return [json.loads(line) for line in process.stdout]
+
+
+def test_probing_tells_what_the_clip_is(tmp_path: Path) -> None:
+    (answer,) = answers("probe", write_clip(tmp_path / "clip.mp4", rotation=90))
+    assert answer["kind"] == "probed"
+    assert (answer["width"], answer["height"], answer["rotation"]) == (48, 64, 90)
+
+
+def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
+    path = tmp_path / "0123.part"
+    path.write_bytes(b"\0\0\0\x18ftypmp42")
+    (answer,) = answers("probe", path)
+    assert (answer["kind"], answer["code"]) == ("failed", "video_unreadable")
+    assert "0123" not in answer["detail"]
+
+
+@pytest.mark.usefixtures("models")
+def test_extracting_reports_progress_and_leaves_recording_and_poster(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=5)
+    recording, poster = tmp_path / "recording.npz", tmp_path / "poster.jpg"
+    told = answers("extract", clip, recording, poster)
+    assert told[-1]["kind"] == "finished"
+    assert told[-1]["frames"] == 5
+    assert [answer["done"] for answer in told if answer.get("stage") == "poses"][-1] == 5
+    assert len(Recording.load(recording).poses) == 5
+    assert poster.read_bytes()[:2] == b"\xff\xd8"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "clip.mp4",
+        "poster.jpg",
+        "recording.npz",
+    ]
+
+
+def test_a_worker_whose_server_is_gone_ends(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=2000)
+    command = [*COMMAND, "extract", str(clip), str(tmp_path / "r.npz"), str(tmp_path / "p.jpg")]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
+        assert process.stdin is not None
+        process.stdin.close()
+        assert process.wait(60) == 1
+    assert not (tmp_path / "r.npz").exists()
+
+
+def test_the_poster_is_the_upright_picture_made_small(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", size=(640, 480), frames=30)
+    write_poster(clip, tmp_path / "poster.jpg")
+    picture = cv2.imread(str(tmp_path / "poster.jpg"))
+    assert picture is not None
+    assert picture.shape == (POSTER_WIDTH * 3 // 4, POSTER_WIDTH, 3)
+    # The clip's top left quarter is red, the rest blue (OpenCV reads BGR).
+    assert int(np.argmax(picture[20, 20])) == 2
+    assert int(np.argmax(picture[-20, -20])) == 0

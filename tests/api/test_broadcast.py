@@ -1,0 +1,52 @@
+"""News reach every listener, from any thread, and never pile up."""
+
+import asyncio
+import threading
+
+from app.api.broadcast import MOST_UNREAD, Broadcast, News
+
+
+def test_every_listener_hears_news_from_any_thread() -> None:
+    async def listen() -> list[list[News]]:
+        broadcast = Broadcast()
+        with broadcast.listening() as one, broadcast.listening() as other:
+            thread = threading.Thread(target=broadcast.publish, args=("clips",), kwargs={"id": "a"})
+            thread.start()
+            thread.join()
+            await asyncio.sleep(0)
+            broadcast.close()
+            return [[news async for news in listener] for listener in (one, other)]
+
+    assert asyncio.run(listen()) == [[News("clips", {"id": "a"})]] * 2
+
+
+def test_a_listener_that_does_not_read_keeps_the_newest() -> None:
+    async def listen() -> list[int]:
+        broadcast = Broadcast()
+        with broadcast.listening() as listener:
+            for number in range(2 * MOST_UNREAD):
+                broadcast.publish("jobs", id=number)
+            await asyncio.sleep(0)
+            broadcast.close()
+            return [news.data["id"] async for news in listener]
+
+    heard = asyncio.run(listen())
+    assert heard[-1] == 2 * MOST_UNREAD - 1
+    assert len(heard) < MOST_UNREAD
+
+
+def test_who_comes_after_the_end_hears_nothing_and_waits_for_nothing() -> None:
+    async def listen() -> list[News]:
+        broadcast = Broadcast()
+        broadcast.close()
+        with broadcast.listening() as listener:
+            return [news async for news in listener]
+
+    assert asyncio.run(listen()) == []
+
+
+def test_publishing_after_the_loop_is_closed_does_nothing() -> None:
+    async def make() -> Broadcast:
+        return Broadcast()
+
+    asyncio.run(make()).publish("clips", id="late")

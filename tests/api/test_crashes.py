@@ -1,0 +1,137 @@
+"""The server dies, in bad order and in good; what it acknowledged is there when it comes back."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import pytest
+
+from tests.api.running import PATIENCE_SECONDS, until
+from tests.api.test_clips import CLIPS, upload
+from tests.api.test_jobs import JOBS
+from tests.api.workers import alive, linux, workers_of
+from tests.recognition.damaged_clips import write_clip
+
+pytestmark = [pytest.mark.slow, linux]
+
+SERVE = """
+import sys
+from pathlib import Path
+from app.server import run
+from app.settings import Settings
+data = Path(sys.argv[1])
+run(Settings(data_dir=data, samples_dir=data / "none", port=0), open_browser=False)
+"""
+
+STOP_SECONDS = 10
+"""What a service manager waits for after SIGTERM, at the least."""
+
+
+@contextmanager
+def served(data_dir: Path) -> Iterator[tuple[subprocess.Popen[str], httpx.Client]]:
+    """Serve in a process of its own, that may be killed."""
+    command = [sys.executable, "-c", SERVE, str(data_dir)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        address = next(word for word in line.split() if word.startswith("http://"))
+        with httpx.Client(base_url=address, timeout=PATIENCE_SECONDS) as client:
+            yield process, client
+    finally:
+        process.kill()
+        process.wait()
+
+
+def working_on(clip: Path, process: subprocess.Popen[str], client: httpx.Client) -> tuple[str, int]:
+    """Upload a clip and freeze its worker; return the job's id and the worker's."""
+    job_id: str = upload(client, clip).json()["job_id"]
+    until(lambda: workers_of(process.pid))
+    (worker,) = workers_of(process.pid)
+    os.kill(worker, signal.SIGSTOP)
+    until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "running")
+    return job_id, worker
+
+
+def finished(client: httpx.Client, job_id: str) -> Callable[[], bool]:
+    return lambda: client.get(f"{JOBS}/{job_id}").json()["status"] in ("done", "failed")
+
+
+def test_after_a_kill_the_job_is_taken_up_again(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=40)
+    data = tmp_path / "data"
+    with served(data) as (process, client):
+        language = client.post("/api/v1/languages", json={"name": "kept"}).json()
+        job_id, worker = working_on(clip, process, client)
+        process.kill()
+        process.wait()
+    (data / "clips" / "half-an-upload.part").write_bytes(b"half")
+    os.kill(worker, signal.SIGCONT)
+    until(lambda: not alive(worker))
+    with served(data) as (process, client):
+        assert client.get("/api/v1/languages").json() == [
+            {key: language[key] for key in language if key not in ("author", "gestures")}
+        ]
+        until(finished(client, job_id))
+        (kept,) = client.get(CLIPS).json()
+        assert client.get(f"{CLIPS}/{kept['id']}/video").content == clip.read_bytes()
+        # Done, or, on a machine without models, failed for that reason: it was run again.
+        assert kept["error_code"] in (None, "model_missing")
+        assert [path.name for path in (data / "clips").iterdir()] == [kept["id"]]
+
+
+def test_sigterm_ends_server_and_workers_soon_and_the_job_waits(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=40)
+    data = tmp_path / "data"
+    with served(data) as (process, client):
+        job_id, worker = working_on(clip, process, client)
+        with client.stream("GET", "/api/v1/events") as stream:
+            next(stream.iter_lines())
+            process.send_signal(signal.SIGTERM)
+            process.wait(STOP_SECONDS)
+        assert not alive(worker)
+    with served(data) as (process, client):
+        until(finished(client, job_id))
+
+
+@pytest.mark.parametrize("uploads", [1, 3])
+def test_a_kill_right_after_the_answer_loses_nothing(tmp_path: Path, uploads: int) -> None:
+    clip = write_clip(tmp_path / "clip.mp4")
+    data = tmp_path / "data"
+    acknowledged: list[str] = []
+    with served(data) as (process, client):
+        for count in range(uploads):
+            answer = upload(client, clip, **{"Idempotency-Key": str(count)})
+            acknowledged.append(answer.json()["id"])
+            client.post("/api/v1/languages", json={"name": f"language {count}"})
+        process.kill()
+        process.wait()
+    with served(data) as (process, client):
+        assert {kept["id"] for kept in client.get(CLIPS).json()} == set(acknowledged)
+        assert len(client.get("/api/v1/languages").json()) == uploads
+        for clip_id in acknowledged:
+            assert client.get(f"{CLIPS}/{clip_id}/video").content == clip.read_bytes()
+
+
+def test_a_folder_in_use_or_damaged_ends_the_start_in_one_line(tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    command = [sys.executable, "-c", SERVE, str(data)]
+    with served(data):
+        second = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert second.returncode == 2
+    assert second.stderr.startswith("osg-studio: the data folder")
+    assert second.stderr.count("\n") == 1
+    (data / "studio.db").write_bytes(b"not a database, but long enough to be read as one" * 50)
+    for leftover in data.glob("studio.db-*"):
+        leftover.unlink()
+    third = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert third.returncode == 2
+    assert third.stderr.count("\n") == 1
+    assert "restore a backup" in third.stderr

@@ -1,0 +1,155 @@
+"""Jobs over HTTP: progress as it happens, cancelling, and workers that break or hang."""
+
+import json
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from app.settings import Settings
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import Running, assert_problem, running, until
+from tests.api.test_clips import CLIPS, upload
+from tests.api.workers import alive, linux, workers_of
+from tests.recognition.damaged_clips import write_clip
+
+JOBS = "/api/v1/jobs"
+
+
+@pytest.fixture
+def long_clip(tmp_path: Path) -> Path:
+    """Return a clip that takes longer than a test needs to disturb its job."""
+    return write_clip(tmp_path / "long.mp4", frames=2000, size=(320, 240))
+
+
+def events_of(client: httpx.Client, job_id: str) -> Iterator[dict[str, Any]]:
+    """Yield what a job's event stream tells, to its end."""
+    with client.stream("GET", f"{JOBS}/{job_id}/events") as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        for line in stream.iter_lines():
+            if line.startswith("data:"):
+                yield json.loads(line.removeprefix("data:"))
+
+
+def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
+    """Upload a clip, stop its worker in its tracks; return the job's id and the worker's."""
+    job_id: str = upload(client, clip).json()["job_id"]
+    until(lambda: workers_of(os.getpid()))
+    (worker,) = workers_of(os.getpid())
+    os.kill(worker, signal.SIGSTOP)
+    return job_id, worker
+
+
+@pytest.mark.usefixtures("models")
+def test_progress_is_told_until_the_end(client: httpx.Client, small_clip: Path) -> None:
+    job_id = upload(client, small_clip).json()["job_id"]
+    told = list(events_of(client, job_id))
+    assert told[-1]["status"] == "done"
+    assert (told[-1]["done"], told[-1]["total"]) == (12, 12)
+    counted = [event["done"] for event in told if event["stage"] == "poses"]
+    assert counted == sorted(counted)
+    assert counted[-1] == 12
+    for event in told:
+        assert {"stage", "done", "total", "eta_s"} <= set(event)
+        assert 0 <= event["done"] <= event["total"]
+    job = client.get(f"{JOBS}/{job_id}").json()
+    assert job["status"] == "done"
+    assert job["started"] <= job["finished"]
+
+
+def test_a_job_that_is_over_tells_so_once(client: httpx.Client, circle_clip: str) -> None:
+    job_id = client.get(f"{CLIPS}/{circle_clip}").json()["job_id"]
+    (told,) = events_of(client, job_id)
+    assert told["status"] == "done"
+    again = client.get(f"{JOBS}/{job_id}/events", headers={"Last-Event-ID": "final"})
+    assert again.status_code == 204
+
+
+@linux
+def test_a_running_job_can_be_cancelled_and_tried_again(
+    client: httpx.Client, long_clip: Path
+) -> None:
+    job_id, worker = frozen_worker(client, long_clip)
+    assert client.get(f"{JOBS}/{job_id}").json()["status"] == "running"
+    assert client.delete(f"{JOBS}/{job_id}").json()["status"] == "cancelled"
+    until(lambda: not alive(worker))
+    (clip,) = client.get(CLIPS).json()
+    assert clip["status"] == "cancelled"
+    assert client.delete(f"{JOBS}/{job_id}").json()["status"] == "cancelled"
+    retried = client.post(f"{CLIPS}/{clip['id']}/jobs").json()
+    until(lambda: workers_of(os.getpid()))
+    assert_problem(client.post(f"{CLIPS}/{clip['id']}/jobs"), 409, "job_not_needed")
+    client.delete(f"{JOBS}/{retried['job_id']}")
+
+
+@linux
+def test_deleting_a_clip_ends_its_job_and_its_streams(
+    client: httpx.Client, long_clip: Path
+) -> None:
+    job_id, worker = frozen_worker(client, long_clip)
+    events = events_of(client, job_id)
+    assert next(events)["status"] == "running"
+    (clip,) = client.get(CLIPS).json()
+    assert client.delete(f"{CLIPS}/{clip['id']}").status_code == 204
+    until(lambda: not alive(worker))
+    assert list(events)[-1]["status"] == "cancelled"
+    assert_problem(client.get(f"{JOBS}/{job_id}"), 404, "not_found")
+
+
+@linux
+def test_a_worker_that_crashes_fails_its_job_and_nothing_else(
+    client: httpx.Client, long_clip: Path
+) -> None:
+    job_id, worker = frozen_worker(client, long_clip)
+    waiting = upload(client, long_clip).json()["job_id"]
+    os.kill(worker, signal.SIGKILL)
+    until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "failed")
+    job = client.get(f"{JOBS}/{job_id}").json()
+    assert job["error_code"] == "decoder"
+    assert "convert it" in job["error"]
+    until(lambda: client.get(f"{JOBS}/{waiting}").json()["status"] != "queued")
+
+
+@linux
+def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> None:
+    impatient = settings.model_copy(update={"worker_silence_seconds": 0.5})
+    with running(impatient) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        job_id, worker = frozen_worker(client, long_clip)
+        until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "failed")
+        job = client.get(f"{JOBS}/{job_id}").json()
+        assert job["error_code"] == "decoder"
+        assert "no progress" in job["error"]
+        assert not alive(worker)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="POSIX resource limits")
+def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, small_clip: Path) -> None:
+    narrow = settings.model_copy(update={"worker_memory_bytes": 100 * 1024 * 1024})
+    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert_problem(upload(client, small_clip), 422, "decoder")
+        assert client.get("/healthz").status_code == 200
+
+
+def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> None:
+    heard: list[tuple[str, dict[str, Any]]] = []
+    with client.stream("GET", "/api/v1/events") as stream:
+        lines = stream.iter_lines()
+        while "listening" not in next(lines):
+            pass
+        language = httpx.post(f"{server.address}/api/v1/languages", json={"name": "pool"}).json()
+        httpx.patch(f"{server.address}/api/v1/languages/{language['id']}", json={"name": "sea"})
+        clip_id = add_recorded_clip(server.studio, recording_of("circle"))
+        httpx.delete(f"{server.address}{CLIPS}/{clip_id}")
+        kind = ""
+        for line in lines:
+            kind = line.removeprefix("event:").strip() if line.startswith("event:") else kind
+            if line.startswith("data:"):
+                heard.append((kind, json.loads(line.removeprefix("data:"))))
+                if kind == "clips":
+                    break
+    assert ("languages", {"id": language["id"]}) in heard
+    assert heard[-1] == ("clips", {"id": clip_id})
