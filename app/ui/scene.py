@@ -23,7 +23,7 @@ DIM = 0.5
 """Brightness of the part of a trail that is still to come."""
 
 CAMERA_POSITION: Final = (-2.75, -1.15, -1.85)
-CAMERA_TARGET: Final = (0.0, 0.2, 0.66)
+CAMERA_TARGET: Final = (0.0, 0.28, 0.66)
 """Left of the video and above it: frame, trails and back wall are all seen, none edge-on."""
 
 

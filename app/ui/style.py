@@ -36,7 +36,7 @@ PANEL_STYLE: Final = """<style>
   border: 1px solid currentColor; white-space: nowrap; display: table;
   margin-top: 2px; }
 .osg .tag.expected { border-style: dashed; }
-.osg .scroll { overflow-x: auto; max-height: 420px; overflow-y: auto; }
+.osg .scroll { overflow-x: auto; }
 .osg table { border-collapse: separate; border-spacing: 2px; width: 100%; }
 .osg thead th { vertical-align: bottom; font-weight: 500; color: var(--osg-dim); padding: 0 0 4px; }
 .osg table { table-layout: fixed; }

@@ -54,6 +54,9 @@ function writeUrl() {
 
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
 
+/** Seconds the clip lasts; where its container does not say, up to its last take. */
+export const lengthOf = (clip) => clip.duration ?? values.takes?.at(-1)?.end ?? 0;
+
 /** The range in seconds on which buttons act, and whether it is a take's own. */
 export function selectedRange() {
   const clip = selectedClip();
@@ -61,6 +64,6 @@ export function selectedRange() {
   const take = values.takes?.[values.take];
   if (take) return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
   const start = values.start ?? 0;
-  const end = values.end ?? clip.duration ?? 0;
+  const end = values.end ?? lengthOf(clip);
   return { start, end, shown: [start, end], take: null };
 }

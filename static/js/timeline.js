@@ -2,7 +2,7 @@
 
 import { byId, h } from "./dom.js";
 import { moment, plural } from "./format.js";
-import { selectedClip, selectedRange, state, update } from "./state.js";
+import { lengthOf, selectedClip, selectedRange, state, update } from "./state.js";
 
 const LEAST_RANGE = 0.1; // s. Three frames: with fewer there is no gesture.
 
@@ -70,8 +70,8 @@ export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
   const range = selectedRange();
-  if (!clip || clip.status !== "done" || !state.takes || !range || !clip.duration) return box.replaceChildren();
-  const { duration } = clip;
+  const duration = clip ? lengthOf(clip) : 0;
+  if (!duration || clip.status !== "done" || !state.takes) return box.replaceChildren();
   const track = box.querySelector(".track");
   const lengths = h("div", { className: "range", style: { left: percent(range.start, duration), width: percent(range.end - range.start, duration) } });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));

@@ -12,6 +12,14 @@ const STEPS = [
   ["Export", "Give the language to the robot as one JSON file."],
 ];
 
+const OFFERED = 8; // A few to begin with; all of them are in the library.
+
+/** Clips to recognise come first: the sample languages hold the demonstrations already. */
+function offered(samples) {
+  const demonstrates = (sample) => sample.name.includes("demonstration");
+  return [...samples].sort((one, other) => demonstrates(one) - demonstrates(other)).slice(0, OFFERED);
+}
+
 function welcome(samples) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
@@ -19,7 +27,7 @@ function welcome(samples) {
     h("div", { className: "welcome-actions" },
       h("button", { type: "button", className: "primary", onclick: () => byId("file").click() }, "Choose clips"),
       samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null),
-    samples.length ? samplesList(samples) : null,
+    samples.length ? samplesList(offered(samples)) : null,
   ];
 }
 

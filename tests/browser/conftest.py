@@ -1,0 +1,126 @@
+"""The real app on a free port, and Debian's Chromium in front of it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from urllib.parse import urlencode
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+
+from app.recognition.models import installed_models
+from app.settings import Settings
+from tests.api.running import Running, running
+from tests.conftest import ROOT
+
+WEBGL = (
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+)
+"""Lets Chromium draw WebGL in software, also as root in a container."""
+
+PATIENCE_MS = 30_000
+"""Longest wait for what must appear; a loaded machine is slow, a broken page never gets there."""
+
+IMAGES = ROOT / "docs" / "images"
+
+WATCH_POLICY = """
+addEventListener("securitypolicyviolation", (event) => {
+  throw new Error(`refused by the content security policy: ${event.violatedDirective}`);
+});
+"""
+
+OpenPage = Callable[..., Page]
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Start Chromium; skip where there is none."""
+    executable = shutil.which("chromium") or shutil.which("chromium-browser")
+    if executable is None:
+        pytest.skip("needs Chromium: apt-get install chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=executable, args=list(WEBGL))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    """Return the settings of a fresh app with the samples that we ship."""
+    return Settings(data_dir=tmp_path_factory.mktemp("studio"))
+
+
+@pytest.fixture(scope="session")
+def server(settings: Settings) -> Iterator[Running]:
+    """Serve the app to all browser tests: what a test needs it adds under names of its own."""
+    with running(settings) as server:
+        yield server
+
+
+@pytest.fixture(scope="session")
+def clips(settings: Settings) -> Path:
+    """Return the folder of the sample clips; skip where no pose can be found for want of models."""
+    missing = [model.name for model in installed_models() if model.state != "ok"]
+    if missing:
+        pytest.skip(f"needs the models {missing}: run `osg-studio models install`")
+    return settings.samples_dir / "clips"
+
+
+@pytest.fixture
+def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
+    """Return a function that opens the app in a browser context of its own.
+
+    It takes the query of the address as a mapping, the width and height of the window, and the
+    colour scheme. No page may raise an error or break its content security policy.
+    """
+    contexts: list[BrowserContext] = []
+    errors: list[str] = []
+
+    def open_page(
+        query: dict[str, str] | None = None,
+        *,
+        size: tuple[int, int] = (1280, 800),
+        scheme: str = "dark",
+    ) -> Page:
+        context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]},
+            color_scheme="light" if scheme == "light" else "dark",
+            reduced_motion="reduce",
+        )
+        contexts.append(context)
+        context.set_default_timeout(PATIENCE_MS)
+        page = context.new_page()
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.add_init_script(WATCH_POLICY)
+        page.goto(f"{server.address}/?{urlencode(query or {})}")
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert errors == []
+
+
+@pytest.fixture
+def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
+    """Return a function that keeps a screenshot under a name.
+
+    They go to ``docs/images`` when ``OSG_UPDATE_IMAGES`` is set, so that a plain test run leaves
+    the working tree as it is.
+    """
+    folder = IMAGES if os.environ.get("OSG_UPDATE_IMAGES") else tmp_path
+
+    def take(page: Page, name: str) -> Path:
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / f"{name}.png"
+        page.screenshot(path=path)
+        return path
+
+    return take

@@ -1,0 +1,79 @@
+"""A clip and a language for a browser test, made without extracting any pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import httpx
+
+from app.store import Clip
+from tests.api.recordings import recording_of
+from tests.api.running import Running
+from tests.recognition.damaged_clips import write_clip
+
+
+@dataclass(frozen=True)
+class Library:
+    """What a test works on.
+
+    Attributes
+    ----------
+    clip, language
+        Ids.
+    client
+        Talks to the server.
+
+    """
+
+    clip: str
+    language: str
+    client: httpx.Client
+
+    @property
+    def address(self) -> dict[str, str]:
+        """The query of a link to the clip and the language."""
+        return {"clip": self.clip, "language": self.language}
+
+    def add_gesture(self, label: str, clip: str | None = None, description: str = "") -> None:
+        """Save the take of a clip as a gesture."""
+        body = {"label": label, "clip_id": clip or self.clip, "description": description}
+        answer = self.client.post(f"/api/v1/languages/{self.language}/gestures", json=body)
+        assert answer.status_code == 201, answer.text
+
+    def recognise(self, expected: str | None = None) -> str:
+        """Recognise the clip, and return the recognition's id."""
+        body = {"clip_id": self.clip, "language_id": self.language, "expected": expected}
+        answer = self.client.post("/api/v1/recognitions", json=body)
+        assert answer.status_code == 201, answer.text
+        return str(answer.json()["id"])
+
+
+def add_clip(server: Running, *shapes: str, name: str = "dive.mp4") -> str:
+    """Add a clip with one take per shape and a small video, and return its id."""
+    recording = recording_of(*shapes)
+    clips = server.studio.clips
+    partial = clips.new_partial()
+    write_clip(partial, container_format="mp4")
+    width, height = recording.poses.frame_size
+    clip = Clip(
+        name=name,
+        media_type="video/mp4",
+        size=partial.stat().st_size,
+        width=width,
+        height=height,
+        duration=recording.poses.duration,
+    )
+    added = clips.add(clip, partial, "test")
+    server.studio.jobs.start(added.job.id)
+    recording.save(clips.recording(clip.id))
+    server.studio.jobs.complete(added.job.id, len(recording.poses), recording.warnings)
+    return clip.id
+
+
+def library_of(server: Running, client: httpx.Client, name: str) -> Library:
+    """Add a clip of a circle, and a language of a circle and a line, both called `name`."""
+    language = client.post("/api/v1/languages", json={"name": name}).json()["id"]
+    library = Library(add_clip(server, "circle", name=f"{name}.mp4"), language, client)
+    library.add_gesture("circle")
+    library.add_gesture("line", add_clip(server, "line", name=f"{name} line.mp4"))
+    return library

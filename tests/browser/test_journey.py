@@ -1,0 +1,132 @@
+"""From a clip to a file for the robot, as a person walks through it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import FrameLocator, Locator, Page, expect
+
+from app.recognition import Language
+from tests.api.running import until
+from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
+
+pytestmark = pytest.mark.slow
+
+EXTRACTION_MS = 120_000
+"""Longest wait for the poses of a clip of six seconds."""
+
+
+def lab_of(page: Page) -> FrameLocator:
+    """Return viser's frame, once it draws."""
+    lab = page.frame_locator("#lab")
+    expect(lab.get_by_role("button", name="Play")).to_be_visible()
+    return lab
+
+
+def votes_in(table: Locator) -> dict[str, int]:
+    """Read the number of votes of every gesture off the vote table."""
+    rows = table.locator("tbody tr")
+    return {
+        row.get_by_role("rowheader").get_attribute("title") or "": int(
+            row.locator("td.votes").inner_text()
+        )
+        for row in rows.all()
+    }
+
+
+def upload(page: Page, clip: Path) -> None:
+    """Drop a clip, watch its progress, and wait for its take."""
+    drop(page, clip)
+    progress = page.locator("#welcome").get_by_text(re.compile(r"Finding poses, \d+ of \d+ frames"))
+    expect(progress).to_be_visible(timeout=EXTRACTION_MS)
+    take = page.get_by_role("button", name=re.compile("^Take 1"))
+    expect(take).to_be_visible(timeout=EXTRACTION_MS)
+    expect(take).to_have_attribute("aria-pressed", "true")
+
+
+def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
+    open_page: OpenPage, clips: Path, tmp_path: Path, picture: Callable[[Page, str], Path]
+) -> None:
+    page = open_page(size=(1440, 900))
+    expect(page.get_by_role("heading", name="One demonstration makes a gesture")).to_be_visible()
+    page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
+    cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
+    expect(cards).to_have_count(8)
+    picture(page, "start")
+
+    # A clip is dropped, its poses arrive, its take is seen, and becomes a gesture.
+    upload(page, clips / "circle-demonstration.mp4")
+    page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_label("Label").fill("our circle")
+    page.get_by_label("Command").fill("Hold your depth")
+    page.get_by_role("button", name="Save gesture").click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    expect(cards).to_have_count(9)
+
+    # A second clip, by another diver, is recognised; every voter's choice can be read.
+    second = sorted(clips.glob("circle-test*.mp4"))[0]
+    upload(page, second)
+    page.get_by_label("Expected").select_option("circle")
+    page.get_by_role("button", name="Recognise").click()
+    lab = lab_of(page)
+    table = lab.get_by_role("table", name="Votes")
+    expect(table).to_be_visible()
+    votes = votes_in(table)
+    assert len(votes) == 9
+    assert sum(votes.values()) == 7
+    expect(lab.locator("td.choice")).to_have_count(7)
+    outcome = page.locator("#outcome")
+    expect(outcome).to_have_text(re.compile(r"(Recognised as|Taken for) .*\d of 7 voters"))
+    winner = outcome.locator("b.chosen").inner_text()
+    expect(table.locator("tr", has_text="chosen").get_by_role("rowheader")).to_have_attribute(
+        "title", winner
+    )
+    expect(table.locator("tr", has_text="expected").get_by_role("rowheader")).to_have_attribute(
+        "title", "circle"
+    )
+
+    # Scrubbing moves the clock and the picture.
+    canvas = lab.locator("canvas[data-engine]")
+    frame = lab.get_by_role("textbox").first
+    frame.fill("5")
+    frame.press("Enter")
+    expect(lab.get_by_text(re.compile(r"^frame 5 of \d+$"))).to_be_visible()
+    before = canvas.screenshot()
+    lab.get_by_role("button", name="+10").click()
+    expect(lab.get_by_text(re.compile(r"^frame 15 of \d+$"))).to_be_visible()
+    until(lambda: canvas.screenshot() != before)
+    expect(page.locator(".toast")).to_have_count(0)
+    assert picture(page, "studio").stat().st_size < 400_000
+    lab.get_by_role("button", name="Play").click()
+    expect(lab.get_by_role("button", name="Pause")).to_be_visible()
+    lab.get_by_role("tab", name="Tracks").click()
+    expect(lab.get_by_role("img", name="Vulcan salute, confidence")).to_be_visible()
+
+    # The language leaves as the file that a robot loads.
+    page.get_by_text("Export", exact=True).click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="OSG Studio language").click()
+    exported = tmp_path / "exported.json"
+    download.value.save_as(exported)
+    language = Language.load(exported)
+    assert language.labels[-1] == "our circle"
+    assert language.gesture("our circle").command == "Hold your depth"
+    assert len(language.gestures) == 9
+
+
+def test_poses_that_are_being_found_can_be_cancelled_and_found_after_all(
+    open_page: OpenPage, clips: Path
+) -> None:
+    page = open_page()
+    drop(page, clips / "line-demonstration.mp4", names=("cancelled.mp4",))
+    item = page.get_by_role("list", name="Clips").get_by_role("listitem").first
+    item.get_by_role("button", name="Cancel cancelled.mp4").click()
+    expect(item.get_by_text("Cancelled before its poses were found")).to_be_visible()
+    item.get_by_role("button", name="Retry cancelled.mp4").click()
+    expect(item.get_by_role("progressbar")).to_be_visible()
+    item.get_by_role("button", name="Cancel cancelled.mp4").click()
+    expect(item.get_by_role("progressbar")).to_have_count(0)

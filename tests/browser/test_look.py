@@ -1,0 +1,89 @@
+"""How it looks: wide and narrow, dark and light, and usable by keyboard alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+
+pytestmark = pytest.mark.slow
+
+Picture = Callable[[Page, str], Path]
+
+
+@pytest.fixture(scope="module")
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "look")
+
+
+def background(page: Page, *, in_frame: bool = False) -> str:
+    """Return the background colour of the page or of viser's panels."""
+    where = page.frame_locator("#lab").locator("body") if in_frame else page.locator("body")
+    return str(where.evaluate("(body) => getComputedStyle(body).backgroundColor"))
+
+
+def test_everything_is_in_reach_on_a_phone(
+    open_page: OpenPage, library: Library, picture: Picture
+) -> None:
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page = open_page(query, size=(390, 844))
+    expect(page.frame_locator("#lab").get_by_role("button", name="Play")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for name in ("Save as gesture", "Recognise", "New language"):
+        expect(page.get_by_role("button", name=name)).to_be_in_viewport()
+    expect(page.locator("#outcome")).to_contain_text("as expected")
+    picture(page, "phone")
+    page.get_by_role("list", name="Gestures").scroll_into_view_if_needed()
+    expect(page.get_by_role("button", name="Delete circle", exact=True)).to_be_in_viewport()
+
+
+def test_colours_follow_the_system_in_the_page_and_in_the_frame(
+    open_page: OpenPage, library: Library, picture: Picture
+) -> None:
+    page = open_page(library.address, size=(1440, 900), scheme="light")
+    scheme = page.frame_locator("#lab").locator("html")
+    expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")
+    light = background(page), background(page, in_frame=True)
+    picture(page, "light")
+    page.emulate_media(color_scheme="dark")
+    expect(scheme).to_have_attribute("data-mantine-color-scheme", "dark")
+    dark = background(page), background(page, in_frame=True)
+    assert all(one != other for one, other in zip(light, dark, strict=True))
+
+
+def test_every_control_has_a_name_and_shows_the_focus(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address)
+    expect(page.get_by_role("button", name="Recognise")).to_be_enabled()
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll("button, select, input, a, summary, iframe, img")]
+          .filter((e) => e.checkVisibility() && !(e.tagName === "IMG" && e.alt === ""))
+          .filter((e) => !(e.getAttribute("aria-label") || e.title || e.alt || e.labels?.length
+                           || e.textContent.trim()))
+          .map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+    seen = set()
+    for _ in range(12):
+        page.keyboard.press("Tab")
+        focused = page.evaluate(
+            """() => {
+              const e = document.activeElement;
+              const shown = e.matches("input[type=file]") ? e.nextElementSibling : e;
+              const { outlineStyle, outlineWidth } = getComputedStyle(shown);
+              return [e.id || e.getAttribute("aria-label") || e.textContent.trim(),
+                      outlineStyle !== "none" && parseFloat(outlineWidth) >= 2];
+            }"""
+        )
+        seen.add(focused[0])
+        assert focused[1], f"no visible focus on {focused[0]!r}"
+    assert {"language", "new-language", "file"} <= seen

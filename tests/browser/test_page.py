@@ -1,0 +1,177 @@
+"""The page: links, tabs, undo, files, names with markup, and what is said when something fails."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
+from tests.browser.library import Library, add_clip, library_of
+
+pytestmark = pytest.mark.slow
+
+MARKUP = '<img src=x onerror="window.broken=1">'
+
+
+@pytest.fixture
+def client(server: Running) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield client
+
+
+@pytest.fixture
+def library(server: Running, client: httpx.Client, request: pytest.FixtureRequest) -> Library:
+    return library_of(server, client, request.node.name[:40])
+
+
+def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page({**library.address, "recognition": library.recognise("line")})
+    lab = page.frame_locator("#lab")
+    expect(lab.get_by_text("Taken for circle, expected line")).to_be_visible()
+    expect(page.get_by_label("Expected")).to_have_value("line")
+    expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    workspace = page.evaluate("sessionStorage.getItem('osg-studio.workspace')")
+    page.reload()
+    expect(lab.get_by_text("Taken for circle, expected line")).to_be_visible()
+    assert page.evaluate("sessionStorage.getItem('osg-studio.workspace')") == workspace
+
+
+def test_two_tabs_are_two_workspaces_and_hear_of_each_others_changes(
+    open_page: OpenPage, library: Library
+) -> None:
+    first = open_page({**library.address, "recognition": library.recognise()})
+    second = open_page(library.address)
+    expect(first.frame_locator("#lab").get_by_role("table", name="Votes")).to_be_visible()
+    expect(second.frame_locator("#lab").get_by_text("No decision yet")).to_be_visible()
+    card = second.get_by_role("list", name="Gestures").get_by_role("listitem").nth(1)
+    card.hover()
+    card.get_by_role("button", name="Change line", exact=True).click()
+    second.get_by_label("Label").fill("straight")
+    second.get_by_role("button", name="Save", exact=True).click()
+    for page in (first, second):
+        expect(page.get_by_role("img", name="Trajectory of straight")).to_be_visible()
+
+
+def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address)
+    cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
+    cards.first.hover()
+    page.get_by_role("button", name="Delete circle", exact=True).click()
+    expect(cards).to_have_count(1)
+    page.get_by_role("button", name="Undo").click()
+    expect(cards).to_have_count(2)
+    expect(cards.first).to_contain_text("circle")
+
+
+def test_a_deleted_clip_comes_back(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address)
+    title = page.get_by_role("heading", level=1)
+    name = title.inner_text()
+    page.get_by_role("button", name=f"Delete {name}").click()
+    expect(page.get_by_role("button", name=f"Show {name}")).to_have_count(0)
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("button", name=f"Show {name}")).to_have_attribute(
+        "aria-pressed", "true"
+    )
+
+
+def test_a_label_that_is_taken_is_refused_in_the_dialog(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address)
+    page.get_by_role("button", name="Save as gesture").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Save gesture").click()
+    expect(dialog.get_by_role("alert")).to_have_text("Label is empty; type one.")
+    dialog.get_by_label("Label").fill("circle")
+    dialog.get_by_role("button", name="Save gesture").click()
+    expect(dialog.get_by_role("alert")).to_contain_text("has a gesture 'circle' already")
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+
+
+def test_a_range_can_be_chosen_by_hand_with_the_keyboard(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    page = open_page({"clip": add_clip(server, name="no salute.mp4")})
+    expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
+    page = open_page(library.address)
+    start = page.get_by_role("slider", name="Start of the range")
+    expect(start).to_have_attribute("aria-valuetext", "0.60 s")
+    start.focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_text("Range by hand: 0.61 s")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"start=0\.61"))
+    page.get_by_role("button", name="Back to 1 take").click()
+    expect(page.get_by_text("Take 1 of 1")).to_be_visible()
+
+
+def test_names_with_markup_are_text_everywhere(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, "circle", name=f"{MARKUP}.mp4")
+    library.add_gesture(MARKUP, clip, description=MARKUP)
+    marked = Library(clip, library.language, library.client)
+    page = open_page({**marked.address, "recognition": marked.recognise(MARKUP)})
+    lab = page.frame_locator("#lab")
+    expect(lab.get_by_role("table", name="Votes")).to_contain_text(MARKUP)
+    expect(page.get_by_role("list", name="Gestures")).to_contain_text(MARKUP)
+    expect(page.locator("#outcome")).to_be_visible()
+    for frame in page.frames:
+        assert frame.evaluate("window.broken") is None
+        assert frame.locator("img[src=x]").count() == 0
+
+
+def test_a_dropped_language_file_is_imported_and_a_broken_one_explained(
+    open_page: OpenPage, library: Library, tmp_path: Path
+) -> None:
+    exported = library.client.get(f"/api/v1/languages/{library.language}/export").content
+    good, bad = tmp_path / "good.json", tmp_path / "bad.json"
+    good.write_bytes(exported)
+    bad.write_text('{"format": "osg-studio/gesture-language", "version": 99}')
+    page = open_page()
+    drop(page, good)
+    expect(page.get_by_text("Language imported")).to_be_visible()
+    expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(2)
+    drop(page, bad)
+    problem = page.get_by_role("alert").filter(has_text="Importing bad.json failed")
+    expect(problem).to_contain_text("99")
+
+
+def test_a_file_that_is_no_video_is_refused_with_the_reason(
+    open_page: OpenPage, tmp_path: Path
+) -> None:
+    fake = tmp_path / "holiday.mp4"
+    fake.write_text("<script>window.broken = 1</script>")
+    page = open_page()
+    drop(page, fake)
+    item = page.get_by_role("list", name="Uploads").get_by_role("listitem")
+    expect(item.get_by_role("button", name="Retry holiday.mp4")).to_be_visible()
+    expect(item).not_to_contain_text("Uploading")
+    item.get_by_role("button", name="Dismiss holiday.mp4").click()
+    expect(item).to_have_count(0)
+
+
+def test_a_view_that_does_not_load_says_so_and_can_be_tried_again(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page()
+    page.context.route("**/viser/**", lambda route: route.fulfill(status=502, body="Bad gateway"))
+    page.reload()
+    problem = page.get_by_role("alert").filter(has_text="The 3D view did not load")
+    expect(problem).to_be_visible()
+    page.context.unroute("**/viser/**")
+    problem.get_by_role("button", name="Try again").click()
+    expect(problem).to_have_count(0)
+    expect(page.frame_locator("#lab").get_by_role("tab", name="Decision")).to_be_visible()
