@@ -115,7 +115,7 @@ def test_the_studio_installs_all_of_the_web_app(metadata: Message) -> None:
 
 
 @pytest.mark.slow
-def test_the_installed_package_serves_its_own_page(wheel: Path, tmp_path: Path) -> None:
+def test_the_installed_package_serves_its_own_page_and_samples(wheel: Path, tmp_path: Path) -> None:
     installed = tmp_path / "site-packages"
     zipfile.ZipFile(wheel).extractall(installed)
     serve = f"""
@@ -131,6 +131,8 @@ with TestClient(studio, base_url="http://127.0.0.1:8000") as client:
     assert client.get("/healthz").status_code == 200
     assert "<html" in client.get("/").text
     assert samples_dir().is_relative_to({str(installed)!r}), samples_dir()
+    languages = client.get("/api/v1/languages").json()
+    assert len(languages) == len(list(samples_dir().glob("*.json"))), languages
 """
     # Isolated from the checkout: there `app` would be the one of the working directory.
     finished = subprocess.run(
