@@ -93,9 +93,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         recognitions.router,
         sample_clips.router,
         events.router,
-        workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
     ):
         api.include_router(router)
+    api.include_router(
+        workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
+        responses=problems.documented(404),
+    )
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
     app.include_router(viser_relay.router(registry.port_of))

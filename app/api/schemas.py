@@ -82,7 +82,9 @@ class PosesView(BaseModel):
         description="Frames x landmarks x 2: pixels, x right, y down; null: not seen"
     )
     confidence: list[list[float]] | None = Field(description="Frames x landmarks, 0 to 1")
-    frame_size: tuple[int, int]
+    frame_size: Annotated[list[int], Field(min_length=2, max_length=2)] = Field(
+        description="Width and height in pixels"
+    )
 
 
 class TakeView(BaseModel):

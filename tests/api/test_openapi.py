@@ -1,0 +1,100 @@
+"""What `/openapi.json` promises holds for requests that nobody would think of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given
+from hypothesis import settings as hypothesis_settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.core.result import Ok
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from app.server import create_app
+from app.settings import Settings
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import Running, running
+
+pytestmark = pytest.mark.slow
+
+CHECKS = (
+    not_a_server_error,
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+
+@pytest.fixture(scope="module")
+def lasting_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """Return one server for all generated requests."""
+    folder = tmp_path_factory.mktemp("openapi")
+    settings = Settings(
+        data_dir=folder / "data", samples_dir=folder / "samples", max_jobs_per_client=3
+    )
+    with running(settings) as server:
+        yield server
+
+
+def described() -> list[Any]:
+    """Return the described operations, without the stream that never ends."""
+    schema = schemathesis.openapi.from_dict(create_app(Settings()).openapi())
+    operations = [found.ok() for found in schema.get_all_operations() if isinstance(found, Ok)]
+    return [operation for operation in operations if operation.path != "/api/v1/events"]
+
+
+OPERATIONS = described()
+
+
+@pytest.mark.parametrize("operation", OPERATIONS, ids=lambda operation: operation.label)
+def test_no_request_breaks_the_server_or_the_description(
+    lasting_server: Running, operation: Any
+) -> None:
+    @given(case=operation.as_strategy())
+    @hypothesis_settings(
+        max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+    )
+    def answer_as_described(case: schemathesis.Case[Any]) -> None:
+        response = case.call(base_url=lasting_server.address, timeout=60)
+        case.validate_response(response, checks=list(CHECKS))
+
+    answer_as_described()
+
+
+def test_real_objects_answer_as_described(lasting_server: Running) -> None:
+    """Follow ids that exist, which generated requests never hit."""
+    clip_id = add_recorded_clip(lasting_server.studio, recording_of("circle"))
+    with httpx.Client(base_url=lasting_server.address, timeout=60) as client:
+        language_id = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
+        body: dict[str, Any] = {"label": "circle", "clip_id": clip_id}
+        client.post(f"/api/v1/languages/{language_id}/gestures", json=body)
+        query = {"clip_id": clip_id, "language_id": language_id}
+        recognition_id = client.post("/api/v1/recognitions", json=query).json()["id"]
+        known = {
+            "clip_id": clip_id,
+            "language_id": language_id,
+            "recognition_id": recognition_id,
+            "job_id": client.get(f"/api/v1/clips/{clip_id}").json()["job_id"],
+            "label": "circle",
+        }
+        readable = [
+            operation
+            for operation in OPERATIONS
+            if operation.method == "get" and "workspace" not in operation.path
+        ]
+        assert len(readable) >= 15
+        for operation in readable:
+            answer = client.get(operation.path.format(**known))
+            # A clip made of numbers has no still picture.
+            expected = 404 if operation.path.endswith("poster") else 200
+            assert answer.status_code == expected, operation.path
+            if "json" in answer.headers["content-type"]:
+                operation.validate_response(answer)

@@ -1,0 +1,72 @@
+"""What can be set, and what must not be."""
+
+from pathlib import Path
+
+import pytest
+from pydantic import SecretStr, ValidationError
+
+from app.settings import Settings, is_loopback
+
+
+@pytest.fixture(autouse=True)
+def _bare_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HOST", "PORT", "TOKEN", "DATA_DIR", "DATABASE_URL", "ALLOWED_HOSTS"):
+        monkeypatch.delenv(f"OSG_{name}", raising=False)
+
+
+def test_by_default_only_this_machine_is_served() -> None:
+    settings = Settings()
+    assert (settings.host, settings.port, settings.public) == ("127.0.0.1", 8000, False)
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.20", "dive-box.local", "10.0.0.1"])
+def test_a_public_address_without_a_token_is_refused_with_the_way_out(host: str) -> None:
+    with pytest.raises(ValidationError, match=r"can be reached.*no token.*--token.*127\.0\.0\.1"):
+        Settings(host=host)
+    assert Settings(host=host, token=SecretStr("long and random")).public
+
+
+@pytest.mark.parametrize("token", ["", "   "])
+def test_an_empty_token_is_no_token(token: str) -> None:
+    with pytest.raises(ValidationError, match="token is empty"):
+        Settings(host="0.0.0.0", token=SecretStr(token))
+
+
+@pytest.mark.parametrize(
+    ("host", "loopback"),
+    [
+        ("localhost", True),
+        ("127.0.0.1", True),
+        ("127.8.9.1", True),
+        ("::1", True),
+        ("[::1]", True),
+        ("0.0.0.0", False),
+        ("::", False),
+        ("localhost.example", False),
+        ("", False),
+    ],
+)
+def test_loopback_is_known_by_address(host: str, loopback: bool) -> None:
+    assert is_loopback(host) is loopback
+
+
+def test_the_environment_sets_what_arguments_do_not(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path))
+    monkeypatch.setenv("OSG_PORT", "9000")
+    monkeypatch.setenv("OSG_ALLOWED_HOSTS", "dive-box.local, studio.example")
+    settings = Settings(port=9001)
+    assert settings.port == 9001
+    assert settings.data_dir == tmp_path
+    assert settings.allowed_hosts == ("dive-box.local", "studio.example")
+    assert settings.database == f"sqlite:///{tmp_path / 'studio.db'}"
+
+
+def test_another_database_can_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OSG_DATABASE_URL", "postgresql://studio@db/studio")
+    assert Settings().database == "postgresql://studio@db/studio"
+
+
+def test_the_token_is_never_printed() -> None:
+    assert "hunter2" not in repr(Settings(token=SecretStr("hunter2")))
