@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -20,6 +19,13 @@ MAX_GAP_SECONDS = 0.5
 The minimum-jerk reaches that gestures are made of last 0.5 s and more (Flash and Hogan 1985); over
 half a second a straight line may replace a whole stroke, and an invented stroke is worse than a
 gap.
+"""
+
+MIN_EXTENT_IN_FRAME = 0.005
+"""Least extent, as a share of the frame's longer side, that counts as motion without a torso.
+
+About 3 pixels of 640: a pose model's jitter on a still body. Scaled to fill the extent, jitter
+would look like a gesture; what moves less is scaled by the frame instead and stays tiny.
 """
 
 
@@ -38,7 +44,8 @@ class Trajectory:
         ``(T,)`` seconds since the first moment, strictly increasing.
     unit
         ``"torso_length"``, or ``"extent"`` where the recording shows no torso: then the longest
-        diagonal of any landmark's bounding box is 1 and no translation is taken out per frame.
+        diagonal of any landmark's bounding box is 1 (the frame's longer side, where nothing
+        moves) and no translation is taken out per frame.
 
     """
 
@@ -65,7 +72,9 @@ class Trajectory:
         time = poses.time - poses.time[0]
         centre, length = poses.torso_centre(), poses.torso_length()
         if centre is None or length is None:
-            scale = _extent(poses.xy) or float(max(poses.frame_size))
+            frame = float(max(poses.frame_size))
+            extent = _extent(poses.xy)
+            scale = extent if extent >= MIN_EXTENT_IN_FRAME * frame else frame
             xy = (poses.xy - np.nanmean(poses.xy, axis=(0, 1))) / scale
             return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="extent")
         xy = (poses.xy - centre[:, None]) / length
@@ -110,9 +119,10 @@ class Trajectory:
         xy = self.xy.copy()
         for path in np.moveaxis(xy, 1, 0):
             known = np.flatnonzero(np.isfinite(path).all(axis=1))
-            for before, after in pairwise(known):
+            for gap in np.flatnonzero(np.diff(known) > 1):
+                before, after = known[gap], known[gap + 1]
                 span = self.time[after] - self.time[before]
-                if after - before > 1 and span <= max_gap:
+                if span <= max_gap:
                     inside = slice(before + 1, after)
                     share = (self.time[inside] - self.time[before]) / span
                     path[inside] = path[before] + share[:, None] * (path[after] - path[before])

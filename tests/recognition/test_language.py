@@ -1,0 +1,186 @@
+"""A language keeps distinct gestures, and its file keeps everything about them."""
+
+import json
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
+from app.recognition.gesture import MAX_LANDMARKS
+from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "language.json"
+KILOBYTES_A_GESTURE = 40
+
+
+def gesture(label: str) -> Gesture:
+    return Gesture.from_demonstration(label, recording(SHAPES[label], jitter=0.01))
+
+
+@pytest.fixture(scope="module")
+def language() -> Language:
+    return Language("pool", [gesture(label) for label in SHAPES], author="A. Diver")
+
+
+def test_a_language_is_a_name_and_gestures_in_order(language: Language) -> None:
+    assert language.labels == ("circle", "wedge", "line", "infinity", "square")
+    assert language.gesture("line").label == "line"
+    assert language.revision == 1
+    assert language.created is not None
+    assert language.created.utcoffset() == timedelta(0)
+
+
+def test_an_unknown_label_is_named_with_the_known_ones(language: Language) -> None:
+    with pytest.raises(LanguageError, match=r"no gesture 'wave' in 'pool'; it has .*circle"):
+        language.gesture("wave")
+
+
+def test_every_edit_is_the_next_revision_and_leaves_the_old_one() -> None:
+    first = Language("pool", [gesture("circle")])
+    second = first.with_gesture(gesture("line"))
+    third = second.without("circle")
+    assert [one.labels for one in (first, second, third)] == [
+        ("circle",),
+        ("circle", "line"),
+        ("line",),
+    ]
+    assert [one.revision for one in (first, second, third)] == [1, 2, 3]
+    assert third.created == first.created
+    with pytest.raises(LanguageError, match="no gesture 'circle'"):
+        third.without("circle")
+
+
+def test_a_label_cannot_occur_twice() -> None:
+    with pytest.raises(LanguageError, match="'circle' occurs twice: rename") as refusal:
+        Language("pool", [gesture("circle"), gesture("line"), gesture("circle")])
+    assert refusal.value.pointer == "/gestures/2/label"
+
+
+@pytest.mark.parametrize(
+    ("changes", "pointer"),
+    [
+        ({"name": ""}, "/name"),
+        ({"name": "a\nb"}, "/name"),
+        ({"name": "x" * 81}, "/name"),
+        ({"author": "x" * 201}, "/author"),
+        ({"revision": 0}, "/revision"),
+        ({"created": datetime(2026, 1, 1)}, "/created"),  # no zone
+    ],
+)
+def test_a_field_that_the_file_could_not_hold_is_refused(
+    changes: dict[str, object], pointer: str
+) -> None:
+    with pytest.raises(LanguageError) as refusal:
+        replace(Language("pool"), **changes)  # type: ignore[arg-type]
+    assert refusal.value.pointer == pointer
+
+
+def test_created_is_kept_in_utc_to_the_second() -> None:
+    there = timezone(timedelta(hours=-4))
+    language = Language("pool", created=datetime(2026, 5, 1, 20, 30, 15, 999, tzinfo=there))
+    assert language.created == datetime(2026, 5, 2, 0, 30, 15, tzinfo=UTC)
+
+
+def test_loading_and_saving_again_gives_the_same_bytes(language: Language, tmp_path: Path) -> None:
+    language.save(tmp_path / "one.json")
+    Language.load(tmp_path / "one.json").save(tmp_path / "two.json")
+    assert (tmp_path / "two.json").read_bytes() == (tmp_path / "one.json").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.json", "two.json"]
+
+
+@given(recordings())
+def test_any_gesture_comes_back_from_the_file_as_it_was(poses: PoseSequence) -> None:
+    before = Gesture.from_demonstration("stroke", poses, command={"speed": 0.5, "then": ["stop"]})
+    text = Language("pool", [before]).to_json()
+    again = Language.from_json(text)
+    after = again.gesture("stroke")
+    assert again.to_json() == text
+    assert after.salient == before.salient
+    assert after.command == before.command
+    np.testing.assert_array_equal(after.image, before.image)
+    assert before.trajectory is not None
+    assert after.trajectory is not None
+    np.testing.assert_array_equal(after.trajectory.xy, before.trajectory.xy)
+    np.testing.assert_array_equal(after.trajectory.time, before.trajectory.time)
+    assert list(after.descriptors) == list(before.descriptors)
+    for name in before.descriptors:
+        np.testing.assert_array_equal(after.descriptors[name], before.descriptors[name])
+
+
+def test_landmarks_not_seen_come_back_as_not_seen() -> None:
+    poses = recording(circle)
+    xy = poses.xy.copy()
+    xy[:40, poses.landmarks.index("left_wrist")] = np.nan
+    language = Language("pool", [Gesture.from_demonstration("circle", replace(poses, xy=xy))])
+    trajectory = Language.from_json(language.to_json()).gesture("circle").trajectory
+    assert trajectory is not None
+    left = trajectory.select(["left_wrist"]).xy[:, 0, 0]
+    np.testing.assert_array_equal(np.isnan(left), np.arange(60) < 40)
+
+
+def test_a_loaded_language_decides_exactly_as_before_saving(language: Language) -> None:
+    before, after = Recognizer(language), Recognizer(Language.from_json(language.to_json()))
+    for shape in SHAPES.values():
+        query = recording(shape, frames=77, torso=90, jitter=0.02, seed=5)
+        np.testing.assert_array_equal(
+            after.recognize(query).distances, before.recognize(query).distances
+        )
+
+
+@pytest.mark.parametrize("frames", [20, 300, 3000])
+def test_a_gesture_takes_at_most_40_kilobytes_whatever_its_length(frames: int) -> None:
+    poses = recording(wedge, frames=frames, jitter=0.02, torso=33.3)
+    text = Language("pool", [Gesture.from_demonstration("wedge", poses)]).to_json()
+    assert len(text.encode()) < KILOBYTES_A_GESTURE * 1000
+
+
+def test_a_gesture_of_many_landmarks_takes_at_most_40_kilobytes() -> None:
+    names = tuple(f"marker_{index}" for index in range(MAX_LANDMARKS + 20))
+    poses = recording(line, frames=500, jitter=0.3, landmarks=names, hand="marker_3")
+    made = Gesture.from_demonstration("line", poses, salient=("marker_3",))
+    text = Language("pool", [made]).to_json()
+    assert len(text.encode()) < KILOBYTES_A_GESTURE * 1000
+
+
+def test_a_file_made_with_other_settings_is_described_anew(language: Language) -> None:
+    content = json.loads(language.to_json())
+    content["settings"]["stroke_width"] = 2
+    del content["sha256"]
+    for entry in content["gestures"]:
+        entry["descriptors"]["hu"] = [0.0] * 7
+    assert Language.from_json(json.dumps(content)).to_json() == language.to_json()
+
+
+def test_the_golden_file_is_read_and_written_as_it_stands() -> None:
+    text = GOLDEN.read_text("utf-8")
+    language = Language.load(GOLDEN)
+    assert language.to_json() == text
+    assert language.labels == ("circle", "sweep")
+    assert language.gesture("sweep").salient == ("left_wrist", "right_wrist")
+    assert language.gesture("circle").command == {"action": "hold", "seconds": 10}
+
+
+def test_the_golden_file_still_recognises() -> None:
+    result = Recognizer(Language.load(GOLDEN)).recognize(recording(circle, frames=45, torso=80))
+    assert result.label == "circle"
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+    with pytest.raises(LanguageError, match=r"cannot read .*missing\.json: No such file"):
+        Language.load(tmp_path / "missing.json")
+    with pytest.raises(LanguageError, match=r"cannot read .*: Is a directory"):
+        Language.load(tmp_path)
+
+
+def test_saving_replaces_the_file_in_one_step_or_leaves_it(
+    language: Language, tmp_path: Path
+) -> None:
+    target = tmp_path / "pool.json"
+    target.mkdir()  # a folder cannot be replaced by a file
+    with pytest.raises(OSError, match="directory"):
+        language.save(target)
+    assert [path.name for path in tmp_path.iterdir()] == ["pool.json"]

@@ -1,0 +1,238 @@
+"""The language file's text: strict to read, sealed, and the same for the same content."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from app.recognition import Gesture, Language, LanguageError
+from app.recognition.language_file import seal
+from app.recognition.language_schema import MAX_FILE_BYTES, MAX_GESTURES
+from tests.recognition.strategies import circle, line, recording
+
+Content = dict[str, Any]
+Change = Callable[[Content], object]
+
+
+@pytest.fixture(scope="module")
+def text() -> str:
+    gestures = [
+        Gesture.from_demonstration("circle", recording(circle), command="come here"),
+        Gesture.from_demonstration("line", recording(line)),
+    ]
+    return Language("pool", gestures).to_json()
+
+
+def resealed(text: str, change: Change) -> str:
+    """Change a file's content as a program would that seals it again."""
+    content = json.loads(text)
+    change(content)
+    if "sha256" in content:
+        content["sha256"] = seal(content)
+    return json.dumps(content)
+
+
+def refusal_of(text: str | bytes) -> LanguageError:
+    with pytest.raises(LanguageError) as refusal:
+        Language.from_json(text)
+    return refusal.value
+
+
+def first(content: Content) -> Content:
+    gesture: Content = content["gestures"][0]
+    return gesture
+
+
+def test_format_and_version_come_first_and_the_seal_last(text: str) -> None:
+    keys = list(json.loads(text))
+    assert keys[:2] == ["format", "version"]
+    assert keys[-1] == "sha256"
+    assert json.loads(text)["format"] == "osg-studio/gesture-language"
+    assert json.loads(text)["version"] == 1
+
+
+def test_a_gesture_takes_one_line_so_that_revisions_can_be_compared(text: str) -> None:
+    lines = [line for line in text.splitlines() if line.startswith('{"label":')]
+    assert len(lines) == 2
+
+
+def test_a_language_without_gestures_has_a_file(text: str) -> None:
+    empty = Language("empty").to_json()
+    assert Language.from_json(empty).to_json() == empty
+
+
+def test_bytes_and_text_are_read_alike(text: str) -> None:
+    assert Language.from_json(text.encode()).to_json() == Language.from_json(text).to_json()
+
+
+def test_the_order_of_keys_and_the_spacing_do_not_break_the_seal(text: str) -> None:
+    content = json.loads(text)
+    rearranged = json.dumps(dict(reversed(content.items())), indent=2, ensure_ascii=True)
+    assert Language.from_json(rearranged).to_json() == text
+
+
+def test_a_file_changed_since_it_was_sealed_is_refused_with_a_way_out(text: str) -> None:
+    error = refusal_of(text.replace("come here", "go away"))
+    assert error.pointer == "/sha256"
+    assert "edited by hand" in str(error)
+    assert 'remove the line "sha256"' in str(error)
+
+
+def test_a_file_edited_on_purpose_is_read_without_its_seal_and_saved_with_one(text: str) -> None:
+    content = json.loads(text.replace("come here", "go away"))
+    del content["sha256"]
+    language = Language.from_json(json.dumps(content))
+    assert language.gesture("circle").command == "go away"
+    assert len(json.loads(language.to_json())["sha256"]) == 64
+
+
+def drop(key: str) -> Change:
+    return lambda content: content.pop(key)
+
+
+def put(key: str, value: object) -> Change:
+    return lambda content: content.update({key: value})
+
+
+def put_in_gesture(key: str, value: object) -> Change:
+    return lambda content: first(content).update({key: value})
+
+
+def put_in_trajectory(key: str, value: object) -> Change:
+    return lambda content: first(content)["trajectory"].update({key: value})
+
+
+def put_in_path(key: str, value: object) -> Change:
+    return lambda content: first(content)["trajectory"]["paths"][1].update({key: value})
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "complaint"),
+    [
+        (drop("format"), "/format", "not a language file"),
+        (put("format", "something/else"), "/format", "not a language file"),
+        (drop("version"), "/version", "Field required"),
+        (put("version", 0), "/version", "Input should be 1"),
+        (put("version", "1"), "/version", "Input should be 1"),
+        (put("version", 2), "/version", r"version 2 is newer than this program reads \(1\)"),
+        (drop("gestures"), "/gestures", "Field required"),
+        (put("colour", "blue"), "/colour", "Extra inputs are not permitted"),
+        (put("revision", "3"), "/revision", "valid integer"),
+        (put("revision", 0), "/revision", "greater than or equal to 1"),
+        (put("created", "yesterday"), "/created", "match pattern"),
+        (put("created", "2026-02-30T00:00:00Z"), "/created", "no such date"),
+        (put("name", " "), "/name", "needs a name"),
+        (put("skeleton", [["nose"]]), "/skeleton/0", "at least 2 items"),
+        (put_in_gesture("label", "line"), "/gestures/1/label", "'line' occurs twice"),
+        (put_in_gesture("label", ""), "/gestures/0/label", "at least 1 character"),
+        (put_in_gesture("label", "a\nb"), "/gestures/0/label", "printable"),
+        (put_in_gesture("command", 7), "/gestures/0/command", "string"),
+        (put_in_gesture("mood", 7), "/gestures/0/mood", "Extra inputs"),
+        (put_in_gesture("salient", ["tail"]), "/gestures/0/salient/0", "has no path"),
+        (
+            put_in_gesture("salient", ["nose", "nose"]),
+            "/gestures/0/salient",
+            "a landmark occurs twice",
+        ),
+        (put_in_gesture("image", "!"), "/gestures/0/image", "not a PNG in base64"),
+        (put_in_gesture("image", "AAAA"), "/gestures/0/image", "not a PNG"),
+        (
+            put_in_gesture("descriptors", {"hu": [1.0]}),
+            "/gestures/0/descriptors/hu",
+            "1 values, expected 7",
+        ),
+        (
+            put_in_gesture("descriptors", {"hu": ["1"]}),
+            "/gestures/0/descriptors/hu/0",
+            "valid number",
+        ),
+        (put_in_trajectory("unit", "inch"), "/gestures/0/trajectory/unit", "torso_length"),
+        (put_in_trajectory("axes", "y up"), "/gestures/0/trajectory/axes", "x right, y down"),
+        (put_in_trajectory("time", []), "/gestures/0/trajectory/time", "at least 1 item"),
+        (
+            put_in_trajectory("time", [0.0, 0.0]),
+            "/gestures/0/trajectory/time/1",
+            "time does not increase: 0 s, then 0 s",
+        ),
+        (put_in_trajectory("paths", []), "/gestures/0/trajectory/paths", "at least 1 item"),
+        (
+            put_in_path("landmark", "nose"),
+            "/gestures/0/trajectory/paths/1/landmark",
+            "a second path of 'nose'",
+        ),
+        (put_in_path("y", [1.0]), "/gestures/0/trajectory/paths/1/y", "1 values, but time has 60"),
+        (put_in_path("x", [True] * 60), "/gestures/0/trajectory/paths/1/x/0", "valid number"),
+    ],
+)
+def test_what_breaks_the_format_is_refused_with_a_pointer(
+    text: str, change: Change, pointer: str, complaint: str
+) -> None:
+    error = refusal_of(resealed(text, change))
+    assert error.pointer == pointer
+    assert str(error).startswith(pointer)
+    assert "\n" not in str(error)
+    with pytest.raises(LanguageError, match=complaint):
+        raise error
+
+
+def test_every_fault_is_listed_with_its_pointer(text: str) -> None:
+    def spoil(content: Content) -> None:
+        content["revision"] = None
+        first(content)["description"] = 3
+        content["gestures"][1]["salient"] = "nose"
+
+    message = str(refusal_of(resealed(text, spoil)))
+    for pointer in ("/revision", "/gestures/0/description", "/gestures/1/salient"):
+        assert pointer + ": " in message
+
+
+def test_a_hundred_faults_are_counted_not_listed(text: str) -> None:
+    noise = {f"key {number}": 0 for number in range(100)}
+    assert str(refusal_of(resealed(text, lambda content: content.update(noise)))).endswith(
+        "and 80 more"
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "complaint"),
+    [
+        (b"", "not JSON"),
+        (b"\x00\x01\x02", "not JSON"),
+        (b"<html>", "not JSON"),
+        (b"[]", "not a language file"),
+        (b"null", "not a language file"),
+        (b'{"circle": {"image": [], "salient_keypoints": []}}', "osg-studio convert"),
+        (b'{"format": 1, "format": 2}', "/format: this key occurs twice"),
+        (b'{"version": 1e400}', "/version: not a number"),
+        (b"[" * 10_000, "nested 10000 deep"),
+        (b" " * (MAX_FILE_BYTES + 1), "the file is too large"),
+    ],
+    ids=lambda value: repr(value[:20]),
+)
+def test_what_is_no_language_file_is_refused(content: bytes, complaint: str) -> None:
+    with pytest.raises(LanguageError, match=complaint):
+        Language.from_json(content)
+
+
+def test_text_with_a_lone_surrogate_is_refused(text: str) -> None:
+    assert "not UTF-8" in str(refusal_of(text.replace("pool", "po\ud800l")))
+    assert "surrogate" in str(refusal_of(text.replace("pool", r"po\ud800l")))
+
+
+def test_ten_thousand_gestures_are_refused_before_they_are_looked_at(text: str) -> None:
+    many = resealed(text, put("gestures", [{}] * 10_000))
+    error = refusal_of(many)
+    assert error.pointer == "/gestures"
+    assert f"10000 gestures, the limit is {MAX_GESTURES}" in str(error)
+
+
+@pytest.mark.parametrize("label", ["../../x", "<script>alert(1)</script>", "CON", "sígueme 🤿"])
+def test_any_readable_label_goes_through_the_file(label: str) -> None:
+    language = Language("pool", [Gesture.from_demonstration(label, recording(circle))])
+    assert Language.from_json(language.to_json()).labels == (label,)
+
+
+def test_a_gesture_that_matches_nothing_does_not_keep_the_file_from_loading(text: str) -> None:
+    still = resealed(text, put_in_gesture("salient", []))
+    assert Language.from_json(still).labels == ("circle", "line")

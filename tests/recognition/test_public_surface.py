@@ -1,0 +1,32 @@
+"""The names that users script against are exactly those promised."""
+
+import app.recognition
+
+PROMISED = {
+    "Gesture",
+    "GestureError",
+    "Language",
+    "LanguageError",
+    "ModelError",
+    "PoseError",
+    "PoseSequence",
+    "Recognition",
+    "RecognitionError",
+    "Recognizer",
+    "Recording",
+    "Take",
+    "VideoError",
+    "extract_poses",
+    "find_takes",
+    "record",
+    "takes_in",
+}
+
+
+def test_the_public_names_are_the_promised_ones_in_order() -> None:
+    assert app.recognition.__all__ == sorted(PROMISED)
+
+
+def test_every_public_name_is_there_and_documented() -> None:
+    for name in app.recognition.__all__:
+        assert getattr(app.recognition, name).__doc__

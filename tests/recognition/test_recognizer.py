@@ -1,0 +1,234 @@
+"""Recognition: what is drawn alike is recognised, whatever the diver, and can be questioned."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.recognition import (
+    Gesture,
+    Language,
+    LanguageError,
+    PoseError,
+    PoseSequence,
+    RecognitionError,
+    Recognizer,
+)
+from app.recognition.recognizer import mean_relative_distances
+from app.recognition.trajectory import Trajectory
+from app.recognition.trajectory_image import Drawing, draw
+from app.recognition.voters import PAPER_VOTERS
+from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, rest, wedge
+
+VOTERS = (
+    "hu",
+    "zernike",
+    "fourier",
+    "aspect_ratio",
+    "solidity",
+    "circularity",
+    "path_complexity",
+)
+
+
+@pytest.fixture(scope="module")
+def language() -> Language:
+    return Language(
+        "pool",
+        [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()],
+    )
+
+
+@pytest.fixture(scope="module")
+def recognizer(language: Language) -> Recognizer:
+    return Recognizer(language)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("seed", range(3))
+def test_another_diver_elsewhere_is_recognised(
+    recognizer: Recognizer, name: str, seed: int
+) -> None:
+    query = recording(
+        SHAPES[name], frames=95, rate=25, torso=60, centre=(200, 300), jitter=0.01, seed=seed
+    )
+    result = recognizer.recognize(query)
+    assert result.label == result.nearest == name
+
+
+def test_a_result_has_what_is_needed_to_question_it(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(wedge, jitter=0.01))
+    assert result.profile == "paper"
+    assert result.voters == VOTERS
+    assert result.gestures == tuple(SHAPES)
+    assert result.distances.shape == (len(VOTERS), len(SHAPES))
+    assert tuple(result.votes) == VOTERS
+    for row, voter in enumerate(VOTERS):
+        assert result.votes[voter] == result.gestures[result.distances[row].argmin()]
+
+
+def test_the_demonstration_itself_is_at_distance_zero(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(circle))
+    np.testing.assert_array_equal(result.distances[:, 0], 0.0)
+    assert result.confidence == 1.0
+
+
+@given(
+    poses=recordings(),
+    scale=st.floats(0.2, 5.0),
+    shift=st.tuples(st.floats(-300, 300), st.floats(-300, 300)),
+    offset=st.floats(-100, 100),
+)
+def test_place_size_and_clock_change_no_distance(
+    recognizer: Recognizer,
+    poses: PoseSequence,
+    scale: float,
+    shift: tuple[float, float],
+    offset: float,
+) -> None:
+    elsewhere = replace(poses, xy=poses.xy * scale + shift, time=poses.time + offset)
+    before, after = recognizer.recognize(poses), recognizer.recognize(elsewhere)
+    np.testing.assert_array_equal(after.distances, before.distances)
+
+
+@given(recordings())
+def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
+    recognizer: Recognizer, poses: PoseSequence
+) -> None:
+    result = recognizer.recognize(poses)
+    assert result.label in SHAPES
+    assert 0.0 <= result.confidence <= 1.0
+    assert (result.distances >= 0).all()
+    assert json.loads(json.dumps(result.to_dict(), allow_nan=False)) == result.to_dict()
+
+
+def test_the_order_of_gestures_does_not_decide(language: Language) -> None:
+    turned = Recognizer(Language("turned", tuple(reversed(language.gestures))))
+    for shape in SHAPES.values():
+        query = recording(shape, jitter=0.03, seed=9, frames=40)
+        assert turned.recognize(query).label == Recognizer(language).recognize(query).label
+
+
+def test_a_gesture_whose_keypoints_the_query_lacks_is_infinitely_far(language: Language) -> None:
+    left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
+    recognizer = Recognizer(language.with_gesture(left))
+    query = recording(wedge, jitter=0.01)
+    without = query.select([name for name in query.landmarks if name != "left_wrist"])
+    hidden = query.xy.copy()
+    hidden[:, query.landmarks.index("left_wrist")] = np.nan
+    for poses in (query, without, replace(query, xy=hidden)):
+        result = recognizer.recognize(poses)
+        assert result.label == "wedge"
+        assert np.isinf(result.distances[:, -1]).all()
+        assert result.to_dict()["distances"][0][-1] is None
+
+
+def test_left_and_right_are_told_apart(language: Language) -> None:
+    left = Gesture.from_demonstration("left circle", recording(circle, hand="left_wrist"))
+    recognizer = Recognizer(language.with_gesture(left))
+    query = recording(circle, hand="left_wrist", jitter=0.01, torso=70)
+    assert recognizer.recognize(query).label == "left circle"
+
+
+def test_a_recording_of_nobody_is_refused(recognizer: Recognizer) -> None:
+    poses = recording(circle)
+    with pytest.raises(PoseError, match="none of the 60 frames shows a landmark"):
+        recognizer.recognize(replace(poses, xy=np.full_like(poses.xy, np.nan)))
+    with pytest.raises(PoseError, match="none of the 0 frames"):
+        recognizer.recognize(recording(circle, frames=0))
+
+
+def test_a_recording_in_which_nothing_moves_is_refused(recognizer: Recognizer) -> None:
+    for still in (recording(rest), recording(circle, frames=1)):
+        with pytest.raises(PoseError, match=r"need \(right_wrist\), none moves in this recording"):
+            recognizer.recognize(still)
+
+
+def test_an_empty_language_cannot_recognise() -> None:
+    with pytest.raises(LanguageError, match="'pool' has no gestures yet: add one"):
+        Recognizer(Language("pool"))
+
+
+def test_an_unknown_profile_is_named_with_the_known_ones(language: Language) -> None:
+    with pytest.raises(RecognitionError, match="no profile 'best'; this version has paper"):
+        Recognizer(language, profile="best")
+
+
+def test_a_gesture_that_matches_nothing_disturbs_no_other(language: Language) -> None:
+    blank = Gesture(label="blank", salient=("right_wrist",), image=np.zeros((224, 224), np.uint8))
+    unlinked = Gesture(label="unlinked", salient=(), image=language.gestures[0].image)
+    broken = Language("pool", [blank, *language.gestures, unlinked])
+    query = recording(wedge, jitter=0.02)
+    result = Recognizer(broken).recognize(query)
+    expected = Recognizer(language).recognize(query)
+    assert result.label == "wedge"
+    np.testing.assert_array_equal(result.distances[:, 1:-1], expected.distances)
+    assert result.confidence == expected.confidence
+    with pytest.raises(PoseError, match="nothing to compare"):
+        Recognizer(Language("broken", [blank])).recognize(query)
+
+
+def test_a_language_of_one_gesture_recognises_it() -> None:
+    alone = Recognizer(Language("one", [Gesture.from_demonstration("line", recording(line))]))
+    assert alone.recognize(recording(line, frames=33, jitter=0.01)).label == "line"
+
+
+def test_gestures_without_stored_descriptors_are_described_when_needed(language: Language) -> None:
+    bare = [replace(gesture, descriptors={}) for gesture in language.gestures]
+    query = recording(wedge, jitter=0.02)
+    np.testing.assert_array_equal(
+        Recognizer(Language("bare", bare)).recognize(query).distances,
+        Recognizer(language).recognize(query).distances,
+    )
+
+
+def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
+    language: Language, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
+    many = [
+        replace(gesture, label=f"{gesture.label} {n}")
+        for gesture in language.gestures
+        for n in range(10)
+    ]
+    recognizer = Recognizer(Language("many", [*many, left]))
+    drawn: list[tuple[str, ...]] = []
+
+    def noted(trajectory: Trajectory) -> Drawing:
+        drawn.append(trajectory.landmarks)
+        return draw(trajectory)
+
+    monkeypatch.setattr("app.recognition.recognizer.draw", noted)
+    recognizer.recognize(recording(circle))
+    assert sorted(drawn) == [("left_wrist",), ("right_wrist",)]
+
+
+def test_relative_distances_put_voters_on_one_scale() -> None:
+    never = [np.inf] * 3  # a voter that abstains has no say
+    distances = np.array([[1.0, 3.0, np.inf], [100.0, 300.0, np.inf], [0.0, 0.0, np.inf], never])
+    np.testing.assert_allclose(mean_relative_distances(distances), [1 / 3, 1.0, np.inf])
+
+
+def test_a_tie_goes_to_the_smaller_mean_relative_distance(recognizer: Recognizer) -> None:
+    nearest = np.full((len(PAPER_VOTERS), len(SHAPES)), 10.0)
+    nearest[:3, 0] = 6.0  # three votes for the first gesture, by a little
+    nearest[3:6, 1] = 1.0  # three for the second, by far
+    nearest[6, 2] = 5.0
+    result = recognizer._counted(nearest)
+    assert list(result.votes.values()).count("circle") == 3
+    assert list(result.votes.values()).count("wedge") == 3
+    assert result.label == "wedge"
+
+
+def test_where_the_votes_and_the_distances_disagree_confidence_is_the_share_of_votes(
+    recognizer: Recognizer,
+) -> None:
+    distances = np.full((len(PAPER_VOTERS), len(SHAPES)), 10.0)
+    distances[:4, 0] = 9.0
+    distances[4:, 1] = 0.1
+    result = recognizer._counted(distances)
+    assert result.label == "circle"
+    assert result.confidence == pytest.approx(4 / 7 / 2)
