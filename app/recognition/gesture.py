@@ -128,7 +128,10 @@ class Gesture:
         image.setflags(write=False)
         object.__setattr__(self, "image", image)
         object.__setattr__(self, "salient", tuple(sorted(self.salient)))
-        object.__setattr__(self, "descriptors", MappingProxyType(dict(self.descriptors)))
+        descriptors = {name: values.copy() for name, values in self.descriptors.items()}
+        for values in descriptors.values():
+            values.setflags(write=False)
+        object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
         object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
 
     @classmethod

@@ -147,13 +147,14 @@ def mean_relative_distances(distances: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ``(G,)``: the mean over voters of a distance divided by that voter's mean over all comparable
+    ``(G,)``: the mean, over the voters that can compare anything, of a distance divided by that voter's mean over all comparable
     gestures. 1 = as far as the average gesture; infinite where not comparable.
 
     """
-    comparable = np.isfinite(distances)
-    means = np.where(comparable, distances, 0.0).sum(axis=1) / np.maximum(1, comparable.sum(axis=1))
-    relative = distances / np.where(means > 0, means, 1.0)[:, None]
+    voting = distances[np.isfinite(distances).any(axis=1)]
+    comparable = np.isfinite(voting)
+    means = np.where(comparable, voting, 0.0).sum(axis=1) / comparable.sum(axis=1)
+    relative = voting / np.where(means > 0, means, 1.0)[:, None]
     return np.asarray(relative.mean(axis=0), dtype=np.float64)
 
 

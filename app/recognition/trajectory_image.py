@@ -107,9 +107,51 @@ def _strokes(path: FloatArray) -> list[FloatArray]:
 
 
 def _draw_stroke(image: BinaryImage, stroke: FloatArray) -> None:
-    points = stroke.astype(np.float32)[:, None]
-    simplified = cv2.approxPolyDP(points, SIMPLIFICATION, closed=False)
-    grid = np.rint(simplified * 2**_SUBPIXEL_BITS).astype(np.int32)
+    corners = simplified(stroke, SIMPLIFICATION)
+    grid = np.rint(corners * 2**_SUBPIXEL_BITS).astype(np.int32)[:, None]
     cv2.polylines(
         image, [grid], isClosed=False, color=255, thickness=STROKE_WIDTH, shift=_SUBPIXEL_BITS
     )
+
+
+def simplified(path: FloatArray, tolerance: float) -> FloatArray:
+    """Keep the corners of a path (Ramer 1972, Douglas and Peucker 1973).
+
+    OpenCV's `approxPolyDP` is not used: of an open path that ends near where it began, it loses
+    the last side.
+
+    Parameters
+    ----------
+    path
+        ``(T, 2)`` without NaN.
+    tolerance
+        Largest distance of a point left out from the line that replaces it, in the path's unit.
+
+    Returns
+    -------
+    ``(C, 2)``: the first point, the corners in order, the last point.
+
+    """
+    kept = np.zeros(len(path), dtype=np.bool_)
+    kept[[0, -1]] = True
+    open_stretches = [(0, len(path) - 1)]
+    while open_stretches:
+        first, last = open_stretches.pop()
+        if last - first < 2:
+            continue
+        away = _distances_to_segment(path[first + 1 : last], path[first], path[last])
+        farthest = int(away.argmax())
+        if away[farthest] > tolerance:
+            corner = first + 1 + farthest
+            kept[corner] = True
+            open_stretches += [(first, corner), (corner, last)]
+    return path[kept]
+
+
+def _distances_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """Return the distance of each of ``(N, 2)`` points from a straight segment, ``(N,)``."""
+    along = end - start
+    length = float(along @ along)
+    share = np.clip((points - start) @ along / length, 0.0, 1.0) if length > 0 else 0.0
+    nearest = start + np.multiply.outer(share, along)
+    return np.asarray(np.linalg.norm(points - nearest, axis=1), dtype=np.float64)

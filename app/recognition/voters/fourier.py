@@ -55,7 +55,9 @@ class FourierDescriptors:
         products[:, _KEPT] = others.conj() * spectrum
         correlation = np.fft.fft(products, axis=1).real.max(axis=1)
         energy = (np.abs(spectrum) ** 2).sum() + (np.abs(others) ** 2).sum(axis=1)
-        squares = np.maximum(0.0, energy - 2 * correlation)  # rounding can fall below 0
+        # The difference of nearly equal sums: what is below rounding error is 0.
+        squares = energy - 2 * correlation
+        squares[squares < 1e-12 * energy] = 0.0
         return np.asarray(np.sqrt(squares), dtype=np.float64)
 
 
