@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import typer
+from rich import box
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
+from rich.text import Text
 
 from app.recognition import Recognition, Take
 
@@ -19,18 +21,30 @@ people = Console(stderr=True)
 def show_recognition(take: Take, result: Recognition) -> None:
     """Print the label on stdout and the vote table, for a person, on stderr."""
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
-    table = Table(title="distance of every voter to every gesture; * its vote")
-    table.add_column("voter")
-    for label in result.gestures:
-        table.add_column(label, justify="right")
-    for voter, distances in zip(result.voters, result.distances, strict=True):
-        chosen = result.votes[voter]
+    people.print(vote_table(result))
+
+
+def vote_table(result: Recognition) -> Table:
+    """Lay out every voter's distance to every gesture, a gesture a row, votes marked by a star.
+
+    Gestures are rows since a language has many, and eighty columns hold all voters.
+    """
+    table = Table(
+        title="distance to every gesture, by voter; * its vote",
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )
+    table.add_column("gesture", vertical="bottom")
+    for voter in result.voters:
+        table.add_column(voter.replace("_", "\n"), justify="right", vertical="bottom", no_wrap=True)
+    for column, label in enumerate(result.gestures):
         cells = [
-            f"{distance:.3g}{' *' if label == chosen else ''}"
-            for label, distance in zip(result.gestures, distances, strict=True)
+            f"{distances[column]:.2f}{'*' if result.votes.get(voter) == label else ' '}"
+            for voter, distances in zip(result.voters, result.distances, strict=True)
         ]
-        table.add_row(voter, *cells)
-    people.print(table)
+        table.add_row(Text(label), *cells)
+    return table
 
 
 @contextmanager
