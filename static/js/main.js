@@ -39,8 +39,8 @@ function followServer() {
 
 function drawConnection({ connected }) {
   const element = byId("connection");
-  element.textContent = connected ? "Connected" : "Reconnecting\u2026";
-  element.classList.toggle("on", connected);
+  element.textContent = { true: "Connected", false: "Reconnecting\u2026" }[connected] ?? "Connecting\u2026";
+  element.classList.toggle("on", connected === true);
 }
 
 /** What is drawn, and which values it depends on. */

@@ -5,7 +5,7 @@ const NUMBERS = new Set(["take", "start", "end"]);
 
 const values = {
   clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
-  languages: [], gestures: null, result: null, connected: false, loaded: false,
+  languages: [], gestures: null, result: null, connected: null, loaded: false,
   clip: null, take: null, start: null, end: null, language: null, recognition: null,
 };
 

@@ -1,6 +1,6 @@
 // The takes of a clip along its time, and the range that the buttons act on.
 
-import { byId, h } from "./dom.js";
+import { byId, h, icon } from "./dom.js";
 import { moment, plural } from "./format.js";
 import { lengthOf, selectedClip, selectedRange, state, update } from "./state.js";
 
@@ -36,6 +36,16 @@ function takeButton(take, index, duration) {
     onclick: () => update({ take: index, start: null, end: null, recognition: null }),
   }, stroke, h("span", { className: "take-name" }, name, take.closed ? null : h("small", {}, " open")));
 }
+
+/** Where a salute opens or closes a take. */
+function saluteMark(seconds, kind, duration) {
+  return h("span", { className: `salute ${kind}`, title: "Vulcan salute", style: { left: percent(seconds, duration) } }, icon("salute"));
+}
+
+const saluteMarks = (take, duration) => [
+  saluteMark(take.start, "opens", duration),
+  take.closed ? saluteMark(take.end, "closes", duration) : null,
+].filter(Boolean);
 
 function handle(which, range, duration) {
   const label = which === "start" ? "Start of the range" : "End of the range";
@@ -75,6 +85,7 @@ export function drawTimeline() {
   const track = box.querySelector(".track");
   const lengths = h("div", { className: "range", style: { left: percent(range.start, duration), width: percent(range.end - range.start, duration) } });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
+  const salutes = state.takes.flatMap((take) => saluteMarks(take, duration));
   const note = h("p", { className: "range-text" },
     h("span", { role: "status" }, summary(range, state.takes)),
     state.take === null && state.takes.length
@@ -83,8 +94,8 @@ export function drawTimeline() {
   if (track && box.dataset.clip === clip.id) {
     // The handle being dragged must stay the same element.
     const focused = track.querySelector(".take:focus") ? [...track.querySelectorAll(".take")].indexOf(document.activeElement) : -1;
-    track.querySelectorAll(".take, .range").forEach((each) => each.remove());
-    track.prepend(lengths, ...takes);
+    track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
+    track.prepend(lengths, ...salutes, ...takes);
     if (focused >= 0) takes[focused]?.focus();
     for (const which of ["start", "end"]) {
       const input = track.querySelector(`.handle.${which}`);
@@ -96,7 +107,7 @@ export function drawTimeline() {
   }
   box.dataset.clip = clip.id;
   return box.replaceChildren(
-    h("div", { className: "track", role: "group", "aria-label": "Takes" }, lengths, takes, handle("start", range, duration), handle("end", range, duration)),
+    h("div", { className: "track", role: "group", "aria-label": "Takes" }, lengths, salutes, takes, handle("start", range, duration), handle("end", range, duration)),
     ruler(duration),
     note);
 }

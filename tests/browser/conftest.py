@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Route, expect, sync_playwright
 
 from app.recognition.models import installed_models
 from app.settings import Settings
@@ -45,6 +45,7 @@ def browser() -> Iterator[Browser]:
     executable = shutil.which("chromium") or shutil.which("chromium-browser")
     if executable is None:
         pytest.skip("needs Chromium: apt-get install chromium")
+    expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=executable, args=list(WEBGL))
         yield browser
@@ -77,8 +78,9 @@ def clips(settings: Settings) -> Path:
 def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
     """Return a function that opens the app in a browser context of its own.
 
-    It takes the query of the address as a mapping, the width and height of the window, and the
-    colour scheme. No page may raise an error or break its content security policy.
+    It takes the query of the address as a mapping, the width and height of the window, the colour
+    scheme, and whether viser's frame is loaded: drawing WebGL in software is what takes longest.
+    No page may raise an error or break its content security policy.
     """
     contexts: list[BrowserContext] = []
     errors: list[str] = []
@@ -88,6 +90,7 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         *,
         size: tuple[int, int] = (1280, 800),
         scheme: str = "dark",
+        scene: bool = True,
     ) -> Page:
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]},
@@ -96,6 +99,8 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         )
         contexts.append(context)
         context.set_default_timeout(PATIENCE_MS)
+        if not scene:
+            context.route("**/viser/**", _empty_frame)
         page = context.new_page()
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.add_init_script(WATCH_POLICY)
@@ -124,3 +129,8 @@ def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
         return path
 
     return take
+
+
+def _empty_frame(route: Route) -> None:
+    """Answer as viser's page does once it draws."""
+    route.fulfill(body="<div id=root><canvas></canvas></div>", content_type="text/html")

@@ -62,7 +62,7 @@ def test_colours_follow_the_system_in_the_page_and_in_the_frame(
 def test_every_control_has_a_name_and_shows_the_focus(
     open_page: OpenPage, library: Library
 ) -> None:
-    page = open_page(library.address)
+    page = open_page(library.address, scene=False)
     expect(page.get_by_role("button", name="Recognise")).to_be_enabled()
     nameless = page.evaluate(
         """() => [...document.querySelectorAll("button, select, input, a, summary, iframe, img")]
