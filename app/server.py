@@ -10,6 +10,7 @@ import webbrowser
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
+from urllib.parse import quote
 
 import uvicorn
 from fastapi import APIRouter, FastAPI
@@ -163,6 +164,8 @@ class _AnnouncedServer(uvicorn.Server):
         address = f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
         print(f"OSG Studio is at {address} (Ctrl+C ends it)", flush=True)
         if self._open_browser:
+            if token := self._settings.token:
+                address += f"?token={quote(token.get_secret_value(), safe='')}"
             threading.Thread(target=webbrowser.open, args=[address], daemon=True).start()
 
 

@@ -81,13 +81,14 @@ class Settings(BaseSettings):
     """Address space of one worker; 0 is no limit, which GPU execution providers need."""
 
     worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
-    """Processor time of one job; 0 is no limit. Ten minutes of video take about half of it."""
+    """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, and the most
+    frames a clip may have (`app.recognition.video.VideoLimits`) then take 72 minutes."""
 
     worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
     """A worker that reports no progress for so long hangs, and is ended."""
 
     undo_hours: Annotated[float, Field(ge=0)] = 24.0
-    """How long something deleted can be restored before its files are removed."""
+    """How long something deleted can be restored at least; the next start then removes it."""
 
     @property
     def public(self) -> bool:

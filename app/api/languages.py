@@ -119,8 +119,9 @@ def change_language(
 ) -> LanguageView:
     """Rename a language or its author."""
     fields = change.model_dump(exclude_none=True)
-    what = f"Change {' and '.join(fields)}" if fields else "Change nothing"
-    edit = editing(what, lambda language: replace(language, **fields))
+    if not fields:
+        return answered(studio, studio.languages.get(language_id), response)
+    edit = editing(f"Change {' and '.join(fields)}", lambda language: replace(language, **fields))
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)
 
 

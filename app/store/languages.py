@@ -136,7 +136,7 @@ class LanguageStore:
 
         """
         with self._database.writing() as session:
-            state = _load(session, language_id, None)
+            state = _load(session, language_id, None, changing=True)
             record, head = state.record, state.record.head
             if expected is not None and expected != head:
                 raise Conflict(
@@ -162,7 +162,7 @@ class LanguageStore:
 
         """
         with self._database.writing() as session:
-            record = _load(session, language_id, None).record
+            record = _load(session, language_id, None, changing=True).record
             if expected is not None and expected != record.head:
                 raise Conflict(
                     f"the language is at revision {record.head}, not {expected}; look at what "
@@ -211,8 +211,11 @@ def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
     )
 
 
-def _load(session: Session, language_id: str, revision: int | None) -> LanguageState:
-    record = session.get(LanguageRecord, language_id)
+def _load(
+    session: Session, language_id: str, revision: int | None, *, changing: bool = False
+) -> LanguageState:
+    # SQLite's writers hold the whole file; other databases are asked to lock the row.
+    record = session.get(LanguageRecord, language_id, with_for_update=changing)
     if record is None or record.deleted is not None:
         raise NotFound(f"there is no language {language_id!r}")
     number = record.head if revision is None else revision

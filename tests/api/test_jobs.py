@@ -11,8 +11,7 @@ import httpx
 import pytest
 
 from app.settings import Settings
-from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import Running, assert_problem, running, until
+from tests.api.running import assert_problem, running, until
 from tests.api.test_clips import CLIPS, upload
 from tests.api.workers import alive, linux, workers_of
 from tests.recognition.damaged_clips import write_clip
@@ -132,24 +131,3 @@ def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, small_
     with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
         assert_problem(upload(client, small_clip), 422, "decoder")
         assert client.get("/healthz").status_code == 200
-
-
-def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> None:
-    heard: list[tuple[str, dict[str, Any]]] = []
-    with client.stream("GET", "/api/v1/events") as stream:
-        lines = stream.iter_lines()
-        while "listening" not in next(lines):
-            pass
-        language = httpx.post(f"{server.address}/api/v1/languages", json={"name": "pool"}).json()
-        httpx.patch(f"{server.address}/api/v1/languages/{language['id']}", json={"name": "sea"})
-        clip_id = add_recorded_clip(server.studio, recording_of("circle"))
-        httpx.delete(f"{server.address}{CLIPS}/{clip_id}")
-        kind = ""
-        for line in lines:
-            kind = line.removeprefix("event:").strip() if line.startswith("event:") else kind
-            if line.startswith("data:"):
-                heard.append((kind, json.loads(line.removeprefix("data:"))))
-                if kind == "clips":
-                    break
-    assert ("languages", {"id": language["id"]}) in heard
-    assert heard[-1] == ("clips", {"id": clip_id})
