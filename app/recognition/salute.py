@@ -80,7 +80,13 @@ PALM_WIDTH = Condition(0.38, 0.4)
 KNUCKLES_PER_PALM = 1.2
 """Palm length over the width of the knuckles, for foreshortened palms."""
 
-# The same for hands whose ring and little finger the detector bends; narrower, since less is asked.
+# The same for hands whose fingers the hand model bends at the tips; narrower, since less is asked.
+NEARLY_STRAIGHT = Condition(0.75, 0.2)
+"""Index and middle finger, as in `STRAIGHT`."""
+
+NOT_CURLED = Condition(-0.03, 0.2)
+"""Tips of index and middle finger against their middle joints, as in `STRETCHED_OUT`."""
+
 WIDE_SPREAD = Condition(20.0, 4.0)
 """Degrees of the V: far beyond an open hand's 12."""
 
@@ -90,14 +96,15 @@ WIDEST_SPREAD = 40.0
 WIDE_TIP_GAP_RATIO = Condition(1.4, 0.2)
 """Tip gaps as in `TIP_GAP_RATIO`."""
 
-CLOSE_INDEX_PAIR, CLOSE_LITTLE_PAIR = 9.0, 15.0
+CLOSE_INDEX_PAIR, CLOSE_LITTLE_PAIR = 9.0, 22.0
 """Degrees inside the pairs, at most; a bent finger's direction is less sure."""
 
 VISIBLE_RING, VISIBLE_LITTLE = Condition(0.27, 0.06), Condition(0.17, 0.06)
 """Distance knuckle to tip, of which a folded finger shows almost nothing."""
 
-NOT_FOLDED = Condition(-0.19, 0.08)
-"""Tip against middle joint as in `STRETCHED_OUT`; a folded finger's tip is 0.3 nearer the wrist."""
+NOT_FOLDED = Condition(-0.25, 0.08)
+"""Tips of ring and little finger against their middle joints; a folded finger's tip is 0.3 and
+more nearer to the wrist."""
 
 DEGREES_OF_DOUBT = 4.0
 """Width of the thresholds on angles that must stay small."""
@@ -124,10 +131,10 @@ def salute_score(hand_xy: FloatArray) -> float:
 
     The least fulfilled of eight conditions: four straight, long, stretched-out fingers, the V
     between middle and ring finger, wide in degrees and against the pairs, and a palm not seen
-    edge-on. Short or gloved ring and little fingers the hand model often reads as bent at the
-    tips; they salute too when the V is wide, the pairs are close, and index and middle finger
-    fulfil all of it. Translating, turning, mirroring (left or right hand) and uniformly scaling
-    the hand leave the score as it is.
+    edge-on. Short fingers the hand model often reads as bent at the tips, ring and little finger
+    most; they salute too when the V is wide, the pairs are close and none is folded.
+    Translating, turning, mirroring (left or right hand) and uniformly scaling the hand leave the
+    score as it is.
 
     Parameters
     ----------
@@ -208,9 +215,9 @@ def _clear_salute(shape: _HandShape) -> float:
 def _wide_salute(shape: _HandShape) -> float:
     index_pair, spread, little_pair = shape.angle.tolist()
     return min(
-        STRAIGHT.fulfilment(shape.straight[:2].min()),
+        NEARLY_STRAIGHT.fulfilment(shape.straight[:2].min()),
         LONG.fulfilment(shape.length[:2].min()),
-        STRETCHED_OUT.fulfilment(shape.stretch[:2].min()),
+        NOT_CURLED.fulfilment(shape.stretch[:2].min()),
         VISIBLE_RING.fulfilment(shape.length[2]),
         VISIBLE_LITTLE.fulfilment(shape.length[3]),
         NOT_FOLDED.fulfilment(shape.stretch[2:].min()),

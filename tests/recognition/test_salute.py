@@ -111,9 +111,9 @@ def test_points_on_one_spot_are_no_salute() -> None:
     assert salute_score(np.zeros((21, 2))) < 0.5
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.02, 0.04])
+@pytest.mark.parametrize("noise", [0.02, 0.04])
 def test_at_least_the_published_recall_at_a_tenth_of_its_false_positives(noise: float) -> None:
-    hands = list(labelled_hands(3000, seed=5, noise=noise))
+    hands = list(labelled_hands(2000, seed=5, noise=noise))
     saluting = [hand.xy for hand in hands if hand.salutes]
     others = [hand.xy for hand in hands if not hand.salutes]
     found = np.mean([salute_score(hand) > 0.5 for hand in saluting])

@@ -1,0 +1,181 @@
+"""How often the salute test and the published rule are right, side by side.
+
+Three kinds of hands: synthetic ones with joint angles known, the sample clips (a rendered diver,
+who salutes when the phases say so), and photographs and drawings of hands where such a folder is
+given. Only pictures in which the hand model finds a hand count, for both rules.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from app.recognition.estimation import create_estimator
+from app.recognition.estimation.base import Image, PoseEstimator
+from app.recognition.extraction import record
+from app.recognition.poses import FloatArray
+from app.recognition.salute import ENTER_SCORE, published_rule, salute_score
+from app.recognition.video import ALPHA_BACKGROUND, over_background
+from app.resources import samples_dir
+from tests.recognition.parametric_hand import labelled_hands
+
+Rule = Callable[[FloatArray], bool]
+
+MARGIN_SECONDS = 0.2
+"""Around the beginning and the end of a salute, where the hand changes its shape and nobody can
+say which frame is the first; these frames count neither way."""
+
+SURROUND = 1.5
+"""Picture widths of plain background around a drawing that its hand fills: the palm detector
+knows hands as a part of a picture."""
+
+SYNTHETIC_HANDS = 3000
+"""Enough that a false-positive rate of one per cent is known to a quarter of itself."""
+
+
+def salutes(hand: FloatArray) -> bool:
+    """Apply the project's own test as a rule."""
+    return salute_score(hand) > ENTER_SCORE
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """The hands found in one picture.
+
+    Attributes
+    ----------
+    salutes
+        Whether one of them truly salutes.
+    hands
+        Each ``(21, 2)``, at least one.
+
+    """
+
+    salutes: bool
+    hands: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """How often a rule is right.
+
+    Attributes
+    ----------
+    recall
+        Share of the saluting pictures in which it sees a salute.
+    false_positives
+        Share of the other pictures in which it sees one.
+
+    """
+
+    recall: float
+    false_positives: float
+
+    @classmethod
+    def of(cls, rule: Rule, pictures: Sequence[Picture]) -> Rates:
+        """Apply a rule to every hand of every picture."""
+        fires = np.array([any(map(rule, picture.hands)) for picture in pictures])
+        truth = np.array([picture.salutes for picture in pictures])
+        return cls(float(fires[truth].mean()), float(fires[~truth].mean()))
+
+
+def synthetic_pictures(noise: float = 0.02) -> list[Picture]:
+    """Return hands from joint angles, seen with an error of `noise` palms."""
+    hands = labelled_hands(SYNTHETIC_HANDS, seed=11, noise=noise)
+    return [Picture(hand.salutes, (hand.xy,)) for hand in hands]
+
+
+def clip_pictures(folder: Path, names: Sequence[str], estimator: PoseEstimator) -> list[Picture]:
+    """Return the frames of clips whose phases are known.
+
+    Parameters
+    ----------
+    folder
+        Holds ``<name>.mp4`` of every name, and ``phases.json``: per name a list of phase, start
+        and end in seconds.
+
+    """
+    phases = json.loads((folder / "phases.json").read_text())
+    return [
+        picture
+        for name in names
+        for picture in _frames(folder / f"{name}.mp4", phases[name], estimator)
+    ]
+
+
+def _frames(
+    clip: Path, phases: Sequence[tuple[str, float, float]], estimator: PoseEstimator
+) -> Iterator[Picture]:
+    recording = record(clip, estimator=estimator)
+    held = np.array([(start, end) for name, start, end in phases if name == "salute"])
+    for time, hands in zip(recording.poses.time, recording.hands, strict=True):
+        # Seconds inside a salute, negative outside of all of them.
+        depth = max((min(time - start, end - time) for start, end in held), default=-np.inf)
+        if hands and abs(depth) >= MARGIN_SECONDS:
+            yield Picture(bool(depth > 0), tuple(hand.xy for hand in hands))
+
+
+def image_pictures(folder: Path, estimator: PoseEstimator) -> list[Picture]:
+    """Return the still images of ``salute/`` and ``other/`` in a folder, in which hands are found.
+
+    Drawings (PNG, WebP) are put on a plain background; photographs (JPEG) are taken as they are.
+    """
+    found = []
+    for kind in ("salute", "other"):
+        for path in sorted((folder / kind).iterdir()):
+            estimator.reset()
+            hands = estimator.estimate(_readable(path), 0.0).hands
+            if hands:
+                found.append(Picture(kind == "salute", tuple(hand.xy for hand in hands)))
+    return found
+
+
+def _readable(path: Path) -> Image:
+    """Read an image as RGB, with a plain background behind and around a drawing."""
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise OSError(f"{path} is not a readable image")
+    has_alpha = image.ndim == 3 and image.shape[2] == 4
+    image = cv2.cvtColor(image, cv2.COLOR_BGRA2RGBA if has_alpha else cv2.COLOR_BGR2RGB)
+    rgb = over_background(np.asarray(image, np.uint8)) if has_alpha else np.asarray(image, np.uint8)
+    if path.suffix == ".jpg":
+        return rgb
+    width = round(SURROUND * max(rgb.shape[:2]))
+    grey = (ALPHA_BACKGROUND,) * 3
+    framed = cv2.copyMakeBorder(rgb, width, width, width, width, cv2.BORDER_CONSTANT, value=grey)
+    return np.asarray(framed, np.uint8)
+
+
+def report(title: str, pictures: Sequence[Picture]) -> None:
+    """Print both rules' rates on some pictures."""
+    saluting = sum(picture.salutes for picture in pictures)
+    print(f"{title}: {saluting} salutes, {len(pictures) - saluting} others")
+    rules: dict[str, Rule] = {"published rule": published_rule, "salute_score": salutes}
+    for name, rule in rules.items():
+        rates = Rates.of(rule, pictures)
+        print(f"  {name:15} recall {rates.recall:.3f}  false positives {rates.false_positives:.4f}")
+
+
+def main() -> None:
+    """Print the table; ``--images FOLDER`` adds still images."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.salute", description=__doc__)
+    parser.add_argument("--images", type=Path, help="folder with salute/ and other/")
+    images: Path | None = parser.parse_args().images
+    report("synthetic hands", synthetic_pictures())
+    clips = samples_dir() / "clips"
+    names = sorted(path.stem for path in clips.glob("*-demonstration.mp4"))
+    with closing(create_estimator()) as estimator:
+        report("frames of the demonstrations", clip_pictures(clips, names, estimator))
+        if images is not None:
+            report("still images", image_pictures(images, estimator))
+
+
+if __name__ == "__main__":
+    main()
