@@ -184,8 +184,9 @@ class Workspace:
             self._scene.recolour(theme)
             if self._view is None:
                 self._scene.clear()
-            else:
-                self._load(self._view, Range.of(self._view))
+                return
+            self._draw_scene(self._view, Range.of(self._view))
+            self.playback.redraw(self.playback.frame)
 
     def close(self) -> None:
         """Stop playback, decoding and the server."""
@@ -197,24 +198,33 @@ class Workspace:
                 self._server.stop()
 
     def _load(self, view: WorkspaceView, shown: Range) -> None:
+        """Show other frames: scene, clock and charts at once, pictures as they are decoded."""
         if self._filmstrip is not None:
             self._filmstrip.close()
+        first, times = shown.first, shown.poses.time
+        self._first, self._frames = first, len(times)
+        self._filmstrip = Filmstrip(
+            view.video,
+            first,
+            first + len(times) - 1,
+            lambda index: self.playback.redraw(index - first),
+        )
+        trajectory = self._draw_scene(view, shown)
+        self._bar.load(times)
+        self.playback.load(times.tolist(), first_look(len(times)))
+        self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.salute))
+        self._filmstrip.start()
+
+    def _draw_scene(self, view: WorkspaceView, shown: Range) -> Trajectory | None:
+        """Draw the cube, and return the salient landmarks' trajectory that it shows."""
         cube = CubeGeometry.from_poses(shown.poses)
         trajectory, salient = _salient_motion(view, shown.poses)
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
             wall = _wall(drawing, cube, salient, shown.poses)
-        self._first, self._frames, self._painted = shown.first, len(shown.poses), -1
-        last = shown.first + len(shown.poses) - 1
-        self._filmstrip = Filmstrip(
-            view.video, shown.first, last, lambda index: self.playback.redraw(index - shown.first)
-        )
         self._scene.show(cube, salient, wall)
-        self._bar.load(shown.poses.time)
-        self.playback.load(shown.poses.time.tolist(), first_look(len(shown.poses)))
-        start = float(shown.poses.time[0])
-        self._inspector.show_tracks(trajectory, start, (shown.poses.time, shown.salute))
-        self._filmstrip.start()
+        self._painted = -1
+        return trajectory
 
     def _inspect(self, view: WorkspaceView, shown: Range) -> None:
         if view.recognition is None:

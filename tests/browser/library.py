@@ -53,7 +53,7 @@ def add_clip(server: Running, *shapes: str, name: str = "dive.mp4") -> str:
     recording = recording_of(*shapes)
     clips = server.studio.clips
     partial = clips.new_partial()
-    write_clip(partial, container_format="mp4")
+    write_clip(partial, frames=len(recording.poses), container_format="mp4")
     width, height = recording.poses.frame_size
     clip = Clip(
         name=name,

@@ -48,6 +48,22 @@ def upload(page: Page, clip: Path) -> None:
     expect(take).to_have_attribute("aria-pressed", "true")
 
 
+def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> None:
+    """Take the same in light colours and on a phone, and return to where it was."""
+    scheme = page.frame_locator("#lab").locator("html")
+    page.emulate_media(color_scheme="light")
+    expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")
+    # The scene is drawn anew: its clock shows when that is done.
+    expect(page.frame_locator("#lab").get_by_text(re.compile(r"^frame \d+ of"))).to_be_visible()
+    picture(page, "light")
+    page.emulate_media(color_scheme="dark")
+    expect(scheme).to_have_attribute("data-mantine-color-scheme", "dark")
+    page.set_viewport_size({"width": 390, "height": 844})
+    picture(page, "phone")
+    page.set_viewport_size({"width": 1440, "height": 900})
+    lab_of(page)
+
+
 def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     open_page: OpenPage, clips: Path, tmp_path: Path, picture: Callable[[Page, str], Path]
 ) -> None:
@@ -101,6 +117,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     until(lambda: canvas.screenshot() != before)
     expect(page.locator(".toast")).to_have_count(0)
     assert picture(page, "studio").stat().st_size < 400_000
+    take_other_pictures(page, picture)
     lab.get_by_role("button", name="Play").click()
     expect(lab.get_by_role("button", name="Pause")).to_be_visible()
     lab.get_by_role("tab", name="Tracks").click()

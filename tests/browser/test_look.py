@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 
 import httpx
 import pytest
@@ -14,8 +13,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
 pytestmark = pytest.mark.slow
-
-Picture = Callable[[Page, str], Path]
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +27,7 @@ def background(page: Page, *, in_frame: bool = False) -> str:
     return str(where.evaluate("(body) => getComputedStyle(body).backgroundColor"))
 
 
-def test_everything_is_in_reach_on_a_phone(
-    open_page: OpenPage, library: Library, picture: Picture
-) -> None:
+def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library) -> None:
     query = {**library.address, "recognition": library.recognise("circle")}
     page = open_page(query, size=(390, 844))
     expect(page.frame_locator("#lab").get_by_role("button", name="Play")).to_be_visible()
@@ -40,19 +35,17 @@ def test_everything_is_in_reach_on_a_phone(
     for name in ("Save as gesture", "Recognise", "New language"):
         expect(page.get_by_role("button", name=name)).to_be_in_viewport()
     expect(page.locator("#outcome")).to_contain_text("as expected")
-    picture(page, "phone")
     page.get_by_role("list", name="Gestures").scroll_into_view_if_needed()
     expect(page.get_by_role("button", name="Delete circle", exact=True)).to_be_in_viewport()
 
 
 def test_colours_follow_the_system_in_the_page_and_in_the_frame(
-    open_page: OpenPage, library: Library, picture: Picture
+    open_page: OpenPage, library: Library
 ) -> None:
     page = open_page(library.address, size=(1440, 900), scheme="light")
     scheme = page.frame_locator("#lab").locator("html")
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")
     light = background(page), background(page, in_frame=True)
-    picture(page, "light")
     page.emulate_media(color_scheme="dark")
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "dark")
     dark = background(page), background(page, in_frame=True)

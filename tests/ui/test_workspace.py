@@ -76,8 +76,10 @@ def test_changing_the_colours_keeps_what_is_shown(workspace: Workspace, tmp_path
     view = view_in(tmp_path)
     workspace.set_dark(False)
     workspace.show(view)
+    workspace.playback.seek(5)
     workspace.set_dark(True)
     assert workspace.view == view
+    assert workspace.playback.frame == 5
 
 
 def test_a_clip_in_which_nobody_moves_is_shown_all_the_same(
