@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Final, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from app.recognition.poses import FloatArray
 
 Image = npt.NDArray[np.uint8]
 """``(height, width, 3)`` RGB, upright, y down."""
+
+LARGEST_SIDE: Final = 16384
+"""Pixels. OpenCV keeps positions in an image in 16 bits, and this leaves room to turn a crop."""
 
 Side = Literal["left", "right"]
 """The person's own left or right."""
@@ -91,7 +94,7 @@ class PoseEstimator(Protocol):
 
 
 def check_image(image: Image) -> None:
-    """Refuse what is no RGB image of 8 bits per channel.
+    """Refuse what is no RGB image of 8 bits per channel, or larger than `LARGEST_SIDE`.
 
     Raises
     ------
@@ -103,4 +106,9 @@ def check_image(image: Image) -> None:
         raise EstimatorError(
             f"image has shape {image.shape} and type {image.dtype}, "
             f"expected (height, width, 3) of uint8, RGB"
+        )
+    if max(image.shape) > LARGEST_SIDE:
+        raise EstimatorError(
+            f"image has shape {image.shape}, expected (height, width, 3) of at most "
+            f"{LARGEST_SIDE} pixels a side; scale it down first"
         )

@@ -10,14 +10,11 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.estimation.base import Image
+from app.recognition.estimation.base import LARGEST_SIDE, Image
 from app.recognition.poses import FloatArray
 
 TINIEST_SIDE: Final = 1.0
 """Pixels. A region smaller than one pixel shows nothing, whatever the model answers to it."""
-
-LARGEST_SIDE: Final = 16384.0
-"""Pixels. Positions within a crop are kept in 16 bits, and this leaves room to turn it."""
 
 ZERO_BORDER: Final = cv2.BORDER_CONSTANT
 """Black where the region leaves the image: what the detectors were trained on."""
@@ -74,7 +71,7 @@ class Region:
             math.isfinite(self.x + self.y + self.rotation)
             and abs(self.x) < LARGEST_SIDE
             and abs(self.y) < LARGEST_SIDE
-            and TINIEST_SIDE <= self.side < LARGEST_SIDE
+            and TINIEST_SIDE <= self.side <= LARGEST_SIDE
         )
 
     def matrix(self, size: int) -> FloatArray:

@@ -1,0 +1,15 @@
+"""Frames of a clip, as an estimator takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+from app.recognition.video import VideoFrame, read_frames
+
+
+def clip_frames(clip: Path, count: int, *, every: int = 1) -> Iterator[VideoFrame]:
+    """Yield up to `count` frames of `clip`: its first, and then each `every`-th."""
+    with read_frames(clip) as frames:
+        yield from islice(frames, 0, count * every, every)
