@@ -14,7 +14,8 @@ from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recording import Recording
 from app.recognition.salute import ENTER_SCORE, best_salute
-from app.recognition.video import FrameReader, VideoFrame, VideoInfo, VideoLimits, read_frames
+from app.recognition.video import FrameReader, VideoFrame, VideoInfo, read_frames
+from app.recognition.video_limits import VideoLimits
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.

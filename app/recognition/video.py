@@ -25,6 +25,17 @@ from av.video.stream import VideoStream
 from app.recognition.errors import VideoError
 from app.recognition.estimation.base import Image
 from app.recognition.frame_clock import FALLBACK_STEP, FrameClock
+from app.recognition.video_limits import VideoLimits
+
+__all__ = [
+    "FrameReader",
+    "VideoFrame",
+    "VideoInfo",
+    "VideoLimits",
+    "over_background",
+    "probe",
+    "read_frames",
+]
 
 CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts")
 """Names of the FFmpeg demuxers that may open a clip: what phones, action and dive cameras, screen
@@ -44,50 +55,6 @@ greater one holds); containers round, and sound may last a little longer than th
 
 MOST_STREAMS = 64
 """Streams that FFmpeg may set up; a film with every language of sound has fewer."""
-
-
-@dataclass(frozen=True)
-class VideoLimits:
-    """What a clip may cost, for a file of few bytes can hold 100 000 frames or one of 1 GB.
-
-    Attributes
-    ----------
-    pixels
-        Of one frame. The default takes the widest pictures of action cameras (5312 x 2988).
-    frames
-        Of one clip. The default takes `seconds` of 60 frames each.
-    seconds
-        Of one clip. A gesture lasts seconds; 15 minutes take a whole practice session.
-
-    """
-
-    pixels: int = 16_000_000
-    frames: int = 54_000
-    seconds: float = 900.0
-
-    def require_pixels(self, width: int, height: int) -> None:
-        """Raise VideoError when a frame is larger than allowed."""
-        if width * height > self.pixels:
-            raise VideoError(
-                f"frames are {width} x {height} pixels, more than the limit of "
-                f"{self.pixels / 1e6:g} million; export the clip in a smaller size"
-            )
-
-    def require_frames(self, frames: int) -> None:
-        """Raise VideoError when a clip has more frames than allowed."""
-        if frames > self.frames:
-            raise VideoError(
-                f"the clip has at least {frames} frames, more than the limit of {self.frames}; "
-                "cut out the part with the gestures"
-            )
-
-    def require_seconds(self, seconds: float) -> None:
-        """Raise VideoError when a clip lasts longer than allowed."""
-        if seconds > self.seconds:
-            raise VideoError(
-                f"the clip lasts at least {seconds:.0f} s, more than the limit of "
-                f"{self.seconds:g} s; cut out the part with the gestures"
-            )
 
 
 @dataclass(frozen=True)
