@@ -11,7 +11,7 @@ import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
 from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, SHOULDERS
-from app.recognition.outline import GAP, BinaryImage
+from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.salience import (
     MIN_DISPLACEMENT,
@@ -60,7 +60,7 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
         "simplification": SIMPLIFICATION,
         "min_extent": MIN_EXTENT,
         "max_moments": MAX_MOMENTS,
-        "outline_gap": GAP,
+        "closing_diameter": CLOSING_DIAMETER,
         "zernike_degree": DEGREE,
         "fourier_harmonics": HARMONICS,
     }

@@ -11,19 +11,22 @@ import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 
-GAP = 20
-"""Width in pixels of the gaps between strokes that are closed before the outline is taken.
+CLOSING_DIAMETER = 28
+"""Diameter in pixels of the disc that closes gaps between strokes before the outline is taken.
 
 Nobody ends a circle exactly where it began. Without closing, the outline of an almost closed
-circle runs along the inside of its stroke as well, and its area falls to that of the stroke.
-20 pixels are a tenth of the drawing, the closing error of a figure drawn freely in the air; on
-air-drawn digits of other people the vote gains 12 points over no closing.
+circle runs along the inside of its stroke as well, and its area falls to that of the stroke. This
+disc bridges ends of strokes up to 20 pixels apart, a tenth of the drawing, about the closing error
+of figures drawn freely in the air. On air-drawn digits (`benchmarks/shared_sets.py`,
+user-independent) closing gains 12 points.
 """
 
 BinaryImage = npt.NDArray[np.uint8]
 """``(height, width)``, 255 on a stroke, 0 elsewhere; x to the right, y down."""
 
-_CLOSING = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (GAP + 1, GAP + 1))
+_CLOSING = cv2.getStructuringElement(
+    cv2.MORPH_ELLIPSE, (CLOSING_DIAMETER + 1, CLOSING_DIAMETER + 1)
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +45,12 @@ class Outline:
 
     @classmethod
     def of(cls, image: BinaryImage) -> Outline:
-        """Close gaps up to `GAP` and follow the outer contours (Suzuki and Abe 1985)."""
+        """Close gaps and follow the outer contours (Suzuki and Abe 1985)."""
         # OpenCV counts what lies outside the image as stroke where it erodes.
-        padded = np.pad(image, GAP)
+        padded = np.pad(image, CLOSING_DIAMETER)
         closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, _CLOSING)
         found, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        contours = [contour[:, 0].astype(np.float64) - GAP for contour in found]
+        contours = [contour[:, 0].astype(np.float64) - CLOSING_DIAMETER for contour in found]
         return cls(tuple(sorted(contours, key=lambda contour: tuple(contour.mean(axis=0)))))
 
     @cached_property

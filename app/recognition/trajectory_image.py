@@ -17,15 +17,15 @@ SIZE = 224
 """Width and height in pixels: the published implementation's, so that its files can be read."""
 
 MARGIN = 16
-"""Empty border in pixels: room for half a stroke, and for closing a gap without touching it."""
+"""Border in pixels around the paths: room for half a stroke, and for people to see a frame."""
 
-STROKE_WIDTH = 5
-"""Pixels. About 1/40 of the drawing: wide enough for moments of area to be steady, narrow enough
-for the two passes of a figure eight to stay apart."""
+STROKE_WIDTH = 9
+"""Pixels. A twentieth of the drawing, the wobble of a hand in free air: two drawings of one figure
+then overlap, and moments of area vary less. Wider strokes would run together in small loops."""
 
-SIMPLIFICATION = 3.0
-"""Tolerance of Ramer-Douglas-Peucker in pixels: half a stroke, so nothing visible is lost and
-the jitter inside the stroke's width is."""
+SIMPLIFICATION = 4.0
+"""Tolerance of Ramer-Douglas-Peucker in pixels: just below half a stroke, so that no corner that
+can be seen is lost, and jitter within the stroke is."""
 
 MIN_EXTENT = 0.1
 """Least extent, in the trajectory's unit, that is drawn.

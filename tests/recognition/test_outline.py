@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from app.recognition.outline import GAP, BinaryImage, Outline
+from app.recognition.outline import BinaryImage, Outline
+from app.recognition.trajectory_image import STROKE_WIDTH
 
 
 def blank() -> BinaryImage:
@@ -15,7 +16,7 @@ def ring(missing: float) -> BinaryImage:
     """Draw a circle of radius 80 that lacks `missing` pixels of its circumference."""
     image = blank()
     degrees = np.degrees(missing / 80)
-    cv2.ellipse(image, (112, 112), (80, 80), 0, degrees, 360, 255, 5)
+    cv2.ellipse(image, (112, 112), (80, 80), 0, degrees, 360, 255, STROKE_WIDTH)
     return image
 
 
@@ -31,8 +32,8 @@ def test_the_area_of_a_filled_square() -> None:
 
 def test_an_almost_closed_circle_has_the_area_of_a_closed_one() -> None:
     closed = Outline.of(ring(missing=0)).area
-    assert Outline.of(ring(missing=GAP - 6)).area == pytest.approx(closed, rel=0.02)
-    assert Outline.of(ring(missing=4 * GAP)).area < closed / 4
+    assert Outline.of(ring(missing=20)).area == pytest.approx(closed, rel=0.02)
+    assert Outline.of(ring(missing=60)).area < closed / 4
 
 
 def test_contours_come_from_left_to_right() -> None:

@@ -12,7 +12,7 @@ HARMONICS = 10
 """Harmonics kept on either side of zero.
 
 The tenth has ten waves around the outline, a detail of about a tenth of the drawing; finer ones
-are jitter (paper: "low-frequency coefficients"). From 6 to 16 the accuracy hardly differs.
+are jitter (paper: "low-frequency coefficients").
 """
 
 SAMPLES = 256

@@ -7,11 +7,12 @@ from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import Drawing
 from app.recognition.voters.base import euclidean_distances
 
-FLOOR = 1e-4
+FLOOR = 1e-2
 """Magnitude below which an invariant counts as zero.
 
-Invariants of thin strokes lie between 1 and 1e-10; moving a stroke by one pixel changes those of
-symmetric figures, which are zero in theory, by about this much.
+Invariants of strokes lie between 1 and 1e-10. Those that are zero in theory, for symmetric
+figures, come out anywhere up to this when a person draws them, and on a plain logarithm their
+noise would outweigh the invariants that mean something.
 """
 
 

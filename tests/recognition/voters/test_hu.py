@@ -6,6 +6,7 @@ import pytest
 
 from app.recognition.poses import FloatArray
 from app.recognition.voters import HuMoments
+from app.recognition.voters.hu import FLOOR
 from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of, turned
 
 BETWEEN_FIGURES = 1.0
@@ -26,7 +27,7 @@ def test_the_first_invariant_of_a_known_figure() -> None:
     rows, columns = np.nonzero(drawing.image)
     spread = np.var(rows) + np.var(columns)  # (mu20 + mu02) / mu00 = eta * mu00
     first = spread / area
-    assert described(CIRCLE)[0] == pytest.approx(np.log10(1 + first / 1e-4), rel=1e-6)
+    assert described(CIRCLE)[0] == pytest.approx(np.log10(1 + first / FLOOR), rel=1e-6)
 
 
 @pytest.mark.parametrize("name", FIGURES)

@@ -40,7 +40,7 @@ def test_a_square_has_the_circularity_of_a_square() -> None:
 
 
 def test_a_wedge_is_hollow_and_a_disc_is_not() -> None:
-    assert Solidity().describe(drawing_of(FIGURES["wedge"]))[0] < 0.2
+    assert Solidity().describe(drawing_of(FIGURES["wedge"]))[0] < 0.25
 
 
 def test_a_zigzag_is_more_complex_than_a_wedge() -> None:
