@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -12,15 +10,15 @@ from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.messages import Failed
-from app.api.media_types import HEAD_BYTES, video_type
+from app.api.intake import client_of, examined, require_place_in_queue, take_in
 from app.api.problems import ProblemError, documented
+from app.api.ranges import keep_single_range
 from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView
-from app.api.studio import CurrentStudio, Studio
-from app.api.uploads import receive_file, shown_name
+from app.api.studio import CurrentStudio
+from app.api.uploads import receive_file
 from app.recognition.poses import PoseSequence
 from app.recognition.takes import takes_in
-from app.store import Clip, ClipWithJob, JobStatus
+from app.store import ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -29,6 +27,7 @@ TIME_DIGITS = 6
 """Decimals of a second: containers count in microseconds at the finest."""
 
 CONFIDENCE_DIGITS = 3
+"""Decimals of a confidence: the models' own rounding noise is larger."""
 
 _UPLOAD_FORM = {
     "requestBody": {
@@ -44,8 +43,6 @@ _UPLOAD_FORM = {
         },
     }
 }
-
-_SINGLE_RANGE = re.compile(r"bytes=(\d{1,18})-(\d{0,18})|bytes=-(\d{1,18})", re.ASCII)
 
 router = APIRouter(prefix="/clips", tags=["clips"])
 
@@ -72,30 +69,15 @@ async def upload_clip(
         async for _ in request.stream():
             pass
         return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
-    await _require_place_in_queue(request, studio)
+    await require_place_in_queue(request, studio)
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings)
-        clip = await _examined(partial, studio, name=upload.name, size=upload.size)
+        clip = await examined(partial, studio, name=upload.name, size=upload.size)
         clip.idempotency_key = idempotency_key
-        added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
+        return await take_in(clip, partial, studio, client_of(request))
     finally:
         partial.unlink(missing_ok=True)
-    return await _announced(studio, added)
-
-
-async def add_file(request: Request, studio: Studio, path: Path) -> ClipAccepted:
-    """Store a copy of a file of ours as a clip, as if it had been uploaded."""
-    await _require_place_in_queue(request, studio)
-    partial = studio.clips.new_partial()
-    try:
-        content = await run_in_threadpool(path.read_bytes)
-        await run_in_threadpool(partial.write_bytes, content)
-        clip = await _examined(partial, studio, name=shown_name(path.name), size=len(content))
-        added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
-    finally:
-        partial.unlink(missing_ok=True)
-    return await _announced(studio, added)
 
 
 @router.get("", responses=documented())
@@ -132,7 +114,7 @@ def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
 async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> ClipAccepted:
     """Extract the poses again, after a job that failed or was cancelled."""
     await run_in_threadpool(studio.clips.get, clip_id)
-    await _require_place_in_queue(request, studio)
+    await require_place_in_queue(request, studio)
     job = await run_in_threadpool(studio.jobs.retry, clip_id, client_of(request))
     if job is None:
         detail = "the poses of this clip are extracted, or are being extracted, already"
@@ -154,7 +136,7 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> C
 def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send the clip as it was uploaded, or a range of it."""
     clip = studio.clips.get(clip_id).clip
-    _keep_single_range(request, clip.size)
+    keep_single_range(request, clip.size)
     return FileResponse(
         studio.clips.video(clip_id),
         media_type=clip.media_type,
@@ -178,7 +160,7 @@ def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileRes
     poster = studio.clips.poster(clip_id)
     if not poster.is_file():
         raise ProblemError(404, "no_poster", "there is no still picture of this clip yet")
-    _keep_single_range(request, poster.stat().st_size)
+    keep_single_range(request, poster.stat().st_size)
     headers = {"Cache-Control": "private, max-age=3600"}
     return FileResponse(poster, media_type="image/jpeg", headers=headers)
 
@@ -206,11 +188,6 @@ def get_takes(clip_id: str, studio: CurrentStudio) -> list[TakeView]:
     ]
 
 
-def client_of(request: Request) -> str:
-    """Return the address that a queue limit counts by."""
-    return request.client.host[:64] if request.client else "local"
-
-
 def clip_view(found: ClipWithJob) -> ClipView:
     """Return what to tell about a clip."""
     clip, job = found.clip, found.job
@@ -222,90 +199,6 @@ def clip_view(found: ClipWithJob) -> ClipView:
         warnings=json.loads(job.warnings),
         job_id=job.id,
     )
-
-
-async def _require_place_in_queue(request: Request, studio: Studio) -> None:
-    most = studio.settings.max_jobs_per_client
-    if await run_in_threadpool(studio.jobs.count_open, client_of(request)) >= most:
-        raise ProblemError(
-            429,
-            "queue_full",
-            f"{most} clips are waiting already; try again when some of them are done",
-            headers={"Retry-After": "30", "Connection": "close"},
-        )
-
-
-async def _examined(partial: Path, studio: Studio, *, name: str, size: int) -> Clip:
-    """Look into a received file.
-
-    Raises
-    ------
-    ProblemError
-        415 when it is no video, 422 when it is one that cannot be read.
-
-    """
-    if size == 0:
-        raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
-    media_type = video_type(await run_in_threadpool(_head, partial))
-    if media_type is None:
-        raise ProblemError(
-            415,
-            "unsupported_media_type",
-            f"{name} is not a video this app knows, whatever its name says; "
-            "send MP4, MOV, WebM, MKV, AVI or MPEG-TS",
-        )
-    probed = await studio.runner.probe(partial)
-    if isinstance(probed, Failed):
-        raise ProblemError(422, probed.code, f"{name}: {probed.detail}")
-    return Clip(
-        name=name,
-        media_type=media_type,
-        size=size,
-        width=probed.width,
-        height=probed.height,
-        duration=probed.duration,
-        frames=probed.frames,
-    )
-
-
-def _head(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(HEAD_BYTES)
-
-
-async def _announced(studio: Studio, added: ClipWithJob) -> ClipAccepted:
-    await studio.runner.submit(added.job)
-    studio.broadcast.publish("clips", id=added.clip.id)
-    return ClipAccepted(id=added.clip.id, job_id=added.job.id)
-
-
-def _keep_single_range(request: Request, size: int) -> None:
-    """Leave one well-formed range to the response, and ignore all other kinds.
-
-    A server may ignore ranges it does not want to serve (RFC 9110, 14.2); a header of ten
-    thousand ranges then costs nothing.
-
-    Raises
-    ------
-    ProblemError
-        416 when the range begins behind the file's end.
-
-    """
-    header = request.headers.get("range")
-    match = _SINGLE_RANGE.fullmatch(header.strip()) if header else None
-    start, end, suffix = match.groups() if match else (None, None, None)
-    reversed_range = bool(start and end) and int(end or 0) < int(start or 0)
-    if match is None or reversed_range:
-        scope = request.scope
-        scope["headers"] = [pair for pair in scope["headers"] if pair[0].lower() != b"range"]
-        return
-    if (start is not None and int(start) >= size) or (suffix is not None and int(suffix) == 0):
-        raise ProblemError(
-            416,
-            "range_not_satisfiable",
-            f"the range {header!r} lies outside the {size} bytes of this file",
-            headers={"Content-Range": f"bytes */{size}"},
-        )
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
+
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.clips import add_file
+from app.api.intake import client_of, examined, require_place_in_queue, take_in
 from app.api.problems import ProblemError, documented
 from app.api.schemas import ClipAccepted, SampleChoice, SampleView
 from app.api.studio import CurrentStudio
+from app.api.uploads import shown_name
 
 router = APIRouter(prefix="/samples", tags=["samples"])
 
@@ -27,4 +30,12 @@ async def import_sample(
     samples = await run_in_threadpool(studio.samples.clips)
     if chosen.name not in samples:
         raise ProblemError(404, "not_found", f"there is no sample clip {chosen.name!r}")
-    return await add_file(request, studio, samples[chosen.name].path)
+    sample = samples[chosen.name]
+    await require_place_in_queue(request, studio)
+    partial = studio.clips.new_partial()
+    try:
+        await run_in_threadpool(shutil.copyfile, sample.path, partial)
+        clip = await examined(partial, studio, name=shown_name(sample.name), size=sample.size)
+        return await take_in(clip, partial, studio, client_of(request))
+    finally:
+        partial.unlink(missing_ok=True)

@@ -192,44 +192,6 @@ def test_a_deleted_clip_can_be_restored(client: httpx.Client, circle_clip: str) 
     assert client.get(f"{place}/takes").json() != []
 
 
-@pytest.mark.parametrize(
-    ("asked", "status", "content_range", "length"),
-    [
-        ("bytes=0-99", 206, "bytes 0-99/1024", 100),
-        ("bytes=1000-", 206, "bytes 1000-1023/1024", 24),
-        ("bytes=-24", 206, "bytes 1000-1023/1024", 24),
-        ("bytes=1000-9999", 206, "bytes 1000-1023/1024", 24),
-        ("bytes=5-2", 200, None, 1024),
-        ("bytes=x", 200, None, 1024),
-        ("lines=0-1", 200, None, 1024),
-        ("bytes=" + ",".join(f"{i}-{i}" for i in range(5000)), 200, None, 1024),
-    ],
-    ids=["first", "open", "last", "beyond", "reversed", "garbage", "unit", "thousands"],
-)
-def test_a_video_is_sent_in_ranges(
-    client: httpx.Client,
-    circle_clip: str,
-    asked: str,
-    status: int,
-    content_range: str | None,
-    length: int,
-) -> None:
-    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
-    assert answer.status_code == status
-    assert answer.headers.get("content-range") == content_range
-    assert len(answer.content) == length
-    assert answer.headers["content-type"] == "video/mp4"
-
-
-@pytest.mark.parametrize("asked", ["bytes=1024-", "bytes=99999-100000", "bytes=-0"])
-def test_a_range_outside_the_file_is_416(
-    client: httpx.Client, circle_clip: str, asked: str
-) -> None:
-    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
-    assert_problem(answer, 416, "range_not_satisfiable")
-    assert answer.headers["content-range"] == "bytes */1024"
-
-
 def test_what_users_gave_us_cannot_run_in_a_browser(client: httpx.Client, studio: Studio) -> None:
     clip_id = add_recorded_clip(studio, recording_of("line"), name='"><b>\u202e.mp4')
     headers = client.get(f"{CLIPS}/{clip_id}/video").headers

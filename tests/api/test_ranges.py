@@ -1,0 +1,45 @@
+"""Ranges of a video: what browsers ask for is served, what attackers ask for costs nothing."""
+
+import httpx
+import pytest
+
+from tests.api.running import assert_problem
+from tests.api.test_clips import CLIPS
+
+
+@pytest.mark.parametrize(
+    ("asked", "status", "content_range", "length"),
+    [
+        ("bytes=0-99", 206, "bytes 0-99/1024", 100),
+        ("bytes=1000-", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=-24", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=1000-9999", 206, "bytes 1000-1023/1024", 24),
+        ("bytes=5-2", 200, None, 1024),
+        ("bytes=x", 200, None, 1024),
+        ("lines=0-1", 200, None, 1024),
+        ("bytes=" + ",".join(f"{i}-{i}" for i in range(5000)), 200, None, 1024),
+    ],
+    ids=["first", "open", "last", "beyond", "reversed", "garbage", "unit", "thousands"],
+)
+def test_a_video_is_sent_in_ranges(
+    client: httpx.Client,
+    circle_clip: str,
+    asked: str,
+    status: int,
+    content_range: str | None,
+    length: int,
+) -> None:
+    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
+    assert answer.status_code == status
+    assert answer.headers.get("content-range") == content_range
+    assert len(answer.content) == length
+    assert answer.headers["content-type"] == "video/mp4"
+
+
+@pytest.mark.parametrize("asked", ["bytes=1024-", "bytes=99999-100000", "bytes=-0"])
+def test_a_range_outside_the_file_is_416(
+    client: httpx.Client, circle_clip: str, asked: str
+) -> None:
+    answer = client.get(f"{CLIPS}/{circle_clip}/video", headers={"Range": asked})
+    assert_problem(answer, 416, "range_not_satisfiable")
+    assert answer.headers["content-range"] == "bytes */1024"
