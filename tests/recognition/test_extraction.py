@@ -9,7 +9,6 @@ from app.recognition.errors import VideoError
 from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
 from app.recognition.extraction import extract_poses, record
 from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.recording import Recording
 from app.recognition.takes import takes_in
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.recognition.parametric_hand import hand_xy, salute
@@ -162,12 +161,3 @@ def test_a_real_diver_is_followed_in_every_frame(shared_data: Path) -> None:
     assert recording.poses.duration == pytest.approx(6.0, abs=0.01)
     assert recording.poses.seen.all(axis=1).mean() > 0.9
     assert takes_in(recording) == ()
-
-
-@pytest.mark.slow
-def test_a_recording_of_a_real_clip_survives_the_disk(shared_data: Path, tmp_path: Path) -> None:
-    saved = record(shared_data / "clips" / "slt_person205_front.mp4")
-    saved.save(tmp_path / "clip.npz")
-    loaded = Recording.load(tmp_path / "clip.npz")
-    assert loaded.poses == saved.poses
-    assert [len(hands) for hands in loaded.hands] == [len(hands) for hands in saved.hands]

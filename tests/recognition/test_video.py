@@ -262,7 +262,8 @@ def test_reading_stops_where_the_reader_is_closed(tmp_path: Path) -> None:
 def test_real_clips_keep_their_count_and_time(
     shared_data: Path, name: str, count: int, seconds: float
 ) -> None:
-    frames, warnings = read(shared_data / "clips" / name)
-    assert len(frames) == count
-    assert frames[-1].time == pytest.approx(seconds, abs=0.005)
-    assert warnings == ()
+    reader = read_frames(shared_data / "clips" / name)
+    times = [frame.time for frame in reader]
+    assert len(times) == count
+    assert times[-1] == pytest.approx(seconds, abs=0.005)
+    assert reader.warnings == ()
