@@ -28,11 +28,12 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 	$(BIN)/osg-studio models install
 
+# By file: the tests of one file share a server, a database or a recording.
 test: lint models  ## Check and test everything
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: $(VENV)/.development  ## Check style, types and layers
 	$(BIN)/ruff check .

@@ -39,7 +39,9 @@ addEventListener("securitypolicyviolation", (event) => {
 OpenPage = Callable[..., Page]
 
 
-@pytest.fixture(scope="session")
+# Not for the whole session: Playwright keeps an event loop running in this thread, and no test of
+# another package could start its own.
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Start Chromium; skip where there is none."""
     executable = shutil.which("chromium") or shutil.which("chromium-browser")
