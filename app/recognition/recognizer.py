@@ -148,7 +148,8 @@ def mean_relative_distances(distances: FloatArray) -> FloatArray:
     Returns
     -------
     ``(G,)``: the mean, over the voters that can compare anything, of a distance divided by that
-    voter's mean over all comparable gestures. 1 = as far as the average gesture; infinite where not comparable.
+    voter's mean over all comparable gestures. 1 = as far as the average gesture; infinite where
+    not comparable.
 
     """
     voting = distances[np.isfinite(distances).any(axis=1)]
