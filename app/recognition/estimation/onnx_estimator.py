@@ -15,10 +15,9 @@ from app.recognition.estimation.session import ModelSession, Provider, Signature
 from app.recognition.models import ModelName, model_path
 
 DEFAULT_THREADS: Final = 2
-"""One for the body and one for the hands: the two take about equally long and share nothing.
-
-That halves the time of a frame even on a two-core laptop, while two threads within a model's run
-save a tenth to a third of it. More threads than the machine has cores make nothing faster.
+"""One for the body and one for the hands, which share nothing: on the two cores of a laptop a frame
+takes as long as the slower of the two. Two threads within each model's run save at most a third of
+it, and threads beyond the machine's cores save nothing.
 """
 
 
