@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Self
 
 from platformdirs import user_data_path
-from pydantic import Field, SecretStr, model_validator
+from pydantic import AfterValidator, Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app import resources
@@ -25,12 +25,20 @@ def is_loopback(host: str) -> bool:
         return False
 
 
+def _absolute(path: Path) -> Path:
+    return path.expanduser().absolute()
+
+
+Place = Annotated[Path, AfterValidator(_absolute)]
+"""A folder; made absolute, since worker processes have another working directory."""
+
+
 class Settings(BaseSettings):
     """Settings of one server; every field can be given as ``OSG_<FIELD>`` in the environment."""
 
     model_config = SettingsConfigDict(env_prefix="OSG_", frozen=True, extra="forbid")
 
-    data_dir: Path = Field(
+    data_dir: Place = Field(
         default_factory=lambda: user_data_path("osg-studio", appauthor=False) / "studio"
     )
     """Folder of the database and the clips; made when missing."""
@@ -38,7 +46,7 @@ class Settings(BaseSettings):
     database_url: str | None = None
     """SQLAlchemy URL of another database; ``None`` is SQLite inside `data_dir`."""
 
-    samples_dir: Path = Field(default_factory=resources.samples_dir)
+    samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
 
     host: str = "127.0.0.1"

@@ -63,6 +63,15 @@ def test_the_environment_sets_what_arguments_do_not(
     assert settings.database == f"sqlite:///{tmp_path / 'studio.db'}"
 
 
+def test_a_folder_given_relatively_is_where_the_server_was_started(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert Settings(data_dir=Path("data")).data_dir == tmp_path / "data"
+    assert Settings(data_dir=Path("~/dives")).data_dir == tmp_path / "home" / "dives"
+
+
 def test_another_database_can_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OSG_DATABASE_URL", "postgresql://studio@db/studio")
     assert Settings().database == "postgresql://studio@db/studio"

@@ -78,6 +78,12 @@ class JobStore:
             session.add(job)
             return job
 
+    def is_running(self, job_id: str) -> bool:
+        """Tell whether a job was started and is neither over nor removed."""
+        with self._database.reading() as session:
+            job = session.get(Job, job_id)
+            return job is not None and job.status == JobStatus.RUNNING
+
     def requeue(self, job_id: str) -> None:
         """Put a running job back, because the server stops in good order."""
         with self._database.writing() as session:

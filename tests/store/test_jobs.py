@@ -40,6 +40,15 @@ def test_only_waiting_jobs_start(jobs: JobStore, job_id: str) -> None:
     assert jobs.start("no such job") is None
 
 
+def test_a_job_runs_from_its_start_to_its_end(jobs: JobStore, job_id: str) -> None:
+    assert not jobs.is_running(job_id)
+    jobs.start(job_id)
+    assert jobs.is_running(job_id)
+    jobs.finish(job_id, JobStatus.CANCELLED)
+    assert not jobs.is_running(job_id)
+    assert not jobs.is_running("no such job")
+
+
 def test_a_job_that_ran_when_the_server_died_waits_again(jobs: JobStore, job_id: str) -> None:
     jobs.start(job_id)
     assert [job.id for job in jobs.resume()] == [job_id]

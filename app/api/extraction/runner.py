@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from contextlib import aclosing
+from contextlib import aclosing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from app.api.extraction import process
 from app.api.extraction.messages import Failed, Finished, Probed, Progressed
 from app.api.extraction.queue import FairQueue
 from app.settings import Settings
-from app.store import ClipStore, Job, JobStatus, JobStore
+from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 
 MOST_PROBES = 2
 """Received files looked into at the same time: a hundred uploads must not be as many processes."""
@@ -120,8 +120,16 @@ class ExtractionRunner:
                     await self._supervise(job)
             except Exception:
                 # One job's trouble, such as a full disk, must not end the loop for all others.
-                # The job stays open in the database, and is run again at the next start.
                 logger.exception("job %s could not be run", job_id)
+                await self._give_up(job_id)
+
+    async def _give_up(self, job_id: str) -> None:
+        error = "the server could not keep what it found in this clip; try again"
+        # When not even that can be written, the next start runs the job again.
+        with suppress(StoreError):
+            await run_in_threadpool(
+                self._jobs.finish, job_id, JobStatus.FAILED, code="internal", error=error
+            )
 
     async def _supervise(self, job: Job) -> None:
         """Run one job in a task of its own, so that it can be cancelled alone."""
@@ -138,6 +146,8 @@ class ExtractionRunner:
         self._broadcast.publish("clips", id=job.clip_id)
 
     async def _extract(self, job: Job) -> None:
+        if not await run_in_threadpool(self._jobs.is_running, job.id):
+            return  # Cancelled after it was started and before it could be found here.
         self._show(job, Progress("starting"))
         messages = process.extract(
             self._clips.video(job.clip_id),
