@@ -54,20 +54,20 @@ def browser() -> Iterator[Browser]:
         browser.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """Return the settings of a fresh app with the samples that we ship."""
     return Settings(data_dir=tmp_path_factory.mktemp("studio"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def server(settings: Settings) -> Iterator[Running]:
-    """Serve the app to all browser tests: what a test needs it adds under names of its own."""
+    """Serve the app to the tests of one file: what a test needs it adds under names of its own."""
     with running(settings) as server:
         yield server
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def clips(settings: Settings) -> Path:
     """Return the folder of the sample clips; skip where no pose can be found for want of models."""
     missing = [model.name for model in installed_models() if model.state != "ok"]
