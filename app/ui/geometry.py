@@ -30,6 +30,10 @@ UNMARKED: Final = frozenset(name for names in LANDMARK_GROUPS.values() for name 
 """Drawn without a dot: eleven on a mask hide the face, three on a hand hide the fingers."""
 
 
+MAX_TRAIL_SEGMENTS = 600
+"""Segments of one trail, which is sent again for every frame: a long clip's is thinned out."""
+
+
 @dataclass(frozen=True, eq=False)
 class CubeGeometry:
     """A recording laid out in space and time.
@@ -78,27 +82,40 @@ class CubeGeometry:
         return self.back * seconds / self.seconds if self.seconds else 0.0
 
     def bones(self, frame: int) -> Points:
-        """Return ``(N, 2, 3)`` the bones of which both ends are seen."""
+        """Return ``(N, 2, 3)`` the bones of which both ends are in view."""
         index = {name: column for column, name in enumerate(self.landmarks)}
         pairs = [(index[a], index[b]) for a, b in SKELETON if a in index and b in index]
-        return _without_gaps(self.points[frame][np.array(pairs, dtype=int).reshape(-1, 2)])
+        points = self._in_view(self.points[frame])
+        return _without_gaps(points[np.array(pairs, dtype=int).reshape(-1, 2)])
 
     def joints(self, frame: int) -> Points:
-        """Return ``(N, 3)`` the landmarks seen in a frame, but those of face and fingers."""
+        """Return ``(N, 3)`` the landmarks in view, but those of face and fingers."""
         shown = [column for column, name in enumerate(self.landmarks) if name not in UNMARKED]
-        points = self.points[frame, shown]
+        points = self._in_view(self.points[frame, shown])
         return points[np.isfinite(points).all(axis=1)]
 
+    def trail_frames(self, stop: int | None = None) -> npt.NDArray[np.intp]:
+        """Return the frames at which a trail up to frame `stop` has its corners."""
+        last = len(self.depth) - 1 if stop is None else stop
+        step = max(1, -(-len(self.depth) // MAX_TRAIL_SEGMENTS))
+        return np.unique(np.append(np.arange(0, last + 1, step), last))
+
     def trail(self, landmark: str, stop: int | None = None) -> Points:
-        """Return ``(T - 1, 2, 3)`` a landmark's path up to frame `stop`, with NaN in its gaps."""
-        path = self.points[: None if stop is None else stop + 1, self.landmarks.index(landmark)]
+        """Return ``(N, 2, 3)`` a landmark's path up to frame `stop`, with NaN in its gaps."""
+        path = self.points[self.trail_frames(stop), self.landmarks.index(landmark)]
         return np.stack([path[:-1], path[1:]], axis=1)
 
     def quiet_trails(self, salient: tuple[str, ...]) -> Points:
-        """Return ``(N, 2, 3)`` the paths of arms, trunk and legs."""
+        """Return ``(N, 2, 3)`` the paths of arms, trunk and legs, where they are in view."""
         rest = [name for name in self.landmarks if name not in UNMARKED and name not in salient]
-        trails = [_without_gaps(self.trail(name)) for name in rest]
+        trails = [_without_gaps(self._in_view(self.trail(name))) for name in rest]
         return np.concatenate(trails) if trails else np.zeros((0, 2, 3), np.float32)
+
+    def _in_view(self, points: Points) -> Points:
+        """Turn points beside the video to NaN: the pose model guesses them, nobody saw them."""
+        x, y = np.abs(points[..., 0]), np.abs(points[..., 1])
+        inside = (x <= self.aspect / 2) & (y <= 0.5)
+        return np.where(inside[..., None], points, np.float32(np.nan))
 
     def rectangle(self, z: float) -> Points:
         """Return ``(4, 2, 3)`` the outline of the video at depth `z`."""

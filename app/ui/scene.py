@@ -138,7 +138,7 @@ class SpaceTimeCube:
         for name in self._salient:
             whole = cube.trail(name)
             known = seen(whole)
-            colours = self._segment_colours(len(whole))[known]
+            colours = self._segment_colours(cube.trail_frames())[known]
             ahead = DIM * colours + (1 - DIM) * np.array(self._theme.background)
             scene.add_line_segments(
                 f"/trails/{name}/ahead",
@@ -154,14 +154,15 @@ class SpaceTimeCube:
     def _bright_trail(
         self, cube: CubeGeometry, name: str, frame: int
     ) -> tuple[Points, npt.NDArray[np.uint8]]:
-        segments = cube.trail(name, max(frame, 1))
+        stop = min(max(frame, 1), len(cube.depth) - 1)
+        segments = cube.trail(name, stop)
         known = seen(segments)
-        colours = linear(self._segment_colours(len(segments)))
+        colours = linear(self._segment_colours(cube.trail_frames(stop)))
         return in_front(segments[known], "trail"), colours[known]
 
-    def _segment_colours(self, count: int) -> npt.NDArray[np.uint8]:
-        """``(count, 2, 3)`` sRGB at both ends of the first segments of a trail."""
-        colours = self._colours[: count + 1]
+    def _segment_colours(self, frames: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
+        """``(N, 2, 3)`` sRGB at both ends of the segments of a trail with corners at `frames`."""
+        colours = self._colours[frames]
         return np.stack([colours[:-1], colours[1:]], axis=1)
 
     def _draw_wall(self, cube: CubeGeometry, wall: Wall) -> None:

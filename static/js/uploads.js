@@ -1,6 +1,7 @@
 // Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
 
 import * as api from "./api.js";
+import { select } from "./clips.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { bytes, timeLeft } from "./format.js";
 import { importLanguage } from "./languages.js";
@@ -11,12 +12,18 @@ const AT_ONCE = 2; // More only share the same line, and each would finish later
 
 let counter = 0;
 
+/** An upload that has not begun; its key makes a repeated attempt the same clip. */
+const waiting = (file, first) => ({
+  key: `${Date.now()}-${Math.random().toString(36).slice(2)}-${counter++}`,
+  file, first, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null,
+});
+
 /** Take files in, whatever they are. */
 export function addFiles(files) {
   const added = [];
   for (const file of files) {
     if (/\.json$/i.test(file.name)) importLanguage(file);
-    else added.push({ key: `${Date.now()}-${Math.random().toString(36).slice(2)}-${counter++}`, file, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null });
+    else added.push(waiting(file, !added.length));
   }
   if (added.length) update({ uploads: [...state.uploads, ...added] });
   startNext();
@@ -41,7 +48,9 @@ async function start(upload) {
   try {
     const accepted = await call.done;
     forget(upload.key);
-    update({ clip: accepted.id, take: null, start: null, end: null, recognition: null, clips: await api.clips.list() });
+    update({ clips: await api.clips.list() });
+    // Of several files the first is shown; the others must not take its place one after the other.
+    if (upload.first) select(accepted.id);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
     else change(upload.key, { status: "failed", error: error.message });

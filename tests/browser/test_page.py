@@ -14,6 +14,7 @@ from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
+from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.slow
 
@@ -149,6 +150,20 @@ def test_a_dropped_language_file_is_imported_and_a_broken_one_explained(
     drop(page, bad)
     problem = page.get_by_role("alert").filter(has_text="Importing bad.json failed")
     expect(problem).to_contain_text("99")
+
+
+def test_of_several_dropped_clips_all_are_added_and_the_first_is_shown(
+    open_page: OpenPage, tmp_path: Path
+) -> None:
+    names = ("one.mp4", "two.mp4", "three.mp4")
+    page = open_page(scene=False)
+    drop(page, *(write_clip(tmp_path / name) for name in names))
+    for name in names:
+        expect(page.get_by_role("button", name=f"Show {name}")).to_be_visible()
+    expect(page.get_by_role("list", name="Uploads").get_by_role("listitem")).to_have_count(0)
+    expect(page.get_by_role("button", name="Show one.mp4")).to_have_attribute(
+        "aria-pressed", "true"
+    )
 
 
 def test_a_file_that_is_no_video_is_refused_with_the_reason(

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 
 from app.recognition import PoseSequence
 from app.recognition.landmarks import POSE_LANDMARKS
-from app.ui.geometry import DEPTH_LIMITS, DEPTH_PER_SECOND, CubeGeometry, seen
+from app.ui.geometry import (
+    DEPTH_LIMITS,
+    DEPTH_PER_SECOND,
+    MAX_TRAIL_SEGMENTS,
+    CubeGeometry,
+    seen,
+)
 from tests.api.recordings import recording_of
 
 
@@ -72,6 +78,25 @@ def test_a_trail_runs_from_the_start_to_the_frame_on_display() -> None:
     assert trail.shape == (7, 2, 3)
     np.testing.assert_array_equal(trail[:, 0], cube.points[:7, column])
     np.testing.assert_array_equal(trail[:, 1], cube.points[1:8, column])
+
+
+def test_the_trail_of_a_long_clip_is_thinned_out_but_ends_at_the_frame() -> None:
+    cube = cube_of(600.0, frames=15_000)
+    assert len(cube.trail("right_wrist")) <= MAX_TRAIL_SEGMENTS
+    np.testing.assert_array_equal(cube.trail("right_wrist", 7_777)[-1, 1], cube.points[7_777, 0])
+
+
+def test_landmarks_beside_the_video_are_guesses_and_not_drawn() -> None:
+    poses = recording_of("circle").poses
+    xy = poses.xy.copy()
+    xy[:, POSE_LANDMARKS.index("left_hip"), 1] = 600.0
+    beside = CubeGeometry.from_poses(
+        PoseSequence(landmarks=POSE_LANDMARKS, xy=xy, time=poses.time, frame_size=poses.frame_size)
+    )
+    inside = CubeGeometry.from_poses(poses)
+    assert len(beside.joints(0)) == len(inside.joints(0)) - 1
+    assert len(beside.bones(0)) == len(inside.bones(0)) - 2
+    assert len(beside.quiet_trails(())) < len(inside.quiet_trails(()))
 
 
 def test_a_gap_in_a_landmarks_path_is_a_gap_in_its_trail() -> None:

@@ -93,6 +93,14 @@ def test_a_clip_in_which_nobody_moves_is_shown_all_the_same(
         assert workspace.view == view
 
 
+def test_a_range_of_one_frame_is_a_picture(workspace: Workspace, tmp_path: Path) -> None:
+    view = view_in(tmp_path)
+    moment = float(view.recording.poses.time[14])
+    workspace.show(replace(view, start=moment, end=moment))
+    assert workspace.playback.frame == 0
+    assert workspace.playback.toggle() is False
+
+
 def test_views_in_quick_succession_end_with_the_last(workspace: Workspace, tmp_path: Path) -> None:
     view = view_in(tmp_path)
     workspace.playback.set_speed(4)
