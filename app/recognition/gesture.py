@@ -30,7 +30,8 @@ from app.recognition.trajectory_image import (
     draw,
 )
 from app.recognition.voters import PAPER_VOTERS, describe
-from app.recognition.voters.fourier import HARMONICS
+from app.recognition.voters.fourier import HARMONICS, SAMPLES
+from app.recognition.voters.hu import FLOOR
 from app.recognition.voters.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
@@ -61,7 +62,9 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
         "min_extent": MIN_EXTENT,
         "max_moments": MAX_MOMENTS,
         "closing_diameter": CLOSING_DIAMETER,
+        "hu_floor": FLOOR,
         "zernike_degree": DEGREE,
+        "fourier_samples": SAMPLES,
         "fourier_harmonics": HARMONICS,
     }
 )

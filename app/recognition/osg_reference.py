@@ -21,8 +21,8 @@ from app.recognition.outline import BinaryImage
 from app.recognition.strict_json import StrictJSONError, pointer_to, read_json
 from app.recognition.trajectory_image import SIZE
 
-MAX_FILE_BYTES = 512_000_000
-"""The published files take up to 850 kB a gesture, older ones three times as much."""
+MAX_FILE_BYTES = 100_000_000
+"""Over a hundred gestures: the published files take 850 kB each, the largest a few megabytes."""
 
 BACKGROUND_TOLERANCE = 25
 """Grey levels, a tenth of the range as in the published code: closer to the background is

@@ -94,18 +94,18 @@ def recording(
 
 @st.composite
 def strokes(draw: st.DrawFn) -> Shape:
-    """Draw smooth strokes about a torso length wide: sums of three random harmonics."""
+    """Draw smooth strokes a torso length wide or high: sums of three random harmonics."""
     generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     amplitudes = generator.normal(size=(3, 2, 2)) / np.array([1, 2, 3])[:, None, None]
-    amplitudes *= 0.5 / np.abs(amplitudes).sum(axis=(0, 2)).max()
     turns = generator.uniform(0.5, 1.0)
 
-    def stroke(share: FloatArray) -> FloatArray:
+    def waves(share: FloatArray) -> FloatArray:
         angles = 2 * np.pi * turns * share[:, None] * np.arange(1, 4)
-        waves = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        return np.asarray(np.einsum("thw,haw->ta", waves, amplitudes) + (-0.7, 0.0))
+        both = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        return np.asarray(np.einsum("thw,haw->ta", both, amplitudes))
 
-    return stroke
+    extent = np.ptp(waves(np.linspace(0, 1, 200)), axis=0).max()
+    return lambda share: waves(share) / extent + (-0.7, 0.0)
 
 
 @st.composite

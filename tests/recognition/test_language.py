@@ -146,6 +146,16 @@ def test_a_gesture_of_many_landmarks_takes_at_most_40_kilobytes() -> None:
     assert len(text.encode()) < KILOBYTES_A_GESTURE * 1000
 
 
+def test_descriptors_of_a_file_made_with_these_settings_are_taken_as_they_are(
+    language: Language,
+) -> None:
+    content = json.loads(language.to_json())
+    content["gestures"][0]["descriptors"]["hu"] = [0.5] * 7
+    del content["sha256"]
+    loaded = Language.from_json(json.dumps(content))
+    np.testing.assert_array_equal(loaded.gestures[0].descriptors["hu"], [0.5] * 7)
+
+
 def test_a_file_made_with_other_settings_is_described_anew(language: Language) -> None:
     content = json.loads(language.to_json())
     content["settings"]["stroke_width"] = 2
