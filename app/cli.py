@@ -206,12 +206,13 @@ def install_models_command(
     ] = None,
 ) -> None:
     """Obtain the models from MediaPipe's wheel by pip, once; they work offline afterwards."""
-    from app.recognition.models import install_models
+    from app.recognition.models import install_models, models_dir
 
     with progress_bar("models") as advance:
         install_models(
             progress=lambda stage, done, total: advance(done, total, stage), source=source
         )
+    people.print(f"all models are in {models_dir()}")
 
 
 @models_command.command("export")
