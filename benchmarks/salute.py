@@ -28,9 +28,9 @@ from tests.recognition.parametric_hand import labelled_hands
 
 Rule = Callable[[FloatArray], bool]
 
-MARGIN_SECONDS = 0.2
-"""Around the beginning and the end of a salute, where the hand changes its shape and nobody can
-say which frame is the first; these frames count neither way."""
+CHANGING_PHASES = ("raise", "transit", "lower")
+"""Phases of a clip in which the hand takes or gives up the salute's shape on its way; nobody can
+say which frame is the first, so these count neither way."""
 
 SURROUND = 1.5
 """Picture widths of plain background around a drawing that its hand fills: the palm detector
@@ -114,12 +114,10 @@ def _frames(
     clip: Path, phases: Sequence[tuple[str, float, float]], estimator: PoseEstimator
 ) -> Iterator[Picture]:
     recording = record(clip, estimator=estimator)
-    held = np.array([(start, end) for name, start, end in phases if name == "salute"])
     for time, hands in zip(recording.poses.time, recording.hands, strict=True):
-        # Seconds inside a salute, negative outside of all of them.
-        depth = max((min(time - start, end - time) for start, end in held), default=-np.inf)
-        if hands and abs(depth) >= MARGIN_SECONDS:
-            yield Picture(bool(depth > 0), tuple(hand.xy for hand in hands))
+        phase = next((name for name, start, end in phases if start <= time < end), None)
+        if hands and phase is not None and phase not in CHANGING_PHASES:
+            yield Picture(phase == "salute", tuple(hand.xy for hand in hands))
 
 
 def image_pictures(folder: Path, estimator: PoseEstimator) -> list[Picture]:
