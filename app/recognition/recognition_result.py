@@ -47,6 +47,12 @@ class Recognition:
     distances: FloatArray
     votes: Mapping[str, str]
 
+    def __post_init__(self) -> None:
+        """Freeze a private copy of the distances."""
+        distances = self.distances.copy()
+        distances.setflags(write=False)
+        object.__setattr__(self, "distances", distances)
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; a distance that is infinite becomes None."""
         return {

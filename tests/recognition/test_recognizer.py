@@ -94,6 +94,19 @@ def test_place_size_and_clock_change_no_distance(
     np.testing.assert_array_equal(after.distances, before.distances)
 
 
+@pytest.mark.parametrize("name", SHAPES)
+def test_twice_the_frame_rate_changes_less_than_another_gesture_would(
+    recognizer: Recognizer, name: str
+) -> None:
+    at_30 = recognizer.recognize(recording(SHAPES[name], frames=45, rate=30))
+    at_60 = recognizer.recognize(recording(SHAPES[name], frames=90, rate=60))
+    own = at_30.gestures.index(name)
+    assert at_60.label == at_30.label == name
+    changes = np.abs(at_60.distances - at_30.distances)[:, own]
+    others = np.delete(at_30.distances, own, axis=1).mean(axis=1)
+    assert (changes < others / 2).all()
+
+
 @given(recordings())
 def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
     recognizer: Recognizer, poses: PoseSequence

@@ -6,7 +6,7 @@ import pytest
 from app.recognition.trajectory_image import Drawing
 from app.recognition.voters import PAPER_VOTERS, Voter, describe
 from app.recognition.voters.base import DESCRIPTOR_DIGITS, euclidean_distances
-from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of
+from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of
 
 
 @pytest.mark.parametrize("voter", PAPER_VOTERS, ids=lambda voter: voter.name)
@@ -28,6 +28,22 @@ def test_a_voter_describes_strokes_a_pixel_wide(voter: Voter, pixels: int) -> No
     image = np.zeros((224, 224), dtype=np.uint8)
     image[100, 50 : 50 + pixels] = 255
     assert np.isfinite(voter.describe(Drawing(image))).all()
+
+
+def mirrored(drawing: Drawing) -> Drawing:
+    return Drawing(np.ascontiguousarray(drawing.image[:, ::-1]))
+
+
+def test_only_some_voters_see_the_difference_to_a_mirror_image() -> None:
+    six = drawing_of(SIX)
+    seen, mirror = (describe(drawing, PAPER_VOTERS) for drawing in (six, mirrored(six)))
+    change = {
+        voter.name: float(voter.distances(seen[voter.name], mirror[voter.name][None])[0])
+        for voter in PAPER_VOTERS
+    }
+    for blind in ("zernike", "aspect_ratio", "solidity", "circularity", "path_complexity"):
+        assert change[blind] == pytest.approx(0.0, abs=1e-5), blind
+    assert change["fourier"] > 0.1
 
 
 def test_voters_have_distinct_names_and_say_their_units() -> None:

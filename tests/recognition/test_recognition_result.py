@@ -1,0 +1,46 @@
+"""A result is plain data that cannot be changed afterwards."""
+
+import json
+
+import numpy as np
+import pytest
+
+from app.recognition import Recognition
+
+
+def result(label: str | None = "circle") -> Recognition:
+    return Recognition(
+        label=label,
+        nearest="circle",
+        confidence=0.75,
+        profile="paper",
+        voters=("hu", "zernike"),
+        gestures=("circle", "line"),
+        distances=np.array([[0.5, 2.0], [0.1, np.inf]]),
+        votes={"hu": "circle", "zernike": "circle"},
+    )
+
+
+def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -> None:
+    text = json.dumps(result().to_dict(), allow_nan=False)
+    assert json.loads(text) == {
+        "profile": "paper",
+        "label": "circle",
+        "nearest": "circle",
+        "confidence": 0.75,
+        "votes": {"hu": "circle", "zernike": "circle"},
+        "voters": ["hu", "zernike"],
+        "gestures": ["circle", "line"],
+        "distances": [[0.5, 2.0], [0.1, None]],
+    }
+
+
+def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:
+    rejected = result(label=None).to_dict()
+    assert rejected["label"] is None
+    assert rejected["nearest"] == "circle"
+
+
+def test_the_distances_of_a_result_cannot_be_changed() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        result().distances[0, 0] = 9.0
