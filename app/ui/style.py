@@ -75,6 +75,7 @@ PANEL_STYLE: Final = """<style>
 [data-dock-region-handle] > div:first-child { display: none !important; }
 [data-dock-strip] { padding-left: 4px; }
 [data-testid="floating-panel"] { top: auto !important; bottom: 16px !important;
+  left: calc(50% - 198px) !important; transform: translateX(-50%);
   width: min(640px, calc(100% - 428px)) !important; border-radius: 12px !important;
   border: 1px solid var(--osg-line);
   box-shadow: 0 6px 24px rgba(0, 0, 0, .22) !important; }
@@ -105,10 +106,10 @@ div:has(> .osg-player) ~ div:nth-child(5) button { min-width: 96px; }
 }
 /* The sheet that takes the panels' place on a phone is as wide as the phone. */
 div[style*="width: 20em"] { width: 100% !important; }
-@media (max-width: 560px) {
+@media (max-width: 860px) {
   div:has(> div > .osg-player) {
     grid-template: "slider slider" "play clock" "step step" "speed speed" / auto minmax(0, 1fr); }
-  div:has(> .osg-player) ~ div:nth-child(7) { padding-inline: 10px !important; }
+  div:has(> .osg-player) ~ div:nth-child(n+6) { padding-inline: 10px !important; }
 }
 </style>
 <i class="osg-player" hidden></i>"""

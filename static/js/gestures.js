@@ -89,8 +89,16 @@ export function drawGestures({ gestures, result }) {
     ? "No gestures yet. Select a take of a clip and press \u201cSave as gesture\u201d: one demonstration is enough."
     : "No language yet. Make one with +, or drop a language file (.json).";
   reconcile(byId("gestures"), members, (gesture) => gesture.label, draw);
+  drawExpected(members, result);
+}
+
+let shownResult = null;
+
+/** Offer the labels as what was meant; a recognition that is opened says it itself. */
+function drawExpected(members, result) {
   const expected = byId("expected");
-  const chosen = result?.expected ?? expected.value;
+  const told = result && result.id !== shownResult ? (result.expected ?? "") : expected.value;
+  shownResult = result?.id ?? null;
   expected.replaceChildren(h("option", { value: "" }, "not told"), ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)));
-  expected.value = members.some((gesture) => gesture.label === chosen) ? chosen : "";
+  expected.value = members.some((gesture) => gesture.label === told) ? told : "";
 }

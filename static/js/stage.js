@@ -113,6 +113,7 @@ export function drawOutcome({ result }) {
 export function drawStage() {
   const clip = selectedClip();
   byId("clip-bar").hidden = !clip;
+  document.title = clip ? `${clip.name} \u2013 OSG Studio` : "OSG Studio";
   if (!clip) return;
   const ready = clip.status === "done";
   byId("clip-name").textContent = clip.name;
