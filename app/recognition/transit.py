@@ -60,6 +60,10 @@ PAUSE = 0.1
 """Share of a neighbouring peak below which the hand pauses; of a minimum-jerk stroke this cuts off
 less than a hundredth of the way."""
 
+TREMOR = 0.05
+"""Torso lengths, corner to corner: 2.5 cm. A hand held still in the water drifts and trembles less;
+what is smaller is no movement, whatever its speed."""
+
 STRAIGHT_REACH = 0.85
 """Distance over way of a reach, at least. Reaches are straight within a few per cent; a half
 circle has 0.64, a quarter circle 0.90 but it is no whole piece of a gesture's stroke."""
@@ -220,10 +224,11 @@ def _pieces(motion: _Motion) -> list[_Piece]:
         valleys.pop(worst)
         peaks.pop(worst if speed[peaks[worst]] < speed[peaks[worst + 1]] else worst + 1)
     cuts = [0, *valleys, len(speed) - 1]
-    return [
+    pieces = [
         _without_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
         for i, peak in enumerate(peaks)
     ]
+    return [piece for piece in pieces if _extent(motion.xy[piece.first : piece.last + 1]) > TREMOR]
 
 
 def _allowed(motion: _Motion, valley: int) -> float:

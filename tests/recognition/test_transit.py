@@ -138,6 +138,28 @@ def test_raising_the_hand_into_the_salute_is_not_taken_for_the_reach() -> None:
     assert (found.start, found.end) == pytest.approx((moments[4], moments[5]), abs=0.2)
 
 
+def test_a_hand_that_drifts_while_it_salutes_has_not_set_out() -> None:
+    drifted = moved(SALUTE_PLACE, 0.02, 0.02)
+    performance = perform(
+        [
+            still(SALUTE_PLACE, 0.3),
+            Movement(drifted, 0.1),
+            still(drifted, 0.3),
+            Movement(TOP, 0.5),
+            still(TOP, 0.15),
+            Movement(circle(TOP), 1.6),
+            still(TOP, 0.15),
+            Movement(drifted, 0.5),
+            still(drifted, 0.3),
+            Movement(SALUTE_PLACE, 0.1),
+            still(SALUTE_PLACE, 0.3),
+        ]
+    )
+    moments = performance.moments
+    found = find_stroke(performance.poses, Span(0.0, moments[3]), Span(moments[-4], moments[-1]))
+    assert (found.start, found.end) == pytest.approx((moments[5], moments[6]), abs=0.2)
+
+
 def test_two_hands_that_set_out_together_are_followed_together() -> None:
     left_start = np.array([0.9, -0.3])
     pause = 0.15
