@@ -20,6 +20,9 @@ INPUT_SIZE: Final = 256
 LANDMARKS: Final = 39
 """The model's points: 33 landmarks, then the two that say where the body is, and four unused."""
 
+USED_LANDMARKS: Final = 35
+"""Of these, the ones read here: all but the last four."""
+
 HEATMAP_SIZE: Final = 64
 """Cells along a side of the heat maps."""
 
@@ -83,9 +86,10 @@ class BodyTracker:
         if not score >= LEAST_PRESENCE:
             self.reset()
             return None
-        points = raw.reshape(LANDMARKS, 5)
+        points = raw.reshape(LANDMARKS, 5)[:USED_LANDMARKS]
         unit = points[:, :2].astype(np.float64) / INPUT_SIZE
-        xy = region.to_image(refine(unit, heatmap[0]) * INPUT_SIZE, INPUT_SIZE)
+        refined = refine(unit, heatmap[0, :, :, :USED_LANDMARKS])
+        xy = region.to_image(refined * INPUT_SIZE, INPUT_SIZE)
         following = Region.aligned(xy[MID_HIPS], xy[REACH_POINT], MARGIN)
         if not following.usable:
             self.reset()

@@ -36,7 +36,10 @@ SAME_REGION: Final = 0.5
 
 PALM_SCALE: Final = 2.6
 PALM_SHIFT: Final = 0.5
-"""The whole hand's region from the palm's box: its side, and the shift to the fingers."""
+"""The whole hand's region from the palm's box: its side, and the shift towards the fingers.
+
+These two and the next two are what MediaPipe's landmark model was trained with.
+"""
 
 PALM_TURN: Final = 90 - 14 * 2 * math.pi - math.pi / 2
 """Radians, about 0.46: how far MediaPipe turns a palm's region beyond upright.
@@ -118,16 +121,17 @@ class HandTracker:
             if tracked is None or any(duplicates(tracked.hand, one.hand) for one in kept):
                 continue
             kept.append(tracked)
-        self._regions = tuple(one.following for one in kept)
+        self._regions = tuple(one.following for one in kept if one.following.usable)
         return tuple(sorted((one.hand for one in kept), key=lambda hand: -hand.size))
 
     def _candidates(self, image: Image) -> list[Region]:
         regions = list(self._regions)
         if len(regions) < MOST_HANDS:
             for proposal in self._propose(image):
-                if all(proposal.overlap(region) <= SAME_REGION for region in regions):
+                known = any(proposal.overlap(region) > SAME_REGION for region in regions)
+                if proposal.usable and not known:
                     regions.append(proposal)
-        return [region for region in regions[:MOST_HANDS] if region.usable]
+        return regions[:MOST_HANDS]
 
     def _landmarked(self, image: Image, region: Region) -> _Tracked | None:
         region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._landmarks.pixels)
@@ -177,8 +181,8 @@ def duplicates(one: Hand, other: Hand) -> bool:
 
 def _palm_size(xy: FloatArray) -> float:
     """Longest side of the triangle of wrist, index knuckle and little finger's knuckle."""
-    corners = xy[[WRIST, INDEX_KNUCKLE, PINKY_KNUCKLE]]
-    return float(np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).max())
+    sides = xy[[INDEX_KNUCKLE, PINKY_KNUCKLE, WRIST]] - xy[[WRIST, INDEX_KNUCKLE, PINKY_KNUCKLE]]
+    return float(np.hypot(sides[:, 0], sides[:, 1]).max())
 
 
 def _box(xy: FloatArray) -> FloatArray:

@@ -22,7 +22,8 @@ class MediaPipeEstimator:
     """Body and hands by MediaPipe's Tasks library on the processor; a `PoseEstimator`.
 
     The library looks up a logging host of its maker while it runs. It works without an answer;
-    where nothing may leave the machine, use `OnnxPoseEstimator`.
+    where nothing may leave the machine, use `OnnxPoseEstimator`. Of its scores the library keeps
+    some to itself: a body's is always 1, a hand's is the belief in its side.
 
     Parameters
     ----------
@@ -123,7 +124,7 @@ class MediaPipeEstimator:
 def _library() -> Any:
     try:
         return importlib.import_module("mediapipe")
-    except ImportError as error:
+    except (ImportError, OSError) as error:
         raise EstimatorError(
             f"the backend 'mediapipe' cannot be imported ({error}); "
             f"run `pip install 'osg-studio[mediapipe]'` or use the backend 'onnx'"
@@ -135,7 +136,6 @@ def _body(result: Any, size: FloatArray) -> Body | None:
         return None
     landmarks = result.pose_landmarks[0]
     visibility = np.array([point.visibility for point in landmarks], dtype=np.float64)
-    # The library keeps the presence of the whole body to itself: it is at least its threshold.
     return Body(_pixels(landmarks, size), visibility, score=1.0)
 
 

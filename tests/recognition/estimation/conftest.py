@@ -7,8 +7,8 @@ from typing import get_args
 
 import pytest
 
-from app.recognition.errors import ModelError
-from app.recognition.estimation import OnnxPoseEstimator
+from app.recognition.errors import EstimatorError, ModelError
+from app.recognition.estimation import MediaPipeEstimator, OnnxPoseEstimator
 from app.recognition.models import ModelName, model_path
 
 
@@ -35,3 +35,14 @@ def estimator(loaded_estimator: OnnxPoseEstimator) -> OnnxPoseEstimator:
     """Return an estimator that has seen nothing yet."""
     loaded_estimator.reset()
     return loaded_estimator
+
+
+@pytest.fixture(scope="session")
+def library(installed_models: None) -> Iterator[MediaPipeEstimator]:
+    """Return MediaPipe's own library; skip where it is not installed or does not start."""
+    try:
+        estimator = MediaPipeEstimator()
+    except EstimatorError as error:
+        pytest.skip(f"needs the extra `mediapipe`: {error}")
+    yield estimator
+    estimator.close()

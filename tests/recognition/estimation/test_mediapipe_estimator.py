@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +11,6 @@ from app.recognition.errors import EstimatorError
 from app.recognition.estimation import MediaPipeEstimator
 from app.recognition.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
-
-pytest.importorskip("mediapipe", reason="needs the extra `mediapipe`")
-
-
-@pytest.fixture(scope="module")
-def library(installed_models: None) -> Iterator[MediaPipeEstimator]:
-    estimator = MediaPipeEstimator()
-    yield estimator
-    estimator.close()
 
 
 @pytest.fixture(scope="module")

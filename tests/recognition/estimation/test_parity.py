@@ -23,7 +23,6 @@ from tests.recognition.estimation.agreement import (
 )
 from tests.recognition.estimation.clip_frames import clip_frames
 
-pytest.importorskip("mediapipe", reason="parity is measured against the extra `mediapipe`")
 pytestmark = pytest.mark.slow
 
 BODY_TOLERANCE, HAND_TOLERANCE = 1.5e-3, 1e-3
@@ -51,13 +50,6 @@ WITHOUT_BODY = "decord_pancake.mkv"
 @pytest.fixture(scope="module")
 def ours(installed_models: None) -> Iterator[OnnxPoseEstimator]:
     estimator = OnnxPoseEstimator()
-    yield estimator
-    estimator.close()
-
-
-@pytest.fixture(scope="module")
-def library(installed_models: None) -> Iterator[MediaPipeEstimator]:
-    estimator = MediaPipeEstimator()
     yield estimator
     estimator.close()
 
