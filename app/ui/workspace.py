@@ -6,6 +6,7 @@ import contextlib
 import io
 import secrets
 import time as clock
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
@@ -20,12 +21,15 @@ from app.recognition.poses import FloatArray
 from app.recognition.salience import salient_landmarks
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import Drawing, draw
+from app.ui.charts import readable
 from app.ui.filmstrip import Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.panels import Inspector, PlaybackBar, PlaybackControls
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube, Wall
 from app.ui.theme import DARK, LIGHT
+
+_PRINTING = Lock()
 
 FIRST_LOOK = 0.45
 """Share of a range at which it is first shown: half of the trail is behind it, half ahead, and
@@ -230,7 +234,7 @@ class Workspace:
         if view.recognition is None:
             self._inspector.show_undecided()
             return
-        images = _compared_images(view, shown.poses)
+        images = compared_images(view, shown.poses)
         self._inspector.show_decision(view.recognition, view.expected, images)
 
     def _draw(self, frame: int) -> None:
@@ -281,23 +285,39 @@ def _wall(
     return Wall(drawing, cube, salient, poses.torso_length(), poses.frame_size[1])
 
 
-def _compared_images(
+def compared_images(
     view: WorkspaceView, poses: PoseSequence
 ) -> list[tuple[str, npt.NDArray[np.uint8]]]:
-    """Return the images of this take, of the expected gesture and of the chosen one."""
+    """Return what a recognition compared, with captions.
+
+    The take is drawn as the recogniser drew it: with the salient landmarks of the gesture it is
+    held against. Where the expected and the chosen gesture differ in them, there are two drawings.
+    """
     assert view.recognition is not None
-    trajectory, _ = _salient_motion(view, poses)
-    images = [] if trajectory is None else [("this take", draw(trajectory).image)]
-    known = {
-        gesture.label: gesture for gesture in (view.language.gestures if view.language else ())
-    }
-    chosen = view.recognition.nearest
-    both = " and expected" if view.expected == chosen else ""
-    captions = [(chosen, f"{chosen} (chosen{both})")]
-    if view.expected is not None and not both:
-        captions.insert(0, (view.expected, f"{view.expected} (expected)"))
-    images += [(caption, known[label].image) for label, caption in captions if label in known]
-    return images
+    chosen, expected = view.recognition.nearest, view.expected
+    known = {gesture.label: gesture for gesture in view.language.gestures} if view.language else {}
+    captions = {chosen: f"{chosen} (chosen)"}
+    if expected == chosen:
+        captions = {chosen: f"{chosen} (chosen and expected)"}
+    elif expected is not None:
+        captions = {expected: f"{expected} (expected)", **captions}
+    shown = [(caption, known[label]) for label, caption in captions.items() if label in known]
+    sets = dict.fromkeys(gesture.salient for _, gesture in shown)
+    takes = [(_take_caption(names, sets), _drawn(poses, names)) for names in sets]
+    images = [(caption, image) for caption, image in takes if image is not None]
+    return images + [(caption, gesture.image) for caption, gesture in shown]
+
+
+def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
+    return "this take" if len(sets) == 1 else f"this take, {', '.join(map(readable, names))}"
+
+
+def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
+    """Draw a take's paths of the named landmarks; None when it has no such landmark."""
+    try:
+        return draw(Trajectory.from_poses(poses).select(names)).image
+    except PoseError:
+        return None
 
 
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
@@ -309,6 +329,11 @@ def _no_public_tunnel(*_: object, **__: object) -> None:
     """Stand in for viser's request for a public tunnel."""
 
 
-def _quiet() -> contextlib.redirect_stdout[io.StringIO]:
-    """Swallow the banner that viser prints even when told not to be verbose."""
-    return contextlib.redirect_stdout(io.StringIO())
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Swallow the banner that viser prints even when told not to be verbose.
+
+    One at a time: two redirections that overlap would leave the second one in place for good.
+    """
+    with _PRINTING, contextlib.redirect_stdout(io.StringIO()):
+        yield

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import socket
+import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseError
-from app.ui.workspace import Range, Workspace, first_look
+from app.ui.workspace import Range, Workspace, compared_images, first_look
 from tests.api.recordings import recording_of
 from tests.api.running import until
 from tests.ui.views import view_in
@@ -91,6 +93,43 @@ def test_a_clip_in_which_nobody_moves_is_shown_all_the_same(
         view = replace(view_in(tmp_path), recording=recording, start=None, end=None)
         workspace.show(view)
         assert workspace.view == view
+
+
+def test_what_was_compared_is_shown_with_its_captions(tmp_path: Path) -> None:
+    for expected, captions in {
+        None: ["this take", "circle (chosen)"],
+        "circle": ["this take", "circle (chosen and expected)"],
+        "line": ["this take", "line (expected)", "circle (chosen)"],
+        "gone": ["this take", "circle (chosen)"],
+    }.items():
+        view = view_in(tmp_path, recognised=True, expected=expected)
+        images = compared_images(view, Range.of(view).poses)
+        assert [caption for caption, _ in images] == captions
+        assert all(image.any() for _, image in images)
+
+
+def test_a_take_is_drawn_with_the_landmarks_of_each_gesture_it_is_held_against(
+    tmp_path: Path,
+) -> None:
+    view = view_in(tmp_path, recognised=True, expected="line")
+    assert view.language is not None
+    circle, line = view.language.gestures
+    both = replace(line, salient=("left_wrist", "right_wrist"))
+    view = replace(view, language=replace(view.language, gestures=[circle, both]))
+    images = compared_images(view, Range.of(view).poses)
+    assert [caption for caption, _ in images] == [
+        "this take, left wrist, right wrist",
+        "this take, right wrist",
+        "line (expected)",
+        "circle (chosen)",
+    ]
+
+
+def test_opening_and_closing_at_once_leaves_standard_output_alone() -> None:
+    before = sys.stdout
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: Workspace().close(), range(8)))
+    assert sys.stdout is before
 
 
 def test_a_range_of_one_frame_is_a_picture(workspace: Workspace, tmp_path: Path) -> None:
