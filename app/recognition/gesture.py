@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -19,6 +20,7 @@ from app.recognition.salience import (
     displacements,
     salient_landmarks,
 )
+from app.recognition.strict_json import read_json
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import (
     MARGIN,
@@ -36,6 +38,15 @@ from app.recognition.voters.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
 """Characters: more than fits on a gesture's card, far less than breaks a layout or a log line."""
+
+MAX_TEXT_LENGTH = 2000
+"""Characters of a description or of a command in words: a card, not a manual."""
+
+MAX_COMMAND_BYTES = 4000
+"""Size of a command object as JSON: parameters of an action, within the 40 kB of a gesture."""
+
+MAX_COMMAND_DEPTH = 16
+"""Nesting of a command object; with the file around it, still below what the reader admits."""
 
 MIN_FRAMES = 3
 """Two points are a straight line whatever was shown; a shape needs a third."""
@@ -120,8 +131,10 @@ class Gesture:
     command: str | dict[str, Any] | None = None
 
     def __post_init__(self) -> None:
-        """Check the label and the image, and freeze what could be changed."""
-        object.__setattr__(self, "label", _checked_label(self.label))
+        """Check texts, command and image, and freeze what could be changed."""
+        object.__setattr__(self, "label", checked_label(self.label))
+        object.__setattr__(self, "description", checked_text(self.description))
+        object.__setattr__(self, "command", checked_command(self.command))
         image = np.array(self.image, dtype=np.uint8)
         if image.shape != (SIZE, SIZE) or not np.isin(image, (0, 255)).all():
             raise GestureError(
@@ -166,7 +179,7 @@ class Gesture:
             When the recording is too short, nothing moves in it, or `salient` does not fit it.
 
         """
-        label = _checked_label(label)
+        label = checked_label(label)
         if len(poses) < MIN_FRAMES:
             raise GestureError(
                 f"the demonstration of {label!r} has {len(poses)} frames, a gesture needs at "
@@ -240,7 +253,15 @@ def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str
     return tuple(name for name in names if name in kept)
 
 
-def _checked_label(label: Any) -> str:
+def checked_label(label: Any) -> str:
+    """Return a label without white space around it.
+
+    Raises
+    ------
+    GestureError
+        When it is empty, longer than `MAX_LABEL_LENGTH` or not printable.
+
+    """
     if not isinstance(label, str) or not label.strip():
         raise GestureError(f"a gesture's label must be a word or a few, got {label!r}")
     if len(label) > MAX_LABEL_LENGTH or not label.isprintable():
@@ -249,6 +270,45 @@ def _checked_label(label: Any) -> str:
             f"got {label[:MAX_LABEL_LENGTH]!r} ({len(label)})"
         )
     return label.strip()
+
+
+def checked_text(text: Any) -> str:
+    """Return a description or a command in words.
+
+    Raises
+    ------
+    GestureError
+        When it is longer than `MAX_TEXT_LENGTH` or holds half a surrogate pair.
+
+    """
+    if not isinstance(text, str) or len(text) > MAX_TEXT_LENGTH:
+        size = f"{len(text)} characters" if isinstance(text, str) else repr(text)
+        raise GestureError(f"must be text of at most {MAX_TEXT_LENGTH} characters, got {size}")
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        raise GestureError("text with half a surrogate pair cannot be saved: write it again")
+    return text
+
+
+def checked_command(command: Any) -> str | dict[str, Any] | None:
+    """Return a command; an object is copied, so that nobody changes it later.
+
+    Raises
+    ------
+    GestureError
+        When it is neither text, an object of plain JSON, nor None, or beyond `MAX_TEXT_LENGTH`,
+        `MAX_COMMAND_BYTES` or `MAX_COMMAND_DEPTH`.
+
+    """
+    if command is None:
+        return None
+    if not isinstance(command, dict):
+        return checked_text(command)
+    try:
+        content = json.dumps(command).encode("ascii")
+        read: dict[str, Any] = read_json(content, MAX_COMMAND_BYTES, MAX_COMMAND_DEPTH)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise GestureError(f"a gesture's command must be plain JSON: {error}") from error
+    return read
 
 
 def _nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gesture import Gesture
+from app.recognition.gesture import Gesture, checked_command, checked_label
 from app.recognition.language_schema import GestureEntry, PathEntry, TrajectoryEntry
 from app.recognition.outline import BinaryImage
 from app.recognition.png import decode_png, encode_png
@@ -58,19 +58,17 @@ def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
         _check_salient(entry.salient, trajectory, pointer)
     if len(set(entry.salient)) < len(entry.salient):
         raise LanguageError("a landmark occurs twice", pointer + "/salient")
-    try:
-        return Gesture(
-            label=entry.label,
-            salient=tuple(entry.salient),
-            image=image,
-            trajectory=trajectory,
-            descriptors=_descriptors(entry, image, pointer + "/descriptors"),
-            thresholds=entry.thresholds,
-            description=entry.description,
-            command=entry.command,
-        )
-    except GestureError as error:
-        raise LanguageError(str(error), pointer + "/label") from error
+    _check_words(entry, pointer)
+    return Gesture(
+        label=entry.label,
+        salient=tuple(entry.salient),
+        image=image,
+        trajectory=trajectory,
+        descriptors=_descriptors(entry, image, pointer + "/descriptors"),
+        thresholds=entry.thresholds,
+        description=entry.description,
+        command=entry.command,
+    )
 
 
 def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
@@ -118,6 +116,15 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         time=np.array(entry.time),
         unit=entry.unit,
     )
+
+
+def _check_words(entry: GestureEntry, pointer: str) -> None:
+    """Check what the schema cannot say, so that the fault has its own pointer."""
+    for key, check in (("label", checked_label), ("command", checked_command)):
+        try:
+            check(getattr(entry, key))
+        except GestureError as error:
+            raise LanguageError(str(error), pointer + pointer_to(key)) from error
 
 
 def _check_salient(salient: list[str], trajectory: Trajectory, pointer: str) -> None:

@@ -14,7 +14,13 @@ from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
 from app.recognition.landmarks import SKELETON
 from app.recognition.language_file import read_document, write_document
-from app.recognition.language_schema import FORMAT, MAX_FILE_BYTES, VERSION, LanguageDocument
+from app.recognition.language_schema import (
+    FORMAT,
+    MAX_FILE_BYTES,
+    MAX_GESTURES,
+    VERSION,
+    LanguageDocument,
+)
 from app.recognition.strict_json import pointer_to
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
@@ -69,6 +75,10 @@ class Language:
         if self.revision < 1:
             raise LanguageError(f"revisions count from 1, got {self.revision}", "/revision")
         object.__setattr__(self, "gestures", tuple(self.gestures))
+        if len(self.gestures) > MAX_GESTURES:
+            raise LanguageError(
+                f"{len(self.gestures)} gestures, the limit is {MAX_GESTURES}", "/gestures"
+            )
         labels: set[str] = set()
         for index, gesture in enumerate(self.gestures):
             if gesture.label in labels:

@@ -81,6 +81,8 @@ def _check_kind(read: Any) -> None:
             "/format" if isinstance(read, dict) else "",
         )
     version = read.get("version")
+    if isinstance(version, bool):  # which Python takes for 0 or 1
+        raise LanguageError(f"must be a number, got {version}", "/version")
     if isinstance(version, int) and version > VERSION:
         raise LanguageError(
             f"version {version} is newer than this program reads ({VERSION}): update osg-studio",

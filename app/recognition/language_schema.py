@@ -11,6 +11,8 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
 
@@ -23,10 +25,8 @@ MAX_GESTURES = 1000
 MAX_FILE_BYTES = 64_000_000
 """1000 gestures of 40 kB, and half as much again for descriptions and commands."""
 
-MAX_TEXT_LENGTH = 2000
-"""Characters of a description or a command's text: a card, not a manual."""
-
-Name = Annotated[str, Field(min_length=1, max_length=80)]
+Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
+Landmark = Annotated[str, Field(min_length=1)]
 Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
 FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -38,7 +38,7 @@ class _Model(BaseModel):
 class PathEntry(_Model):
     """One landmark's path."""
 
-    landmark: Name
+    landmark: Landmark
     x: Annotated[
         list[FiniteFloat | None],
         Field(description="To the image's right, in `unit`, per moment; null = not seen."),
@@ -83,7 +83,7 @@ class GestureEntry(_Model):
         Field(description="What the robot should do: free text, an object, or null."),
     ]
     salient: Annotated[
-        list[Name],
+        list[Landmark],
         Field(description="Landmarks whose motion is the gesture; empty: it matches nothing."),
     ]
     trajectory: Annotated[
@@ -123,7 +123,7 @@ class LanguageDocument(_Model):
     ]
     revision: Annotated[int, Field(ge=1, description="Counts the edits, from 1.")]
     skeleton: Annotated[
-        list[Annotated[list[Name], Field(min_length=2, max_length=2)]],
+        list[Annotated[list[Landmark], Field(min_length=2, max_length=2)]],
         Field(description="Pairs of landmarks joined by a bone, for drawing."),
     ]
     settings: Annotated[

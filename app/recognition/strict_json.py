@@ -57,7 +57,7 @@ class _ObjectWithDuplicates(dict[str, Any]):
     duplicates: list[str]
 
 
-def read_json(content: bytes, max_bytes: int) -> Any:
+def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
     """Parse UTF-8 JSON that is neither huge nor deep nor ambiguous.
 
     Parameters
@@ -66,6 +66,8 @@ def read_json(content: bytes, max_bytes: int) -> Any:
         The file.
     max_bytes
         Largest size read.
+    max_depth
+        Deepest nesting read.
 
     Raises
     ------
@@ -76,10 +78,10 @@ def read_json(content: bytes, max_bytes: int) -> Any:
 
     """
     if len(content) > max_bytes:
-        size = f"{len(content) / 1e6:.0f} MB, the limit is {max_bytes / 1e6:.0f} MB"
+        size = f"{len(content):,} bytes, the limit is {max_bytes:,}"
         raise StrictJSONError([Fault("", f"the file is too large: {size}")])
-    if (depth := _depth(content)) > MAX_DEPTH:
-        raise StrictJSONError([Fault("", f"nested {depth} deep, the limit is {MAX_DEPTH}")])
+    if (depth := _depth(content)) > max_depth:
+        raise StrictJSONError([Fault("", f"nested {depth} deep, the limit is {max_depth}")])
     try:
         document = json.loads(
             content.decode("utf-8"), object_pairs_hook=_object, parse_int=_integer

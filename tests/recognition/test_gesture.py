@@ -82,6 +82,47 @@ def test_a_label_is_text_and_nothing_else(label: str) -> None:
     assert Gesture.from_demonstration(label, recording(circle)).label == label
 
 
+def deep(levels: int) -> dict[str, object]:
+    command: dict[str, object] = {}
+    for _ in range(levels):
+        command = {"then": command}
+    return command
+
+
+@pytest.mark.parametrize(
+    ("command", "complaint"),
+    [
+        (7, "must be text of at most 2000 characters, got 7"),
+        ("x" * 2001, "got 2001 characters"),
+        ("\ud800", "half a surrogate pair"),
+        ({"speed": float("nan")}, "plain JSON: /speed: not a number"),
+        ({"speed": 2**60}, "beyond 9007199254740991"),
+        ({"when": object()}, "not JSON serializable"),
+        ({"text": "\udc00"}, "surrogate"),
+        ({"text": "x" * 4000}, "too large"),
+        (deep(20), "nested 21 deep, the limit is 16"),
+        (deep(5000), "plain JSON"),
+    ],
+    ids=lambda value: repr(value)[:30] if not isinstance(value, dict) else "object",
+)
+def test_a_command_that_no_file_could_hold_is_refused(command: object, complaint: str) -> None:
+    with pytest.raises(GestureError, match=complaint):
+        Gesture.from_demonstration("circle", recording(circle), command=command)  # type: ignore[arg-type]
+
+
+def test_a_command_is_the_gestures_own_copy() -> None:
+    command = {"speed": 1, "then": ("stop", "wait")}
+    gesture = Gesture.from_demonstration("circle", recording(circle), command=command)
+    command["speed"] = 2
+    assert gesture.command == {"speed": 1, "then": ["stop", "wait"]}
+
+
+def test_a_description_that_no_file_could_hold_is_refused() -> None:
+    for description in ("x" * 2001, "\ud800"):
+        with pytest.raises(GestureError, match="text"):
+            Gesture.from_demonstration("circle", recording(circle), description=description)
+
+
 def test_an_image_of_another_kind_is_refused() -> None:
     for image in (np.zeros((100, 100)), np.full((224, 224), 7)):
         with pytest.raises(GestureError, match="must be 224 x 224 of 0 and 255"):

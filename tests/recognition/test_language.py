@@ -11,6 +11,7 @@ from hypothesis import given
 
 from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
 from app.recognition.gesture import MAX_LANDMARKS
+from app.recognition.language_schema import MAX_GESTURES
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "language.json"
@@ -58,6 +59,13 @@ def test_a_label_cannot_occur_twice() -> None:
     with pytest.raises(LanguageError, match="'circle' occurs twice: rename") as refusal:
         Language("pool", [gesture("circle"), gesture("line"), gesture("circle")])
     assert refusal.value.pointer == "/gestures/2/label"
+
+
+def test_a_language_beyond_what_its_file_may_hold_is_refused() -> None:
+    one = gesture("circle")
+    many = [replace(one, label=f"gesture {number}") for number in range(MAX_GESTURES + 1)]
+    with pytest.raises(LanguageError, match="1001 gestures, the limit is 1000"):
+        Language("many", many)
 
 
 @pytest.mark.parametrize(

@@ -128,6 +128,13 @@ def put_in_path(key: str, value: object) -> Change:
         (put_in_gesture("label", ""), "/gestures/0/label", "at least 1 character"),
         (put_in_gesture("label", "a\nb"), "/gestures/0/label", "printable"),
         (put_in_gesture("command", 7), "/gestures/0/command", "string"),
+        (
+            put_in_gesture("command", {"text": "x" * 5000}),
+            "/gestures/0/command",
+            "too large: 5,012 bytes",
+        ),
+        (put("version", True), "/version", "must be a number"),
+        (put("version", 1.5), "/version", "Input should be 1"),
         (put_in_gesture("mood", 7), "/gestures/0/mood", "Extra inputs"),
         (put_in_gesture("salient", ["tail"]), "/gestures/0/salient/0", "has no path"),
         (
