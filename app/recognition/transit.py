@@ -13,12 +13,13 @@ recognised, half a stroke is not.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.landmarks import SHOULDERS
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.trajectory import Trajectory
 
@@ -59,6 +60,13 @@ smoothing rounds a corner."""
 PAUSE = 0.1
 """Share of a neighbouring peak below which the hand pauses; of a minimum-jerk stroke this cuts off
 less than a hundredth of the way."""
+
+FRONTAL = 0.25
+"""Torso lengths between the shoulders in the image from which left and right can be told apart by
+them; seen from the side they are too near each other."""
+
+SHOULDERS_KEPT = 0.6
+"""Share of their usual distance in the image that the shoulders keep: turning by 50 degrees."""
 
 TREMOR = 0.05
 """Torso lengths, corner to corner: 2.5 cm. A hand held still in the water drifts and trembles less;
@@ -172,9 +180,10 @@ def _hand_motion(poses: PoseSequence) -> _Motion | None:
     """Follow the wrists that move, or return None where none does or none is seen."""
     count = int(np.ceil(poses.duration / GRID_STEP)) + 1
     wrists = [name for name in WRISTS if name in poses.landmarks]
-    if count < 3 or not any(np.isfinite(poses.column(name)).any() for name in wrists):
+    seen = _without_exchanged_sides(poses)
+    if count < 3 or not any(np.isfinite(seen.column(name)).any() for name in wrists):
         return None
-    trajectory = Trajectory.from_poses(poses).select(wrists).filled().resampled_in_time(count)
+    trajectory = Trajectory.from_poses(seen).select(wrists).filled().resampled_in_time(count)
     moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
     if not moving:
         return None
@@ -188,6 +197,25 @@ def _hand_motion(poses: PoseSequence) -> _Motion | None:
     )
     speed = np.linalg.norm(np.gradient(smooth, trajectory.time, axis=0), axis=1)
     return _Motion(time=trajectory.time + poses.time[0], xy=smooth, speed=speed, known=known)
+
+
+def _without_exchanged_sides(poses: PoseSequence) -> PoseSequence:
+    """Take out the frames in which the pose model took the left side for the right one.
+
+    Without a face in view it sometimes does, for a frame or more, and the smoothing blends the
+    frames beside it: there the shoulders cross, or come near each other.
+    """
+    length = poses.torso_length()
+    if length is None or not set(SHOULDERS) <= set(poses.landmarks):
+        return poses
+    across = poses.column(SHOULDERS[0])[:, 0] - poses.column(SHOULDERS[1])[:, 0]
+    usual = float(np.nanmedian(across)) if np.isfinite(across).any() else 0.0
+    if abs(usual) < FRONTAL * length:
+        return poses
+    exchanged = across * np.sign(usual) < SHOULDERS_KEPT * abs(usual)
+    xy = poses.xy.copy()
+    xy[exchanged] = np.nan
+    return replace(poses, xy=xy)
 
 
 def _extent(path: FloatArray) -> float:

@@ -263,6 +263,16 @@ def test_a_hand_lost_on_its_way_keeps_that_way() -> None:
     assert found.end == pytest.approx(true_stroke(performance).end, abs=0.2)
 
 
+@pytest.mark.parametrize("frame", [16, 17, 20])
+def test_a_frame_with_left_and_right_exchanged_does_not_split_a_reach(frame: int) -> None:
+    performance = gesture(STROKES["circle"])
+    xy = performance.poses.xy.copy()
+    xy[frame] = xy[frame][[1, 0, 3, 2, 5, 4]]
+    found = find_stroke(replace(performance.poses, xy=xy), *salutes(performance))
+    expected = stroke_of(performance)
+    assert (found.start, found.end) == pytest.approx((expected.start, expected.end), abs=0.1)
+
+
 def test_an_unclosed_take_loses_only_its_first_reach() -> None:
     performance = gesture(STROKES["circle"])
     first, _ = salutes(performance)
