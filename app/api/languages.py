@@ -70,7 +70,7 @@ def create_language(
     """Make an empty language."""
     language = Language(name=draft.name, author=draft.author)
     state = studio.languages.create(draft_of(language, "New language"), language.revision)
-    return answered(studio, state, response)
+    return announced(studio, state, response)
 
 
 @router.get("", responses=documented())

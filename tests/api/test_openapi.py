@@ -60,7 +60,7 @@ def test_no_request_breaks_the_server_or_the_description(
 ) -> None:
     @given(case=operation.as_strategy())
     @hypothesis_settings(
-        max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+        max_examples=8, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
     )
     def answer_as_described(case: schemathesis.Case[Any]) -> None:
         response = case.call(base_url=lasting_server.address, timeout=60)
