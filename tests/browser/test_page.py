@@ -10,7 +10,7 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running
+from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
@@ -62,6 +62,22 @@ def test_two_tabs_are_two_workspaces_and_hear_of_each_others_changes(
     second.get_by_role("button", name="Save", exact=True).click()
     for page in (first, second):
         expect(page.get_by_role("img", name="Trajectory of straight")).to_be_visible()
+
+
+def test_a_duplicated_tab_gets_a_workspace_of_its_own(open_page: OpenPage) -> None:
+    held = "sessionStorage.getItem('osg-studio.workspace')"
+    first = open_page(scene=False)
+    until(lambda: first.evaluate(held))
+    workspace = first.evaluate(held)
+    second = first.context.new_page()
+    second.add_init_script(
+        f"{held} || sessionStorage.setItem('osg-studio.workspace', '{workspace}')"
+    )
+    second.goto(first.url)
+    until(lambda: second.evaluate(held) != workspace)
+    first.reload()
+    expect(first.get_by_text("Connected")).to_be_visible()
+    assert first.evaluate(held) == workspace
 
 
 def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> None:
