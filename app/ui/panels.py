@@ -149,26 +149,11 @@ class Inspector:
             Times in seconds and confidence in [0, 1] of the frames on display.
 
         """
-        plots = []
-        for index, name in enumerate(trajectory.landmarks if trajectory else ()):
-            assert trajectory is not None
-            unit = "torso lengths" if trajectory.unit == "torso_length" else "of the extent"
-            path = trajectory.xy[:, index]
-            plots.append(
-                charts.line_chart(
-                    f"{charts.readable(name).capitalize()}, {unit}",
-                    trajectory.time + start,
-                    [
-                        charts.Curve("x, to the right", path[:, 0], "var(--osg-x)"),
-                        charts.Curve("y, upwards", -path[:, 1], "var(--osg-y)", dashed=True),
-                    ],
-                )
-            )
-        if not plots:
-            plots.append(
-                charts.hint("Nothing moves here", "No hand moves far enough to be a gesture.")
-            )
-        self._tracks.content = "".join(plots)
+        self._tracks.content = (
+            charts.hint("Nothing moves here", "No hand moves far enough to be a gesture.")
+            if trajectory is None
+            else "".join(_path_chart(trajectory, name, start) for name in trajectory.landmarks)
+        )
         self._salute.content = charts.line_chart(
             "Vulcan salute, confidence",
             salute[0],
@@ -176,3 +161,17 @@ class Inspector:
             bounds=(0.0, 1.0),
             height=56,
         )
+
+
+def _path_chart(trajectory: Trajectory, landmark: str, start: float) -> str:
+    """Plot one landmark's x and y over the seconds of the clip."""
+    path = trajectory.select([landmark]).xy[:, 0]
+    unit = "torso lengths" if trajectory.unit == "torso_length" else "of the longest extent"
+    return charts.line_chart(
+        f"{charts.readable(landmark).capitalize()}, {unit}",
+        trajectory.time + start,
+        [
+            charts.Curve("x, to the right", path[:, 0], "var(--osg-x)"),
+            charts.Curve("y, upwards", -path[:, 1], "var(--osg-y)", dashed=True),
+        ],
+    )

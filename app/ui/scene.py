@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import viser
 
-from app.recognition.trajectory_image import MARGIN, SIZE, Drawing
 from app.ui.geometry import CubeGeometry, Points, seen
 from app.ui.theme import Rgb, Theme, linear, time_colours
+from app.ui.wall import Wall
 
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""
@@ -223,45 +223,6 @@ class SpaceTimeCube:
             point_shading="flat",
             precision="float32",
         )
-
-
-class Wall:
-    """The trajectory image, placed behind the trails that it flattens.
-
-    Parameters
-    ----------
-    drawing
-        As the recogniser draws it.
-    cube
-        What it hangs behind.
-    salient
-        Landmarks it shows.
-    torso_length
-        In pixels of the video, None when the recording shows no torso.
-    frame_height
-        Of the video in pixels.
-
-    """
-
-    def __init__(
-        self,
-        drawing: Drawing,
-        cube: CubeGeometry,
-        salient: tuple[str, ...],
-        torso_length: float | None,
-        frame_height: int,
-    ) -> None:
-        self.image = drawing.image
-        paths = cube.points[:, [cube.landmarks.index(name) for name in salient], :2]
-        low, high = np.nanmin(paths, axis=(0, 1)), np.nanmax(paths, axis=(0, 1))
-        middle = (low + high) / 2
-        self.centre = (float(middle[0]), float(middle[1]))
-        extent = float((high - low).max())
-        if drawing.trajectory is not None and torso_length is not None:
-            xy = drawing.trajectory.xy
-            drawn = np.nanmax(xy, axis=(0, 1)) - np.nanmin(xy, axis=(0, 1))
-            extent = float(drawn.max()) * torso_length / frame_height
-        self.side = extent * SIZE / (SIZE - 1 - 2 * MARGIN)
 
 
 def in_front(points: Points, layer: str) -> Points:

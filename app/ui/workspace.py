@@ -20,14 +20,15 @@ from app.recognition.errors import PoseError
 from app.recognition.poses import FloatArray
 from app.recognition.salience import salient_landmarks
 from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import Drawing, draw
+from app.recognition.trajectory_image import draw
 from app.ui.charts import readable
 from app.ui.filmstrip import Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.panels import Inspector, PlaybackBar, PlaybackControls
 from app.ui.playback import Playback
-from app.ui.scene import SpaceTimeCube, Wall
+from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
+from app.ui.wall import Wall
 
 _PRINTING = Lock()
 
@@ -225,17 +226,18 @@ class Workspace:
         trajectory, salient = _salient_motion(view, shown.poses)
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
-            wall = _wall(drawing, cube, salient, shown.poses)
+            wall = Wall.behind(cube, shown.poses, salient, drawing)
         self._scene.show(cube, salient, wall)
         self._painted = -1
         return trajectory
 
     def _inspect(self, view: WorkspaceView, shown: Range) -> None:
-        if view.recognition is None:
+        recognition = view.recognition
+        if recognition is None:
             self._inspector.show_undecided()
             return
-        images = compared_images(view, shown.poses)
-        self._inspector.show_decision(view.recognition, view.expected, images)
+        images = compared_images(view, recognition, shown.poses)
+        self._inspector.show_decision(recognition, view.expected, images)
 
     def _draw(self, frame: int) -> None:
         """Draw a frame; called by the playback alone."""
@@ -279,22 +281,15 @@ def _salient_motion(
     return (trajectory.select(names), names) if names else (None, ())
 
 
-def _wall(
-    drawing: Drawing, cube: CubeGeometry, salient: tuple[str, ...], poses: PoseSequence
-) -> Wall:
-    return Wall(drawing, cube, salient, poses.torso_length(), poses.frame_size[1])
-
-
 def compared_images(
-    view: WorkspaceView, poses: PoseSequence
+    view: WorkspaceView, recognition: Recognition, poses: PoseSequence
 ) -> list[tuple[str, npt.NDArray[np.uint8]]]:
     """Return what a recognition compared, with captions.
 
     The take is drawn as the recogniser drew it: with the salient landmarks of the gesture it is
     held against. Where the expected and the chosen gesture differ in them, there are two drawings.
     """
-    assert view.recognition is not None
-    chosen, expected = view.recognition.nearest, view.expected
+    chosen, expected = recognition.nearest, view.expected
     known = {gesture.label: gesture for gesture in view.language.gestures} if view.language else {}
     captions = {chosen: f"{chosen} (chosen)"}
     if expected == chosen:

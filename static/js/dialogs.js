@@ -5,7 +5,7 @@ import { byId, h } from "./dom.js";
 /**
  * Ask for values.
  *
- * `fields` are `{ name, label, value, required, hint, multiline }`. `submit(values)` does the
+ * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
  * task; its error is shown in the dialog. Resolves to what `submit` returned, or null.
  */
 export function ask({ title, text = "", fields, action, submit, preview = null }) {
@@ -54,8 +54,8 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
 }
 
 function inputOf(field) {
-  const properties = { id: `field-${field.name}`, name: field.name, value: field.value ?? "", autocomplete: "off", required: Boolean(field.required) };
-  return field.multiline ? h("textarea", { ...properties, rows: 2 }) : h("input", { ...properties, type: "text", maxLength: 100 });
+  const properties = { id: `field-${field.name}`, name: field.name, value: field.value ?? "", autocomplete: "off", required: Boolean(field.required), maxLength: field.most ?? 2000 };
+  return field.multiline ? h("textarea", { ...properties, rows: 2 }) : h("input", { ...properties, type: "text" });
 }
 
 function rowOf(field, input) {

@@ -27,7 +27,7 @@ function rename(gesture) {
   return ask({
     title: "Change gesture",
     fields: [
-      { name: "label", label: "Label", value: gesture.label, required: true },
+      { name: "label", label: "Label", value: gesture.label, required: true, most: 80 },
       { name: "description", label: "Description", value: gesture.description, multiline: true },
       { name: "command", label: "Command", value: typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, ""), hint: "What the robot should do." },
     ],

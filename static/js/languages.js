@@ -37,7 +37,7 @@ export function newLanguage() {
   return ask({
     title: "New language",
     text: "A language is a set of gestures that one robot understands.",
-    fields: [{ name: "name", label: "Name", required: true, value: "My gestures" }],
+    fields: [{ name: "name", label: "Name", required: true, most: 200, value: "My gestures" }],
     action: "Create",
     submit: async ({ name }) => {
       const language = await api.languages.create(name);

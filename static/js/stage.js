@@ -55,7 +55,7 @@ async function saveGesture() {
     title: "Save as gesture",
     text: `One demonstration is enough. It is added to \u201c${state.gestures?.name ?? ""}\u201d.`,
     fields: [
-      { name: "label", label: "Label", required: true, hint: "What the recogniser answers: circle, ascend, follow me." },
+      { name: "label", label: "Label", required: true, most: 80, hint: "What the recogniser answers: circle, ascend, follow me." },
       { name: "description", label: "Description", multiline: true },
       { name: "command", label: "Command", hint: "What the robot should do." },
     ],

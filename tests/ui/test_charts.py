@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -107,8 +108,10 @@ def test_the_votes_are_also_told_as_sentences() -> None:
 
 
 def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
-    uncomparable = recognition()
-    uncomparable.distances[:, 2] = np.inf
+    plain = recognition()
+    distances = plain.distances.copy()
+    distances[:, 2] = np.inf
+    uncomparable = replace(plain, distances=distances)
     rows = Elements(charts.vote_table(uncomparable, None)).rows
     assert rows[-1] == ["line", *["\N{INFINITY}"] * 3, "0"]
 

@@ -10,10 +10,11 @@ import pytest
 import viser
 
 from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import MARGIN, SIZE, draw
+from app.recognition.trajectory_image import draw
 from app.ui.geometry import CubeGeometry
-from app.ui.scene import SpaceTimeCube, Wall, text_image
+from app.ui.scene import SpaceTimeCube, text_image
 from app.ui.theme import DARK, LIGHT
+from app.ui.wall import Wall
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 
@@ -34,17 +35,7 @@ def shown(tmp_path: Path) -> Range:
 
 def wall_behind(shown: Range) -> Wall:
     drawing = draw(Trajectory.from_poses(shown.poses).select(SALIENT))
-    cube = CubeGeometry.from_poses(shown.poses)
-    return Wall(drawing, cube, SALIENT, shown.poses.torso_length(), shown.poses.frame_size[1])
-
-
-def test_the_trajectory_image_hangs_behind_the_trail_it_flattens(shown: Range) -> None:
-    wall = wall_behind(shown)
-    wrist = CubeGeometry.from_poses(shown.poses).trail("right_wrist")[..., :2]
-    low, high = wrist.min(axis=(0, 1)), wrist.max(axis=(0, 1))
-    np.testing.assert_allclose(wall.centre, (low + high) / 2, atol=1e-3)
-    inside = wall.side * (SIZE - 1 - 2 * MARGIN) / SIZE
-    assert inside == pytest.approx(float((high - low).max()), rel=0.02)
+    return Wall.behind(CubeGeometry.from_poses(shown.poses), shown.poses, SALIENT, drawing)
 
 
 def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, shown: Range) -> None:

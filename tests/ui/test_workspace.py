@@ -103,7 +103,8 @@ def test_what_was_compared_is_shown_with_its_captions(tmp_path: Path) -> None:
         "gone": ["this take", "circle (chosen)"],
     }.items():
         view = view_in(tmp_path, recognised=True, expected=expected)
-        images = compared_images(view, Range.of(view).poses)
+        assert view.recognition is not None
+        images = compared_images(view, view.recognition, Range.of(view).poses)
         assert [caption for caption, _ in images] == captions
         assert all(image.any() for _, image in images)
 
@@ -112,11 +113,13 @@ def test_a_take_is_drawn_with_the_landmarks_of_each_gesture_it_is_held_against(
     tmp_path: Path,
 ) -> None:
     view = view_in(tmp_path, recognised=True, expected="line")
-    assert view.language is not None
-    circle, line = view.language.gestures
+    language, recognition = view.language, view.recognition
+    assert language is not None
+    assert recognition is not None
+    circle, line = language.gestures
     both = replace(line, salient=("left_wrist", "right_wrist"))
-    view = replace(view, language=replace(view.language, gestures=[circle, both]))
-    images = compared_images(view, Range.of(view).poses)
+    view = replace(view, language=replace(language, gestures=[circle, both]))
+    images = compared_images(view, recognition, Range.of(view).poses)
     assert [caption for caption, _ in images] == [
         "this take, left wrist, right wrist",
         "this take, right wrist",
