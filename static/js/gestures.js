@@ -4,7 +4,7 @@ import * as api from "./api.js";
 import { ask } from "./dialogs.js";
 import { byId, h, iconButton, reconcile } from "./dom.js";
 import { reloadLanguage } from "./languages.js";
-import { state, update } from "./state.js";
+import { selectedClip, state, update } from "./state.js";
 import { complain, toast } from "./toasts.js";
 
 /** Change the language; when someone else was faster, show theirs and say so. */
@@ -92,13 +92,23 @@ export function drawGestures({ gestures, result }) {
   drawExpected(members, result);
 }
 
-let shownResult = null;
+let shown = { result: null, clip: null };
+
+/** A clip called "circle-2.mp4" is probably meant as a circle; anyone can say otherwise. */
+function proposed(clip, members) {
+  const name = clip?.name.toLowerCase() ?? "";
+  const named = members.filter(({ label }) => name.startsWith(label.toLowerCase()) && !/^[a-z]/.test(name.slice(label.length)));
+  return named.sort((one, other) => other.label.length - one.label.length)[0]?.label ?? "";
+}
 
 /** Offer the labels as what was meant; a recognition that is opened says it itself. */
 function drawExpected(members, result) {
   const expected = byId("expected");
-  const told = result && result.id !== shownResult ? (result.expected ?? "") : expected.value;
-  shownResult = result?.id ?? null;
+  const clip = selectedClip();
+  let told = expected.value;
+  if (result && result.id !== shown.result) told = result.expected ?? "";
+  else if (clip?.id !== shown.clip) told = proposed(clip, members);
+  shown = { result: result?.id ?? null, clip: clip?.id };
   expected.replaceChildren(h("option", { value: "" }, "not told"), ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)));
   expected.value = members.some((gesture) => gesture.label === told) ? told : "";
 }

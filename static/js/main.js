@@ -52,7 +52,7 @@ function drawEverything() {
   follow(["samples", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExport);
-  follow(["gestures", "result"], drawGestures);
+  follow(["gestures", "result", "clip"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["result"], drawOutcome);
 }

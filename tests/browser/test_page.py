@@ -136,6 +136,25 @@ def test_a_range_can_be_chosen_by_hand_with_the_keyboard(
     expect(page.get_by_text("Take 1 of 1")).to_be_visible()
 
 
+def test_what_is_expected_is_proposed_by_the_clips_name_and_forgotten_with_it(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="line-test-1.mp4")
+    page = open_page(library.address, scene=False)
+    expected = page.get_by_label("Expected", exact=True)
+    expect(expected).to_be_enabled()
+    expect(expected).to_have_value("")
+    page.get_by_role("button", name="Show line-test-1.mp4").click()
+    expect(expected).to_have_value("line")
+    expected.select_option("circle")
+    page.get_by_role("button", name="Recognise").click()
+    outcome = page.locator("#outcome")
+    expect(outcome).to_contain_text("Taken for line, expected circle")
+    page.get_by_role("button", name=re.compile(r"^Show test_what.*(?<!line)\.mp4")).click()
+    expect(expected).to_have_value("")
+    expect(outcome).to_be_empty()
+
+
 def test_names_with_markup_are_text_everywhere(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
