@@ -77,7 +77,8 @@ def test_a_take_is_found_where_it_truly_is(
     sample_clips: Path, phases: dict[str, list[tuple[str, float, float]]], name: str
 ) -> None:
     recording = record(sample_clips / f"{name}.mp4")
-    assert recording.poses.seen.any(axis=1).mean() > 0.98
+    # Raised arms and a quick turn may cost a few frames; a second body would cost many more.
+    assert recording.poses.seen.any(axis=1).mean() > 0.9
     (take,) = takes_in(recording)
     first, second = [(start, end) for phase, start, end in phases[name] if phase == "salute"]
     (stroke,) = [(start, end) for phase, start, end in phases[name] if phase == "stroke"]
