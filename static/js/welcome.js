@@ -12,12 +12,19 @@ const STEPS = [
   ["Export", "Give the language to the robot as one JSON file."],
 ];
 
-const OFFERED = 8; // A few to begin with; all of them are in the library.
-
-/** Clips to recognise come first: the sample languages hold the demonstrations already. */
+/**
+ * A few clips to begin with, one of each kind; all of them are in the library. Those to recognise
+ * come first, since the sample languages hold the demonstrations already.
+ */
 function offered(samples) {
   const demonstrates = (sample) => sample.name.includes("demonstration");
-  return [...samples].sort((one, other) => demonstrates(one) - demonstrates(other)).slice(0, OFFERED);
+  const sorted = [...samples].sort((one, other) => demonstrates(one) - demonstrates(other));
+  const kinds = new Map();
+  for (const sample of sorted) {
+    const kind = sample.name.split("-")[0];
+    if (!kinds.has(kind)) kinds.set(kind, sample);
+  }
+  return [...kinds.values()];
 }
 
 function welcome(samples) {

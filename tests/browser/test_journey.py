@@ -72,6 +72,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
     expect(cards).to_have_count(8)
+    expect(page.locator("#welcome").get_by_role("button", name="circle test 1")).to_be_visible()
     picture(page, "start")
 
     # A clip is dropped, its poses arrive, its take is seen, and becomes a gesture.
