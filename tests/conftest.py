@@ -2,8 +2,12 @@
 
 import os
 from pathlib import Path
+from typing import get_args
 
 import pytest
+
+from app.recognition.errors import ModelError
+from app.recognition.models import ModelName, model_path
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
@@ -21,3 +25,13 @@ def shared_data() -> Path:
 def sample_clips() -> Path:
     """Return the folder of our own rendered sample clips."""
     return ROOT / "languages" / "clips"
+
+
+@pytest.fixture(scope="session")
+def installed_models() -> None:
+    """Skip where the models are not installed; `make test` installs them first."""
+    try:
+        for name in get_args(ModelName):
+            model_path(name)
+    except ModelError as error:
+        pytest.skip(f"needs the pose and hand models: {error}")

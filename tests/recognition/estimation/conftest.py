@@ -1,25 +1,13 @@
-"""What the tests of pose estimation share: the installed models and estimators made of them."""
+"""What the tests of pose estimation share: estimators made of the installed models."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import get_args
 
 import pytest
 
-from app.recognition.errors import EstimatorError, ModelError
+from app.recognition.errors import EstimatorError
 from app.recognition.estimation import MediaPipeEstimator, OnnxPoseEstimator
-from app.recognition.models import ModelName, model_path
-
-
-@pytest.fixture(scope="session")
-def installed_models() -> None:
-    """Skip where the models are not installed; `make test` installs them first."""
-    try:
-        for name in get_args(ModelName):
-            model_path(name)
-    except ModelError as error:
-        pytest.skip(f"needs the pose and hand models: {error}")
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,84 @@
+"""The sample languages and clips together: what a new user tries first works."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition import Gesture, Language, Recognizer, Take, find_takes
+from languages.build import FOLDER, LANGUAGES, TABLE_2
+
+pytestmark = pytest.mark.slow
+
+LABELS = tuple(entry.label for entry in TABLE_2)
+KINDS = ("demonstration", "test-1", "test-2")
+
+AT_LEAST = 12
+"""Of sixteen test takes by other divers, what profile `paper` must name correctly."""
+
+SAME_PATH = 0.02
+"""Torso lengths, about a centimetre of a diver: processors round differently, and tracking carries
+it along."""
+
+Takes = Mapping[str, tuple[Take, ...]]
+
+
+@pytest.fixture(scope="module")
+def takes(sample_clips: Path, installed_models: None) -> Takes:
+    names = [f"{label}-{kind}" for label in LABELS for kind in KINDS]
+    return {name: find_takes(sample_clips / f"{name}.mp4") for name in names}
+
+
+@pytest.fixture(scope="module")
+def table_2(takes: Takes) -> Language:
+    gestures = [
+        Gesture.from_demonstration(label, takes[f"{label}-demonstration"][0].poses)
+        for label in LABELS
+    ]
+    return Language(name="from clips", gestures=gestures)
+
+
+def test_every_clip_holds_exactly_one_closed_take(takes: Takes) -> None:
+    unlike = {name: found for name, found in takes.items() if [t.closed for t in found] != [True]}
+    assert unlike == {}
+
+
+def test_the_papers_voters_name_most_takes_of_other_divers(takes: Takes, table_2: Language) -> None:
+    recognizer = Recognizer(table_2, profile="paper")
+    named = {
+        name: recognizer.recognize(takes[name][0].poses).label
+        for name in takes
+        if not name.endswith("demonstration")
+    }
+    right = [name for name, label in named.items() if name.startswith(f"{label}-")]
+    assert len(named) == 16
+    assert len(right) >= AT_LEAST, named
+
+
+@pytest.mark.parametrize("stem", LANGUAGES)
+def test_the_shipped_file_is_what_its_clips_show(table_2: Language, stem: str) -> None:
+    shipped = Language.load(FOLDER / f"{stem}.json")
+    _, entries = LANGUAGES[stem]
+    assert shipped.labels == tuple(entry.label for entry in entries)
+    for gesture in shipped.gestures:
+        rebuilt = table_2.gesture(gesture.label)
+        assert gesture.salient == rebuilt.salient
+        assert gesture.trajectory is not None
+        assert rebuilt.trajectory is not None
+        np.testing.assert_allclose(
+            gesture.trajectory.select(gesture.salient).xy,
+            rebuilt.trajectory.select(gesture.salient).xy,
+            atol=SAME_PATH,
+        )
+
+
+def test_two_handed_sweep_follows_both_wrists(table_2: Language) -> None:
+    assert table_2.gesture("sweep").salient == ("left_wrist", "right_wrist")
+    assert table_2.gesture("circle").salient == ("right_wrist",)
+
+
+@pytest.mark.parametrize("stem", LANGUAGES)
+def test_a_gesture_takes_at_most_forty_kilobytes(stem: str) -> None:
+    file = FOLDER / f"{stem}.json"
+    assert file.stat().st_size <= 40_000 * len(Language.load(file).gestures)
