@@ -7,9 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.recognition.gesture import MAX_LABEL_LENGTH
+from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
-from app.recognition.language_schema import MAX_TEXT_LENGTH
 from app.store import JobStatus
 
 MOST_SECONDS = 24 * 60 * 60

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import secrets
 import time as clock
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
 import numpy as np
 import numpy.typing as npt
-import viser
 
 from app.recognition import Language, PoseSequence, Recognition, Recording
 from app.recognition.errors import PoseError
@@ -24,13 +21,12 @@ from app.recognition.trajectory_image import draw
 from app.ui.charts import readable
 from app.ui.filmstrip import Filmstrip
 from app.ui.geometry import CubeGeometry
+from app.ui.loopback import quiet, start_server
 from app.ui.panels import Inspector, PlaybackBar, PlaybackControls
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
 from app.ui.wall import Wall
-
-_PRINTING = Lock()
 
 FIRST_LOOK = 0.45
 """Share of a range at which it is first shown: half of the trail is behind it, half ahead, and
@@ -133,10 +129,7 @@ class Workspace:
         self._filmstrip: Filmstrip | None = None
         self._first = self._frames = 0
         self._painted = -1
-        with _quiet():
-            self._server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-        # Any client may ask for a public tunnel to this machine: there is none.
-        self._server.request_share_url = _no_public_tunnel  # type: ignore[method-assign]
+        self._server = start_server()
         self._configure_theme()
         self._scene = SpaceTimeCube(self._server, self._theme)
         self.playback = Playback(self._draw)
@@ -199,7 +192,7 @@ class Workspace:
         with self._lock:
             if self._filmstrip is not None:
                 self._filmstrip.close()
-            with _quiet():
+            with quiet():
                 self._server.stop()
 
     def _load(self, view: WorkspaceView, shown: Range) -> None:
@@ -318,17 +311,3 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return what of a view decides which frames and trails are shown."""
     return view.video, view.start, view.end, view.salient
-
-
-def _no_public_tunnel(*_: object, **__: object) -> None:
-    """Stand in for viser's request for a public tunnel."""
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Swallow the banner that viser prints even when told not to be verbose.
-
-    One at a time: two redirections that overlap would leave the second one in place for good.
-    """
-    with _PRINTING, contextlib.redirect_stdout(io.StringIO()):
-        yield

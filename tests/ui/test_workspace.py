@@ -8,13 +8,9 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from threading import Event
 
-import msgspec
 import numpy as np
 import pytest
-from websockets.sync.client import connect
-from websockets.typing import Subprotocol
 
 from app.recognition import PoseError
 from app.ui.workspace import Range, Workspace, compared_images, first_look
@@ -54,23 +50,6 @@ def test_its_server_listens_on_loopback_only(workspace: Workspace) -> None:
     # Another address of this machine: a server on all addresses would answer here.
     with pytest.raises(ConnectionRefusedError):
         socket.create_connection(("127.0.0.2", workspace.port), timeout=5)
-
-
-def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> None:
-    refused = Event()
-    tunnels: list[object] = []
-    monkeypatch.setattr("viser._viser.ViserTunnel", lambda *_: tunnels.append(1))
-    monkeypatch.setattr("app.ui.workspace._no_public_tunnel", lambda *_, **__: refused.set())
-    workspace = Workspace()
-    request = msgspec.msgpack.encode({"type": "ShareUrlRequest"})
-    url = f"ws://127.0.0.1:{workspace.port}"
-    try:
-        with connect(url, subprotocols=[Subprotocol("viser-v1.1.1")], proxy=None) as client:
-            client.send(request)
-            assert refused.wait(20)
-    finally:
-        workspace.close()
-    assert tunnels == []
 
 
 def test_showing_a_view_stands_where_past_and_future_are_seen(

@@ -1,0 +1,63 @@
+"""Who can talk to a workspace's viser server, and what they cannot ask of it."""
+
+from collections.abc import Iterator
+from threading import Event
+
+import msgspec
+import pytest
+import viser
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Origin, Subprotocol
+
+from app.ui import loopback
+
+PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    running = loopback.start_server()
+    yield running
+    running.stop()
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "http://127.0.0.1:8000", "null"])
+def test_a_page_cannot_reach_it_past_the_relay(server: viser.ViserServer, origin: str) -> None:
+    url = f"ws://127.0.0.1:{server.get_port()}"
+    with (
+        pytest.raises(InvalidStatus) as refused,
+        connect(url, origin=Origin(origin), subprotocols=[PROTOCOL], proxy=None),
+    ):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+def test_the_relay_reaches_it(server: viser.ViserServer) -> None:
+    url = f"ws://127.0.0.1:{server.get_port()}"
+    with connect(url, subprotocols=[PROTOCOL], proxy=None) as relay:
+        assert relay.subprotocol == PROTOCOL
+
+
+def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> None:
+    refused = Event()
+    tunnels: list[object] = []
+    monkeypatch.setattr("viser._viser.ViserTunnel", lambda *_: tunnels.append(1))
+    monkeypatch.setattr(loopback, "no_public_tunnel", lambda *_, **__: refused.set())
+    server = loopback.start_server()
+    request = msgspec.msgpack.encode({"type": "ShareUrlRequest"})
+    try:
+        url = f"ws://127.0.0.1:{server.get_port()}"
+        with connect(url, subprotocols=[PROTOCOL], proxy=None) as client:
+            client.send(request)
+            assert refused.wait(20)
+    finally:
+        server.stop()
+    assert tunnels == []
+
+
+def test_nothing_is_printed_for_a_workspace(capsys: pytest.CaptureFixture[str]) -> None:
+    server = loopback.start_server()
+    with loopback.quiet():
+        server.stop()
+    assert capsys.readouterr().out == ""
