@@ -38,3 +38,22 @@ def test_every_voter_is_documented() -> None:
     text = (ROOT / "docs" / "recognizer.md").read_text()
     voters = {voter.name for profile in PROFILES.values() for voter in profile}
     assert {voter for voter in voters if f"`{voter}`" not in text} == set()
+
+
+def test_every_setting_is_documented() -> None:
+    from app.settings import Settings
+
+    text = (ROOT / "docs" / "server.md").read_text()
+    assert {name for name in Settings.model_fields if f"`{name}`" not in text} == set()
+
+
+def test_every_command_is_documented() -> None:
+    from app.cli import command_line
+
+    pages = "".join(page.read_text() for page in PAGES)
+    names = [
+        command.callback.__name__
+        for command in command_line.registered_commands
+        if command.callback
+    ]
+    assert [name for name in names if f"osg-studio {name}" not in pages] == []
