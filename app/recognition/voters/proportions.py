@@ -1,5 +1,6 @@
 """Voters: the paper's four secondary ones, each a single proportion of the drawing."""
 
+from abc import ABC, abstractmethod
 from math import log2, pi
 
 import numpy as np
@@ -8,7 +9,7 @@ from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import Drawing
 
 
-class _Proportion:
+class _Proportion(ABC):
     """A voter whose descriptor is one number, compared by its difference (paper, Sec. IV-D2)."""
 
     def length(self, keypoints: int) -> int:
@@ -19,9 +20,9 @@ class _Proportion:
         """Return the proportion, ``(1,)``."""
         return np.array([self.measure(drawing)])
 
+    @abstractmethod
     def measure(self, drawing: Drawing) -> float:
         """Return the proportion of a drawing that has a stroke."""
-        raise NotImplementedError
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(G,)``."""
