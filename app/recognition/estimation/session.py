@@ -8,10 +8,7 @@ from typing import Any, Final, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
-import onnx
 import onnxruntime  # type: ignore[import-untyped]
-from google.protobuf.message import DecodeError  # type: ignore[import-untyped]
-from onnx.utils import Extractor
 
 from app.recognition.errors import EstimatorError, ModelError
 
@@ -84,11 +81,8 @@ class ModelSession:
         if not path.is_file():
             raise ModelError(f"no model file {path}; run `osg-studio models install`")
         self.input_size = signature.input_size
-        model = _read(path)
-        self._input, self._outputs = _matched(path, model, signature)
-        self._session = _started(
-            path, _reduced(model, self._input, self._outputs), threads, provider
-        )
+        self._session = _load(path, threads, provider)
+        self._input, self._outputs = _matched(path, self._session, signature)
         self._pixels = np.empty((self.input_size, self.input_size, 3), np.uint8)
         self._tensor = np.empty((1, self.input_size, self.input_size, 3), np.float32)
 
@@ -137,57 +131,7 @@ def available_providers() -> tuple[Provider, ...]:
     return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
 
 
-def _read(path: Path) -> onnx.ModelProto:
-    try:
-        return onnx.load(path)
-    except (DecodeError, OSError) as error:
-        raise _unloadable(path, error) from error
-
-
-def _unloadable(path: Path, error: Exception) -> ModelError:
-    reason = str(error).splitlines()[0]
-    return ModelError(f"{path} cannot be loaded ({reason}); run `osg-studio models install`")
-
-
-def _matched(path: Path, model: onnx.ModelProto, signature: Signature) -> tuple[str, list[str]]:
-    """Return the names of the input and of the outputs that the signature asks for."""
-    side = signature.input_size
-    inputs = [_shape(one) for one in model.graph.input]
-    if inputs != [(1, side, side, 3)]:
-        raise ModelError(
-            f"{path} takes {inputs}, expected (1, {side}, {side}, 3): it is another model; "
-            f"run `osg-studio models install`"
-        )
-    outputs = {one.name: _shape(one) for one in model.graph.output}
-    names = []
-    for wanted in signature.outputs:
-        name = next((name for name, shape in outputs.items() if shape == wanted), None)
-        if name is None:
-            raise ModelError(
-                f"{path} has no output of shape {wanted}: it is another model; "
-                f"run `osg-studio models install`"
-            )
-        del outputs[name]
-        names.append(name)
-    return model.graph.input[0].name, names
-
-
-def _shape(value: onnx.ValueInfoProto) -> tuple[int, ...]:
-    return tuple(size.dim_value for size in value.type.tensor_type.shape.dim)
-
-
-def _reduced(model: onnx.ModelProto, source: str, outputs: list[str]) -> onnx.ModelProto:
-    """Leave out of a model what none of the outputs needs.
-
-    ONNX Runtime computes every output of the file, asked for or not. The pose model's mask of
-    the person, which nobody looks at here, takes half of its time.
-    """
-    if len(outputs) == len(model.graph.output):
-        return model
-    return Extractor(model).extract_model([source], outputs)
-
-
-def _started(path: Path, model: onnx.ModelProto, threads: int, provider: Provider) -> Any:
+def _load(path: Path, threads: int, provider: Provider) -> Any:
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1
@@ -196,14 +140,37 @@ def _started(path: Path, model: onnx.ModelProto, threads: int, provider: Provide
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     chain = _RUNTIME_NAMES[provider]
     try:
-        session = onnxruntime.InferenceSession(
-            model.SerializeToString(), options, providers=list(chain)
-        )
+        session = onnxruntime.InferenceSession(str(path), options, providers=list(chain))
     except Exception as error:  # the runtime's exceptions share no base but Exception
-        raise _unloadable(path, error) from error
+        reason = str(error).splitlines()[0]
+        raise ModelError(
+            f"{path} cannot be loaded ({reason}); run `osg-studio models install`"
+        ) from error
     if chain[0] not in session.get_providers():
         raise EstimatorError(
             f"provider {provider!r} does not start here, its driver or libraries are missing; "
             f"use provider 'cpu'"
         )
     return session
+
+
+def _matched(path: Path, session: Any, signature: Signature) -> tuple[str, list[str]]:
+    """Return the names of the input and of the outputs that the signature asks for."""
+    inputs, outputs = session.get_inputs(), session.get_outputs()
+    side = signature.input_size
+    if len(inputs) != 1 or tuple(inputs[0].shape) != (1, side, side, 3):
+        raise ModelError(
+            f"{path} takes {[tuple(one.shape) for one in inputs]}, expected (1, {side}, {side}, 3):"
+            f" it is another model; run `osg-studio models install`"
+        )
+    names = []
+    for shape in signature.outputs:
+        match = next((one for one in outputs if tuple(one.shape) == shape), None)
+        if match is None:
+            raise ModelError(
+                f"{path} has no output of shape {shape}: it is another model; "
+                f"run `osg-studio models install`"
+            )
+        outputs = [one for one in outputs if one.name != match.name]
+        names.append(match.name)
+    return inputs[0].name, names

@@ -21,6 +21,7 @@ from app.recognition.models.catalogue import (
     MODELS,
     SOURCES,
     TASK_BUNDLES,
+    UNUSED_OUTPUTS,
     WHEEL,
     InstalledFile,
     credit,
@@ -141,7 +142,8 @@ def _install_from_wheel(
             LICENSE: partial(wheel.read, LICENSE_SOURCE)
         }
         for model, content in sources.items():
-            makers[MODELS[model]] = partial(to_onnx, content, schemas.model, credit(model))
+            unused = UNUSED_OUTPUTS.get(model, ())
+            makers[MODELS[model]] = partial(to_onnx, content, schemas.model, credit(model), unused)
         for bundle, models in BUNDLE_PARTS.items():
             parts = {name: sources[model] for name, model in models.items()}
             makers[TASK_BUNDLES[bundle]] = partial(task_bundle, parts, schemas)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from types import ModuleType
 from typing import Final
 
 import onnx
-from onnx import TensorProto, ValueInfoProto, helper
+from onnx import NodeProto, TensorProto, ValueInfoProto, helper
 
 from app.recognition.models.conversion.graph import GraphBuilder
 from app.recognition.models.conversion.operators import convert_operator
@@ -20,7 +21,7 @@ FILE_VERSION: Final = 8
 """ONNX file format version of the same age of runtime as the operator set, and later ones."""
 
 
-def to_onnx(tflite: bytes, schema: ModuleType, credit: str) -> bytes:
+def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[str] = ()) -> bytes:
     """Convert a TensorFlow Lite model.
 
     Inputs and outputs keep their names, shapes and order, images as batch, height, width,
@@ -35,6 +36,9 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str) -> bytes:
         The generated module of TensorFlow Lite's model schema.
     credit
         Origin and licence, kept in the model's description.
+    unused
+        Names of outputs to leave out, with all that only they need: ONNX Runtime computes every
+        output of a file, asked for or not.
 
     Returns
     -------
@@ -52,18 +56,21 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str) -> bytes:
         graph.set_value(index, model.tensors[index].name, "stored")
     for operator in model.operators:
         convert_operator(graph, operator)
-    for index in model.outputs:
+    outputs = tuple(i for i in model.outputs if model.tensors[i].name not in unused)
+    for index in outputs:
         name = model.tensors[index].name
         graph.nodes.append(
             helper.make_node("Identity", [graph.value(index, "stored")], [name], name=name)
         )
+    nodes = _needed(graph.nodes, {model.tensors[index].name for index in outputs})
+    read = {name for node in nodes for name in node.input}
     converted = helper.make_model(
         helper.make_graph(
-            graph.nodes,
+            nodes,
             "mediapipe",
             _described(model, model.inputs),
-            _described(model, model.outputs),
-            graph.weights,
+            _described(model, outputs),
+            [weight for weight in graph.weights if weight.name in read],
         ),
         opset_imports=[helper.make_opsetid("", OPERATOR_SET)],
         ir_version=FILE_VERSION,
@@ -73,6 +80,17 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str) -> bytes:
     onnx.checker.check_model(converted)
     content: bytes = converted.SerializeToString(deterministic=True)
     return content
+
+
+def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
+    """Return the nodes, which stand in the order of computation, that any wanted value needs."""
+    needed = []
+    wanted = set(wanted)
+    for node in reversed(nodes):
+        if wanted.intersection(node.output):
+            needed.append(node)
+            wanted.update(node.input)
+    return needed[::-1]
 
 
 def _described(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
