@@ -13,8 +13,13 @@ export async function reloadLanguages() {
   const languages = await attempt("Loading the languages", api.languages.list);
   if (!languages) return;
   const wanted = [state.language, localStorage.getItem(LAST)].find((id) => languages.some((each) => each.id === id));
-  update({ languages, language: wanted ?? languages[0]?.id ?? null });
+  update({ languages, language: wanted ?? richest(languages)?.id ?? null });
   await reloadLanguage();
+}
+
+/** The language with most gestures: on a first visit it knows what every sample clip shows. */
+function richest(languages) {
+  return languages.reduce((best, each) => (best && best.labels.length >= each.labels.length ? best : each), null);
 }
 
 /** Load the gestures of the language on display. */

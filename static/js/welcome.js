@@ -40,8 +40,10 @@ function welcome(samples) {
 
 function progressOf(clip, job) {
   const bar = h("progress", { "aria-label": "Progress", ...(job?.total ? { max: job.total, value: job.done } : {}) });
+  const poster = h("img", { className: "welcome-poster", src: api.clips.poster(clip.id), alt: "" });
+  poster.onerror = () => poster.remove(); // There is none before the clip's first frame was read.
   return [
-    h("img", { className: "welcome-poster", src: api.clips.poster(clip.id), alt: "" }),
+    poster,
     h("h1", {}, clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses"),
     bar,
     h("p", { className: "dim", role: "status" }, statusText(clip, job)),
