@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition.estimation import MediaPipeEstimator, OnnxPoseEstimator
+from tests.conftest import SHARED_DATA
 from tests.recognition.estimation.agreement import (
     Agreement,
     compare,
@@ -55,11 +56,11 @@ def ours(installed_models: None) -> Iterator[OnnxPoseEstimator]:
 
 
 @pytest.fixture(scope="module")
-def clips(shared_data: Path, sample_clips: Path) -> tuple[Path, ...]:
-    """Return all real clips and two of our own."""
+def clips(sample_clips: Path) -> tuple[Path, ...]:
+    """Return all real clips that lie at hand and two of our own."""
     shared = sorted(
         path
-        for path in (shared_data / "clips").iterdir()
+        for path in (SHARED_DATA / "clips").glob("*")
         if path.suffix in {".mp4", ".mkv", ".webm"}
     )
     return (*shared, *sorted(sample_clips.glob("*.mp4"))[::7][:2])
@@ -121,6 +122,7 @@ def test_tracking_stays_with_the_library_as_long_as_the_library_stays_with_itsel
     again.close()
 
 
-def test_no_bodies_are_invented(tracked: Mapping[str, Agreement]) -> None:
+def test_no_bodies_are_invented(tracked: Mapping[str, Agreement], shared_data: Path) -> None:
+    assert (shared_data / "clips" / WITHOUT_BODY).exists()
     mine, theirs = tracked[WITHOUT_BODY].bodies
     assert mine <= theirs * (1 + COUNT_TOLERANCE)
