@@ -1,0 +1,93 @@
+"""Elastic matching: how far sequences lie apart when each may run ahead of the other for a while.
+
+Dynamic time warping (Sakoe and Chiba 1978) between one query and many references at once. The
+recurrence goes along anti-diagonals, on which no cell depends on another one: each of the 2N - 1
+diagonals is one array operation over all references.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.poses import FloatArray
+
+
+def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
+    """Measure the cost of the best alignment of a query with each reference.
+
+    Parameters
+    ----------
+    query
+        ``(N, D)``, one vector a step. NaN: this component of the vector is not known; it is left
+        out, and what is known of the two vectors stands for the whole.
+    references
+        ``(M, N, D)``.
+    band
+        Most steps that one sequence may be ahead of the other (Sakoe and Chiba's window).
+
+    Returns
+    -------
+    ``(M,)``: squared Euclidean distances summed along the alignment over N, so that it does not
+    grow with the number of steps; infinite where nothing can be compared.
+
+    """
+    costs = _costs(query, references)
+    steps = len(query)
+    offsets = np.arange(-band, band + 1)
+    # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
+    total = np.full((2 * band + 3, len(references)), np.inf)
+    total[band + 1] = costs[0, 0]
+    for diagonal in range(1, 2 * steps - 1):
+        reach = min(band, diagonal, 2 * steps - 2 - diagonal)
+        offset = offsets[band - reach : band + reach + 1]
+        offset = offset[(offset + diagonal) % 2 == 0]
+        if not len(offset):
+            continue
+        # A row was last written two diagonals ago (both ran on), its neighbours one ago.
+        first, last = band + 1 + offset[0], band + 1 + offset[-1]
+        both = total[first : last + 1 : 2]
+        one = total[first - 1 : last : 2]
+        other = total[first + 1 : last + 2 : 2]
+        best = np.minimum(both, np.minimum(one, other))
+        total[first : last + 1 : 2] = (
+            best + costs[(diagonal + offset) // 2, (diagonal - offset) // 2]
+        )
+    return np.asarray(total[band + 1] / steps, dtype=np.float64)
+
+
+def _costs(query: FloatArray, references: FloatArray) -> FloatArray:
+    """Squared distances ``(N, N, M)`` of every step of the query to every one of the references."""
+    if np.isfinite(query).all() and np.isfinite(references).all():
+        return _without_rounding(_squares(query, references))
+    known, others_known = np.isfinite(query), np.isfinite(references)
+    left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
+    mask, others_mask = known.astype(np.float64), others_known.astype(np.float64)
+    squares = (
+        _products(left**2, others_mask) + _products(mask, right**2) - 2.0 * _products(left, right)
+    )
+    compared = _products(mask, others_mask)
+    scale = np.divide(
+        query.shape[1], compared, out=np.full_like(compared, np.inf), where=compared > 0
+    )
+    return _without_rounding(np.where(compared > 0, squares, 1.0) * scale)
+
+
+def _squares(query: FloatArray, references: FloatArray) -> FloatArray:
+    """|q - r|^2 = (-2q, |q|^2, 1) . (r, 1, |r|^2): a single matrix product."""
+    left = np.concatenate([-2 * query, (query**2).sum(1)[:, None], np.ones((len(query), 1))], 1)
+    norms = (references**2).sum(axis=2)[..., None]
+    right = np.concatenate([references, np.ones_like(norms), norms], axis=2)
+    return _products(left, right)
+
+
+def _products(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Inner products ``(N, N, M)`` of the vectors of ``(N, D)`` and ``(M, N, D)``."""
+    count, steps, size = right.shape
+    columns = np.ascontiguousarray(right.transpose(2, 1, 0)).reshape(size, steps * count)
+    return (left @ columns).reshape(len(left), steps, count)
+
+
+def _without_rounding(squares: FloatArray) -> FloatArray:
+    """Undo, in place, what rounding leaves of differences of nearly equal sums."""
+    squares[squares < 1e-12] = 0.0
+    return squares

@@ -1,0 +1,87 @@
+"""Elastic matching: the laws of dynamic time warping, against a plain loop."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.recognition.elastic import elastic_distances
+from app.recognition.poses import FloatArray
+
+
+def plain_loop(query: FloatArray, reference: FloatArray, band: int) -> float:
+    """Sakoe and Chiba's recurrence, cell by cell."""
+    steps = len(query)
+    total = np.full((steps + 1, steps + 1), np.inf)
+    total[0, 0] = 0.0
+    for i in range(steps):
+        for j in range(max(0, i - band), min(steps, i + band + 1)):
+            before = min(total[i, j], total[i, j + 1], total[i + 1, j])
+            total[i + 1, j + 1] = ((query[i] - reference[j]) ** 2).sum() + before
+    return float(total[-1, -1] / steps)
+
+
+@st.composite
+def sequences(draw: st.DrawFn, count: int) -> FloatArray:
+    """Draw `count` sequences of the same length and dimension."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    shape = (count, draw(st.integers(1, 12)), draw(st.integers(1, 4)))
+    return generator.normal(size=shape).cumsum(axis=1)
+
+
+@given(sequences(4), st.integers(0, 15))
+def test_it_equals_the_plain_loop(drawn: FloatArray, band: int) -> None:
+    expected = [plain_loop(drawn[0], reference, band) for reference in drawn[1:]]
+    np.testing.assert_allclose(elastic_distances(drawn[0], drawn[1:], band), expected, atol=1e-9)
+
+
+@given(sequences(1), st.integers(0, 15))
+def test_a_sequence_is_at_distance_zero_from_itself(drawn: FloatArray, band: int) -> None:
+    assert elastic_distances(drawn[0], drawn, band)[0] == 0.0
+
+
+@given(sequences(2), st.integers(0, 15))
+def test_it_is_symmetric(drawn: FloatArray, band: int) -> None:
+    there = elastic_distances(drawn[0], drawn[1:], band)
+    back = elastic_distances(drawn[1], drawn[:1], band)
+    np.testing.assert_allclose(there, back, atol=1e-9)
+
+
+@given(sequences(2), st.integers(0, 6))
+def test_it_is_the_same_from_end_to_start(drawn: FloatArray, band: int) -> None:
+    forward = elastic_distances(drawn[0], drawn[1:], band)
+    backward = elastic_distances(drawn[0, ::-1], drawn[1:, ::-1], band)
+    np.testing.assert_allclose(forward, backward, atol=1e-9)
+
+
+@given(sequences(2), st.integers(0, 6))
+def test_a_wider_band_never_costs_more(drawn: FloatArray, band: int) -> None:
+    narrow = elastic_distances(drawn[0], drawn[1:], band)
+    assert elastic_distances(drawn[0], drawn[1:], band + 1)[0] <= narrow[0] + 1e-9
+
+
+@given(st.integers(0, 8), st.integers(0, 2**32 - 1))
+def test_a_delay_within_the_band_costs_nothing(delay: int, seed: int) -> None:
+    path = np.random.default_rng(seed).normal(size=(20, 2)).cumsum(axis=0)
+    early = np.concatenate([path, np.repeat(path[-1:], delay, axis=0)])
+    late = np.concatenate([np.repeat(path[:1], delay, axis=0), path])
+    assert elastic_distances(early, late[None], delay)[0] == pytest.approx(0.0, abs=1e-9)
+    if delay:
+        assert elastic_distances(early, late[None], delay - 1)[0] > 0.0
+
+
+def test_a_component_that_is_not_known_is_left_out() -> None:
+    generator = np.random.default_rng(3)
+    query, references = generator.normal(size=(9, 4)), generator.normal(size=(2, 9, 4))
+    hidden = references.copy()
+    hidden[1, :, 2:] = np.nan
+    distances = elastic_distances(query, hidden, 3)
+    assert distances[0] == pytest.approx(elastic_distances(query, references, 3)[0])
+    half = elastic_distances(query[:, :2], references[1:, :, :2], 3)[0]
+    assert distances[1] == pytest.approx(2 * half)
+
+
+def test_nothing_in_common_is_infinitely_far() -> None:
+    query = np.array([[0.0, np.nan], [1.0, np.nan]])
+    references = np.array([[[np.nan, 0.0], [np.nan, 1.0]], [[0.0, 0.0], [1.0, 0.0]]])
+    np.testing.assert_array_equal(elastic_distances(query, references, 1), [np.inf, 0.0])
