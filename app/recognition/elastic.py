@@ -31,7 +31,7 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     grow with the number of steps; infinite where nothing can be compared.
 
     """
-    costs = _costs(query, references)
+    costs = squared_distances(query, references)
     steps = len(query)
     offsets = np.arange(-band, band + 1)
     # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
@@ -55,10 +55,21 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     return np.asarray(total[band + 1] / steps, dtype=np.float64)
 
 
-def _costs(query: FloatArray, references: FloatArray) -> FloatArray:
-    """Squared distances ``(N, N, M)`` of every step of the query to every one of the references."""
+def squared_distances(query: FloatArray, references: FloatArray) -> FloatArray:
+    """Measure the squared distance of every step of the query to every step of the references.
+
+    Parameters
+    ----------
+    query, references
+        ``(N, D)`` and ``(M, N, D)``, with NaN as for `elastic_distances`.
+
+    Returns
+    -------
+    ``(N, N, M)``, infinite where nothing can be compared.
+
+    """
     if np.isfinite(query).all() and np.isfinite(references).all():
-        return _without_rounding(_squares(query, references))
+        return _without_rounding(_complete(query, references))
     known, others_known = np.isfinite(query), np.isfinite(references)
     left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
     mask, others_mask = known.astype(np.float64), others_known.astype(np.float64)
@@ -72,7 +83,7 @@ def _costs(query: FloatArray, references: FloatArray) -> FloatArray:
     return _without_rounding(np.where(compared > 0, squares, 1.0) * scale)
 
 
-def _squares(query: FloatArray, references: FloatArray) -> FloatArray:
+def _complete(query: FloatArray, references: FloatArray) -> FloatArray:
     """|q - r|^2 = (-2q, |q|^2, 1) . (r, 1, |r|^2): a single matrix product."""
     left = np.concatenate([-2 * query, (query**2).sum(1)[:, None], np.ones((len(query), 1))], 1)
     norms = (references**2).sum(axis=2)[..., None]

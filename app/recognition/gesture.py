@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
-from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, SHOULDERS
+from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS
 from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.salience import (
@@ -248,7 +248,9 @@ def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str
     """Choose the landmarks worth keeping, in the trajectory's order."""
     names = trajectory.landmarks
     upper = [name for name in names if name in _UPPER_BODY and name not in salient]
-    others = [] if upper else [name for name in names if name not in salient]
+    # Of a set with legs and a face only the arms count; names of other sets may all be arms.
+    known = frozenset(POSE_LANDMARKS) if upper else frozenset()
+    others = [name for name in names if name not in salient and name not in known]
     kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
     return tuple(name for name in names if name in kept)
 

@@ -3,43 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from app.recognition.calibrated_vote import VOTERS, CalibratedVote
 from app.recognition.errors import LanguageError, PoseError, RecognitionError
-from app.recognition.gesture import Gesture, condensed
+from app.recognition.gesture import condensed
 from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recognition_result import Recognition
+from app.recognition.shape_references import ShapeReferences
 from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import draw
-from app.recognition.voters import PAPER_VOTERS, Voter, describe
+from app.recognition.voters import PAPER_VOTERS
 
-PROFILES: dict[str, tuple[Voter, ...]] = {"paper": PAPER_VOTERS}
-"""The voters of each profile. ``paper``: the seven of the paper, majority vote, no rejection."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Ballot:
-    """All gestures with the same salient keypoints: one drawing of the query serves them.
-
-    Attributes
-    ----------
-    salient
-        Names of the keypoints.
-    members
-        Indices of the gestures in the language.
-    references
-        Per voter ``(len(members), D)`` descriptors.
-
-    """
-
-    salient: tuple[str, ...]
-    members: npt.NDArray[np.intp]
-    references: dict[str, FloatArray]
+PROFILES: dict[str, tuple[str, ...]] = {
+    "paper": tuple(voter.name for voter in PAPER_VOTERS),
+    "full": VOTERS,
+}
+"""The voters of each profile. ``paper``: the seven of the paper, majority vote, no rejection.
+``full``: also the movement itself, by calibrated distances."""
 
 
 class Recognizer:
@@ -70,17 +52,18 @@ class Recognizer:
             raise LanguageError(f"language {language.name!r} has no gestures yet: add one", "")
         self.language = language
         self.profile = profile
-        self._voters = PROFILES[profile]
-        self._ballots = _ballots(language.gestures, self._voters)
+        self._shapes = ShapeReferences(language.gestures)
+        self._calibrated = (
+            CalibratedVote(language.gestures, self._shapes) if profile == "full" else None
+        )
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.
 
-        The query is drawn and described once per distinct set of salient keypoints in the
-        language, whatever the number of gestures; the distances to all of them are array
-        operations. Each voter votes for its nearest gesture. The gesture with most votes wins;
-        among equals the one with the smallest mean relative distance (a voter's distance over
-        its mean distance to all gestures), among those the first in the language.
+        Profile ``paper``: each voter votes for its nearest gesture. The gesture with most votes
+        wins; among equals the one with the smallest mean relative distance (a voter's distance
+        over its mean distance to all gestures), among those the first in the language.
+        Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`.
 
         Raises
         ------
@@ -89,37 +72,23 @@ class Recognizer:
 
         """
         trajectory = condensed(Trajectory.from_poses(poses))
-        distances = np.full((len(self._voters), len(self.language.gestures)), np.inf)
-        for ballot in self._ballots:
-            self._judge(trajectory, ballot, distances)
+        distances = self._shapes.distances(trajectory)
         if not np.isfinite(distances).any():
-            needed = sorted({name for ballot in self._ballots for name in ballot.salient})
             raise PoseError(
                 f"nothing to compare: of the landmarks that the gestures of "
-                f"{self.language.name!r} need ({', '.join(needed)}), none moves in this recording"
+                f"{self.language.name!r} need ({', '.join(self._shapes.needed)}), none moves in "
+                f"this recording"
             )
+        if self._calibrated is not None:
+            return self._calibrated.recognize(trajectory, distances)
         return self._counted(distances)
-
-    def _judge(self, trajectory: Trajectory, ballot: _Ballot, distances: FloatArray) -> None:
-        """Fill in the distances ``(V, G)`` to the gestures of one ballot."""
-        if not set(ballot.salient) <= set(trajectory.landmarks):
-            return
-        query = trajectory.select(ballot.salient)
-        if not np.isfinite(query.xy).all(axis=2).any(axis=0).all():
-            return  # a salient keypoint is never seen
-        descriptors = describe(draw(query), self._voters)
-        for row, voter in enumerate(self._voters):
-            if voter.name in descriptors:
-                distances[row, ballot.members] = voter.distances(
-                    descriptors[voter.name], ballot.references[voter.name]
-                )
 
     def _counted(self, distances: FloatArray) -> Recognition:
         """Count the votes that follow from distances ``(V, G)``."""
         gestures = tuple(gesture.label for gesture in self.language.gestures)
         votes = {
             voter.name: int(row.argmin())
-            for voter, row in zip(self._voters, distances, strict=True)
+            for voter, row in zip(PAPER_VOTERS, distances, strict=True)
             if np.isfinite(row).any()
         }
         count = Counter(votes.values())
@@ -130,7 +99,7 @@ class Recognizer:
             nearest=gestures[winner],
             confidence=(count[winner] / len(votes) + _margin(relative, winner)) / 2,
             profile=self.profile,
-            voters=tuple(voter.name for voter in self._voters),
+            voters=tuple(voter.name for voter in PAPER_VOTERS),
             gestures=gestures,
             distances=distances,
             votes={voter: gestures[index] for voter, index in votes.items()},
@@ -165,26 +134,3 @@ def _margin(relative: FloatArray, winner: int) -> float:
     if relative[winner] >= nearest_other:
         return 0.0
     return 1.0 - float(relative[winner]) / nearest_other
-
-
-def _ballots(gestures: Sequence[Gesture], voters: Sequence[Voter]) -> tuple[_Ballot, ...]:
-    """Gather the gestures that can be compared by their salient keypoints."""
-    members: dict[tuple[str, ...], list[int]] = {}
-    for index, gesture in enumerate(gestures):
-        if gesture.salient and gesture.image.any():
-            members.setdefault(gesture.salient, []).append(index)
-    ballots = []
-    for salient, indices in members.items():
-        descriptors = [_descriptors(gestures[index], voters) for index in indices]
-        references = {
-            voter.name: np.stack([described[voter.name] for described in descriptors])
-            for voter in voters
-        }
-        ballots.append(_Ballot(salient, np.array(indices), references))
-    return tuple(ballots)
-
-
-def _descriptors(gesture: Gesture, voters: Sequence[Voter]) -> dict[str, FloatArray]:
-    """Return the stored descriptors, with those made now that the gesture lacks."""
-    missing = [voter for voter in voters if voter.name not in gesture.descriptors]
-    return dict(gesture.descriptors) | describe(gesture.drawing, missing)

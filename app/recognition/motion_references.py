@@ -1,0 +1,178 @@
+"""The gestures of a language as movements, in every reading that the language leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.fusion import fused
+from app.recognition.gesture import Gesture
+from app.recognition.movement import Movement, followed_landmarks, hands_in, movement
+from app.recognition.poses import FloatArray
+from app.recognition.readings import Reading, readings
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters.motion import MOTION_VOTERS
+
+CLEARANCE = 0.4
+"""How far another reading of a gesture must stay from every other gesture, as a share of what the
+gesture itself does. A circle the other way round lies on the other circle, at 0; on digits and
+letters the result is the same from 0.2 to 0.4, and from 0.5 on useful readings are lost."""
+
+MAX_GESTURES_READ_OTHERWISE = 64
+"""Gestures beyond which a language takes every gesture as shown. Among so many, figures that
+differ by nothing but direction are to be expected, and the comparison of all with all in all
+readings would take seconds."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionReferences:
+    """What a query's movement is compared with: R rows, each a gesture in one reading.
+
+    Attributes
+    ----------
+    landmarks
+        The landmarks to follow in a query.
+    gestures
+        ``(R,)`` index of each row's gesture in the language.
+    readings
+        Of each row.
+    descriptors
+        Per voter's name ``(R, ...)``.
+
+    """
+
+    landmarks: tuple[str, ...]
+    gestures: npt.NDArray[np.intp]
+    readings: tuple[Reading, ...]
+    descriptors: dict[str, FloatArray]
+
+    @classmethod
+    def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
+        """Describe all gestures that have a demonstration, in all thinkable readings."""
+        landmarks = followed_landmarks([gesture.salient for gesture in gestures])
+        rows: list[tuple[int, Reading, Movement]] = []
+        for index, gesture in enumerate(gestures):
+            if gesture.trajectory is None or len(gesture.trajectory) < 2 or not gesture.salient:
+                continue
+            shown = movement(gesture.trajectory, landmarks)
+            open_readings = readings(shown, hands=hands_in(gesture.salient), both_ways=True)
+            if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+                open_readings = open_readings[:1]
+            rows += [(index, each, shown.reordered(each.order)) for each in open_readings]
+        return cls(
+            landmarks,
+            np.array([index for index, _, _ in rows], dtype=np.intp),
+            tuple(reading for _, reading, _ in rows),
+            {
+                voter.name: np.array([voter.describe(read) for _, _, read in rows])
+                for voter in MOTION_VOTERS
+            },
+        )
+
+    def __len__(self) -> int:
+        """Count the rows."""
+        return len(self.gestures)
+
+    @property
+    def as_shown(self) -> npt.NDArray[np.intp]:
+        """Rows of the gestures as they were demonstrated."""
+        return np.flatnonzero([self._is_first(row) for row in range(len(self))])
+
+    def _is_first(self, row: int) -> bool:
+        return row == 0 or bool(self.gestures[row - 1] != self.gestures[row])
+
+    def kept(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
+        """Keep some of the rows."""
+        return MotionReferences(
+            self.landmarks,
+            self.gestures[rows],
+            tuple(self.readings[row] for row in rows),
+            {name: values[rows] for name, values in self.descriptors.items()},
+        )
+
+    def distances(self, query: dict[str, FloatArray]) -> FloatArray:
+        """Compare a query, described per voter, with all rows: ``(V, R)``."""
+        return np.stack(
+            [
+                voter.distances(query[voter.name], self.descriptors[voter.name])
+                for voter in MOTION_VOTERS
+            ]
+        )
+
+    def own_distances(self, rows: npt.NDArray[np.intp]) -> FloatArray:
+        """Compare some of the rows with all: ``(V, len(rows), R)``."""
+        own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
+        for index, row in enumerate(rows):
+            own[:, index] = self.distances(
+                {name: values[row] for name, values in self.descriptors.items()}
+            )
+        return own
+
+    def nearest(
+        self, distances: FloatArray, say: FloatArray, between: FloatArray, count: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """Choose for each gesture the reading that fits best.
+
+        Parameters
+        ----------
+        distances
+            ``(V, R)``.
+        say, between
+            Of the voters, see `fusion.says`.
+        count
+            G, the number of gestures in the language.
+
+        Returns
+        -------
+        ``(V, G)`` distances in that reading and ``(G,)`` its penalty; infinite and 1 for a
+        gesture without demonstration.
+
+        """
+        penalties = np.array([reading.penalty for reading in self.readings])
+        scores = fused(distances, say, between) * penalties
+        chosen, penalty = np.full((len(distances), count), np.inf), np.ones(count)
+        # Writing the best last lets it stay.
+        order = np.argsort(-scores, kind="stable")
+        chosen[:, self.gestures[order]] = distances[:, order]
+        penalty[self.gestures[order]] = penalties[order]
+        return chosen, penalty
+
+
+def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[str, FloatArray]:
+    """Describe a query once for each voter."""
+    seen = movement(trajectory, landmarks)
+    return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
+
+
+def unambiguous(
+    references: MotionReferences, own: FloatArray, say: FloatArray, between: FloatArray
+) -> MotionReferences:
+    """Keep the readings that stay clear of every other gesture.
+
+    A reading of a gesture is kept when its nearest other gesture is farther from it than
+    `CLEARANCE` times the distance between the gesture as shown and its nearest other gesture.
+
+    Parameters
+    ----------
+    references
+        In all thinkable readings.
+    own
+        `own_distances` of the rows as shown.
+    say, between
+        Of the voters, see `fusion.says`.
+
+    """
+    scores = fused(own, say, between)
+    shown = references.as_shown
+    same = references.gestures[shown][:, None] == references.gestures[None]
+    others = np.where(same, np.inf, scores)
+    nearest = others.min(axis=0, initial=np.inf)
+    direct = np.minimum(nearest[shown], others[:, shown].min(axis=1, initial=np.inf))
+    per_gesture = dict(zip(references.gestures[shown].tolist(), direct.tolist(), strict=True))
+    base = np.array([per_gesture[int(index)] for index in references.gestures])
+    keep = (nearest > CLEARANCE * base) | np.isinf(nearest)
+    keep[shown] = True
+    return references.kept(np.flatnonzero(keep))

@@ -1,0 +1,197 @@
+"""Voters that follow the movement itself: where, which way, in what posture, how fast."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from app.recognition.elastic import elastic_distances, squared_distances
+from app.recognition.movement import Movement
+from app.recognition.poses import FloatArray
+from app.recognition.voters.base import euclidean_distances
+
+BAND = 8
+"""Steps of 32 that one movement may be ahead of the other: a quarter, the radius at which accuracy
+on drawn figures levels off; without a bound, a loop could be matched to a corner."""
+
+SHORTEST_SECONDS = 0.05
+"""Shortest duration taken seriously, two frames: a logarithm needs a floor."""
+
+
+class MotionVoter(Protocol):
+    """Judges how much a query moves like each reference, from one point of view."""
+
+    @property
+    def name(self) -> str:
+        """The name in results, in snake_case."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """What a distance of 1 means, for people."""
+        ...
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Describe a movement by an array whose shape is the same for all of a language."""
+        ...
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Measure ``(M,)``, >= 0, how far the query lies from each of the stacked references."""
+        ...
+
+
+class Path:
+    """Elastic distance between the paths, free of place and size (Sakoe and Chiba 1978).
+
+    Each landmark's path is relative to its own mean; all are divided by one size, the root of the
+    mean over the steps of the summed squares. ``1/N sum |q - r|^2`` along the best alignment.
+    """
+
+    name = "path"
+    unit = "mean squared distance along the alignment, in squared sizes of the gesture"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 L)`` coordinates in sizes."""
+        return _sized(movement.paths - movement.paths.mean(axis=0)).reshape(len(movement.paths), -1)
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the elastic distances, ``(M,)``."""
+        return elastic_distances(query, references, BAND)
+
+
+class Direction:
+    """Elastic distance between the directions of travel (Taranta et al. 2017, Jackknife).
+
+    The joint unit vector of all landmarks' velocities at equal steps: of no size, so that small
+    details count as much as large ones.
+    """
+
+    name = "direction"
+    unit = "mean squared difference of unit vectors along the alignment, at most 4 a step"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 L)`` joint unit vectors."""
+        steps = np.gradient(movement.paths, axis=0)
+        length = np.sqrt((steps**2).sum(axis=(1, 2), keepdims=True))
+        return np.asarray((steps / (length + 1e-9)).reshape(len(steps), -1))
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the elastic distances, ``(M,)``."""
+        return elastic_distances(query, references, BAND)
+
+
+class Posture:
+    """Elastic distance between the arms' postures: where the bones point, step by step.
+
+    Vectors along upper arm, forearm, hand and thumb, divided by one size. Unlike a path they tell
+    a raised hand from a lowered one, and a thumb up from a thumb down.
+    """
+
+    name = "posture"
+    unit = "mean squared difference of the limbs along the alignment, in squared sizes"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 B)`` vectors in sizes, NaN where not seen; ``(N, 0)`` without limbs."""
+        return _sized(movement.limbs).reshape(len(movement.limbs), -1)
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the elastic distances, ``(M,)``; infinite where no limb is seen in both."""
+        known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
+        if not known.any():
+            return np.full(len(references), np.inf)
+        return elastic_distances(query[:, known], references[..., known], BAND)
+
+
+class Cloud:
+    """Distance between the figures as clouds of points, whatever the order ($P, Vatavu 2012).
+
+    The mean distance of each step of either figure to the nearest step of the other one
+    (chamfer distance, Barrow et al. 1977).
+    """
+
+    name = "cloud"
+    unit = "mean distance to the nearest step of the other figure, in sizes"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 L)`` coordinates in sizes."""
+        return _sized(movement.paths - movement.paths.mean(axis=0)).reshape(len(movement.paths), -1)
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the chamfer distances, ``(M,)``."""
+        squares = squared_distances(query, references)
+        there = np.sqrt(squares.min(axis=1)).mean(axis=0)
+        back = np.sqrt(squares.min(axis=0)).mean(axis=0)
+        return np.asarray((there + back) / 2, dtype=np.float64)
+
+
+class StrokeDirection:
+    """Which way the stroke goes: its sense of rotation, and from where to where.
+
+    Signed area (positive: clockwise in the image) in squared sizes, and the way from start to end
+    in sizes, of each landmark: left against right, clockwise against counter-clockwise.
+    """
+
+    name = "stroke_direction"
+    unit = "sizes between the ends, squared sizes between the signed areas"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(3 L,)``: per landmark the signed area, then x and y of the way."""
+        paths = _sized(movement.paths)
+        before, after = paths[:-1], paths[1:]
+        cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+        way = paths[-1] - paths[0]
+        return np.column_stack([cross.sum(axis=0) / 2, way]).ravel()
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return Euclidean distances, ``(M,)``."""
+        return euclidean_distances(query, references)
+
+
+class WhichHand:
+    """Which landmarks move: each one's share of the motion, as a unit vector."""
+
+    name = "which_hand"
+    unit = "distance between unit vectors of the landmarks' shares, at most sqrt 2"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(L,)``: each landmark's root mean square, together of norm 1."""
+        shares = np.sqrt((movement.paths**2).sum(axis=(0, 2)))
+        return np.asarray(shares / max(np.linalg.norm(shares), 1e-9))
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return Euclidean distances, ``(M,)``."""
+        return euclidean_distances(query, references)
+
+
+class Tempo:
+    """How long the movement takes."""
+
+    name = "tempo"
+    unit = "doublings of the duration"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the logarithm to base 2 of the seconds, ``(1,)``."""
+        return np.log2([max(movement.duration, SHORTEST_SECONDS)])
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return absolute differences, ``(M,)``."""
+        return euclidean_distances(query, references)
+
+
+def _sized(vectors: FloatArray) -> FloatArray:
+    """Divide ``(N, K, 2)`` by the root of the mean over the steps of the summed squares."""
+    size = np.sqrt(np.nansum(vectors**2) / len(vectors))
+    return vectors / size if size > 0 else vectors
+
+
+MOTION_VOTERS: tuple[MotionVoter, ...] = (
+    Path(),
+    Direction(),
+    Posture(),
+    Cloud(),
+    StrokeDirection(),
+    WhichHand(),
+    Tempo(),
+)
+"""The voters of profile ``full`` beside the paper's seven."""
