@@ -166,7 +166,7 @@ def test_an_empty_language_cannot_recognise() -> None:
 
 
 def test_an_unknown_profile_is_named_with_the_known_ones(language: Language) -> None:
-    with pytest.raises(RecognitionError, match="no profile .best.; this version has full, paper"):
+    with pytest.raises(RecognitionError, match="no profile 'best'; this version has full, paper"):
         Recognizer(language, profile="best")
 
 
@@ -214,7 +214,7 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
         drawn.append(trajectory.landmarks)
         return draw(trajectory)
 
-    monkeypatch.setattr("app.recognition.recognizer.draw", noted)
+    monkeypatch.setattr("app.recognition.shape_references.draw", noted)
     recognizer.recognize(recording(circle))
     assert sorted(drawn) == [("left_wrist",), ("right_wrist",)]
 

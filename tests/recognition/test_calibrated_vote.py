@@ -1,0 +1,180 @@
+"""Profile ``full``: direction, hand and posture count where the language needs them."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
+from app.recognition.calibrated_vote import VOTERS
+from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE
+from app.recognition.poses import FloatArray
+from tests.recognition.strategies import (
+    SHAPES,
+    Shape,
+    circle,
+    line,
+    recording,
+    recordings,
+    rest,
+    square,
+    wedge,
+)
+
+
+def backwards(shape: Shape) -> Shape:
+    return lambda share: shape(1 - share)
+
+
+def begun_at(start: float, shape: Shape) -> Shape:
+    return lambda share: shape((share + start) % 1.0)
+
+
+def taught(**shapes: Shape) -> Recognizer:
+    gestures = [
+        Gesture.from_demonstration(name, recording(shape)) for name, shape in shapes.items()
+    ]
+    return Recognizer(Language("pool", gestures), profile="full")
+
+
+@pytest.fixture(scope="module")
+def recognizer() -> Recognizer:
+    return taught(**SHAPES)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("seed", range(3))
+def test_another_diver_elsewhere_is_recognised(
+    recognizer: Recognizer, name: str, seed: int
+) -> None:
+    query = recording(
+        SHAPES[name], frames=95, rate=25, torso=60, centre=(200, 300), jitter=0.01, seed=seed
+    )
+    assert recognizer.recognize(query).label == name
+
+
+def test_a_circle_the_other_way_round_is_a_circle_where_there_is_only_one(
+    recognizer: Recognizer,
+) -> None:
+    for shape in (circle, backwards(circle)):
+        assert recognizer.recognize(recording(shape, jitter=0.01)).label == "circle"
+
+
+def test_a_circle_begins_anywhere() -> None:
+    shapes = taught(circle=circle, wedge=wedge, line=line)
+    for start in (0.0, 0.3, 0.7):
+        for shape in (circle, backwards(circle)):
+            query = recording(begun_at(start, shape), jitter=0.01)
+            assert shapes.recognize(query).label == "circle"
+
+
+def test_two_circles_are_told_apart_by_the_way_round() -> None:
+    both = taught(clockwise=circle, counter=backwards(circle), line=line)
+    for start in (0.0, 0.15, 0.5):
+        turned = recording(begun_at(start, backwards(circle)), jitter=0.01, frames=44)
+        assert both.recognize(turned).label == "counter"
+        shown = recording(begun_at(start, circle), jitter=0.01, frames=44)
+        assert both.recognize(shown).label == "clockwise"
+
+
+def test_two_swipes_are_told_apart_and_one_is_read_either_way() -> None:
+    both = taught(right=line, left=backwards(line), circle=circle)
+    one = taught(swipe=line, circle=circle)
+    for shape, expected in ((line, "right"), (backwards(line), "left")):
+        query = recording(shape, jitter=0.01, torso=80)
+        assert both.recognize(query).label == expected
+        assert one.recognize(query).label == "swipe"
+
+
+def test_the_hand_is_told() -> None:
+    gestures = [
+        Gesture.from_demonstration(hand, recording(circle, hand=hand))
+        for hand in ("left_wrist", "right_wrist")
+    ]
+    hands = Recognizer(Language("hands", gestures), profile="full")
+    for hand in ("left_wrist", "right_wrist"):
+        assert hands.recognize(recording(circle, hand=hand, jitter=0.01)).label == hand
+
+
+@given(recordings())
+def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
+    recognizer: Recognizer, poses: PoseSequence
+) -> None:
+    result = recognizer.recognize(poses)
+    assert result.nearest in SHAPES
+    assert 0.0 <= result.confidence <= 1.0
+    assert result.profile == "full"
+    assert result.voters == VOTERS
+    assert result.distances.shape == (len(VOTERS), len(SHAPES))
+    assert (result.distances >= 0).all()
+    assert json.loads(json.dumps(result.to_dict(), allow_nan=False)) == result.to_dict()
+
+
+def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(wedge, jitter=0.01))
+    assert {"path", "direction", "cloud"} <= set(result.votes)
+    assert not {"tempo", "which_hand"} & set(result.votes)  # all with one hand, none by its tempo
+    for voter, label in result.votes.items():
+        row = result.distances[VOTERS.index(voter)]
+        assert result.gestures[int(row.argmin())] == label
+
+
+def test_the_demonstration_itself_is_at_distance_zero(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(circle))
+    np.testing.assert_allclose(result.distances[:, 0][np.isfinite(result.distances[:, 0])], 0.0)
+
+
+def test_the_order_of_gestures_does_not_decide() -> None:
+    turned = taught(**dict(reversed(list(SHAPES.items()))))
+    forward = taught(**SHAPES)
+    for shape in SHAPES.values():
+        query = recording(shape, jitter=0.03, seed=9, frames=40)
+        assert turned.recognize(query).label == forward.recognize(query).label
+
+
+def test_a_language_read_from_its_file_decides_as_before() -> None:
+    language = taught(**SHAPES).language
+    restored = Language.from_json(language.to_json())
+    query = recording(square, jitter=0.02)
+    before, after = (
+        Recognizer(each, "full").recognize(query).distances for each in (language, restored)
+    )
+    np.testing.assert_array_equal(after, before)
+
+
+def test_a_language_of_one_gesture_recognises_it() -> None:
+    assert taught(circle=circle).recognize(recording(circle, jitter=0.01)).label == "circle"
+
+
+def test_an_imported_gesture_is_judged_by_its_image() -> None:
+    shown = [
+        Gesture.from_demonstration(name, recording(SHAPES[name])) for name in ("line", "wedge")
+    ]
+    drawn = Gesture.from_demonstration("circle", recording(circle))
+    imported = Gesture(label="circle", salient=drawn.salient, image=drawn.image)
+    for gestures in ([*shown, imported], [imported]):
+        mixed = Recognizer(Language("mixed", gestures), profile="full")
+        assert mixed.recognize(recording(circle, jitter=0.01)).label == "circle"
+
+
+def test_a_recording_in_which_nothing_moves_is_refused(recognizer: Recognizer) -> None:
+    with pytest.raises(PoseError, match="none moves in this recording"):
+        recognizer.recognize(recording(rest))
+
+
+def turned_by(angle: float, shape: Shape) -> Shape:
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+    def figure(share: FloatArray) -> FloatArray:
+        return np.asarray(shape(share) @ turn)
+
+    return figure
+
+
+def test_among_many_gestures_each_is_taken_as_shown() -> None:
+    count = MAX_GESTURES_READ_OTHERWISE + 1
+    angles = 2 * np.pi * np.arange(count) / count
+    many = taught(**{f"wedge {n}": turned_by(angles[n], wedge) for n in range(count)})
+    result = many.recognize(recording(turned_by(angles[40], wedge)))
+    assert result.label == "wedge 40"

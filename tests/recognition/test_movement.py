@@ -1,0 +1,84 @@
+"""Movements: what the trajectory voters see of a recording."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.recognition.movement import (
+    STEPS,
+    followed_landmarks,
+    hands_in,
+    limbs_of,
+    movement,
+    part_of,
+)
+from app.recognition.trajectory import Trajectory
+from tests.recognition.strategies import circle, recording
+
+WRIST = ("right_wrist",)
+
+
+def test_steps_are_equally_long_and_reached_in_time() -> None:
+    seen = movement(Trajectory.from_poses(recording(circle)), WRIST)
+    assert seen.paths.shape == (STEPS, 1, 2)
+    steps = np.linalg.norm(np.diff(seen.paths[:, 0], axis=0), axis=1)
+    assert steps.std() < 0.02 * steps.mean()
+    assert (np.diff(seen.reached) > 0).all()
+    assert seen.duration == pytest.approx(59 / 30)
+
+
+def test_jitter_is_smoothed() -> None:
+    calm = movement(Trajectory.from_poses(recording(circle)), WRIST)
+    shaky = movement(Trajectory.from_poses(recording(circle, jitter=0.03)), WRIST)
+    assert np.abs(shaky.paths - calm.paths).mean() < 0.03
+
+
+def test_what_is_never_seen_does_not_move() -> None:
+    poses = recording(circle).select(["right_wrist", "right_shoulder", "left_shoulder"])
+    seen = movement(Trajectory.from_poses(poses), ("left_wrist", "right_wrist"))
+    assert not seen.paths[:, 0].any()
+    assert seen.paths[:, 1].any()
+
+
+def test_a_gap_is_bridged_however_long() -> None:
+    poses = recording(circle)
+    hidden = poses.xy.copy()
+    hidden[10:40, poses.landmarks.index("right_wrist")] = np.nan
+    seen = movement(Trajectory.from_poses(replace(poses, xy=hidden)), WRIST)
+    assert np.isfinite(seen.paths).all()
+
+
+def test_limbs_are_seen_under_other_names() -> None:
+    poses = recording(circle)
+    kinect = {"right_shoulder": "ShoulderRight", "right_elbow": "ElbowRight"}
+    kinect["right_wrist"] = "WristRight"
+    kept = poses.select([*kinect, "left_shoulder"])
+    named = replace(kept, landmarks=(*kinect.values(), "ShoulderLeft"))
+    ours = movement(replace(Trajectory.from_poses(kept), unit="extent"), WRIST)
+    theirs = movement(
+        replace(Trajectory.from_poses(kept), landmarks=named.landmarks), ("WristRight",)
+    )
+    np.testing.assert_allclose(theirs.limbs, ours.limbs)
+    assert np.isfinite(ours.limbs[:, :2]).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("right_wrist", "right_wrist"),
+        ("WristRight", "right_wrist"),
+        ("HAND_LEFT", "left_hand"),
+        ("nose", "nose"),
+    ],
+)
+def test_parts_of_the_body_have_one_name(name: str, part: str) -> None:
+    assert part_of(name) == part
+
+
+def test_a_language_follows_what_is_salient_in_any_gesture() -> None:
+    followed = followed_landmarks([("right_wrist",), ("left_wrist", "right_wrist"), ()])
+    assert followed == ("left_wrist", "right_wrist")
+    assert {inner.split("_")[0] for inner, _ in limbs_of(WRIST)} == {"right"}
+    assert hands_in(("left_wrist", "left_hand_tip")) == 1
+    assert hands_in(("left_wrist", "right_wrist", "nose")) == 3

@@ -1,0 +1,42 @@
+"""Readings: the orders in which a figure may be drawn."""
+
+import numpy as np
+
+from app.recognition.movement import STEPS, Movement, movement
+from app.recognition.readings import AS_SHOWN, BACKWARD_PENALTY, STARTS, is_closed, readings
+from app.recognition.trajectory import Trajectory
+from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
+
+
+def moved(shape: Shape) -> Movement:
+    return movement(Trajectory.from_poses(recording(shape)), ("right_wrist",))
+
+
+def to_and_fro(share: np.ndarray) -> np.ndarray:
+    return line(1 - np.abs(2 * share - 1))
+
+
+def test_only_what_encloses_something_is_closed() -> None:
+    assert is_closed(moved(circle))
+    assert is_closed(moved(square))
+    assert not is_closed(moved(wedge))
+    assert not is_closed(moved(to_and_fro))
+
+
+def test_a_closed_figure_begins_anywhere_and_an_open_one_at_its_ends() -> None:
+    assert len(readings(moved(circle), hands=1, both_ways=True)) == 2 * STARTS
+    assert len(readings(moved(circle), hands=1, both_ways=False)) == STARTS
+    assert len(readings(moved(line), hands=1, both_ways=True)) == 2
+    assert readings(moved(line), hands=1, both_ways=False) == (AS_SHOWN,)
+
+
+def test_figures_of_two_hands_are_read_as_shown() -> None:
+    assert readings(moved(circle), hands=2, both_ways=True) == (AS_SHOWN,)
+
+
+def test_every_reading_takes_every_step_once_and_only_turning_round_costs() -> None:
+    for reading in readings(moved(circle), hands=1, both_ways=True):
+        assert sorted(reading.order) == list(range(STEPS))
+        step = (reading.order[1] - reading.order[0]) % STEPS
+        assert reading.backward == (step == STEPS - 1)
+        assert reading.penalty == (BACKWARD_PENALTY if reading.backward else 1.0)
