@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.fusion import fused, says
 from app.recognition.gesture import Gesture
@@ -12,6 +13,7 @@ from app.recognition.motion_references import (
     MAX_GESTURES_READ_OTHERWISE,
     MotionReferences,
     describe_movement,
+    tempo_counts,
     unambiguous,
 )
 from app.recognition.poses import FloatArray
@@ -28,69 +30,77 @@ VOTERS = (
 _SHAPES = len(PAPER_VOTERS)
 
 
+TEMPO_SAY = 0.3
+"""What a doubling of the duration adds to the score of a gesture whose tempo counts: more than the
+distance of two takes (0.1), less than that of two gestures (1)."""
+
+
 class CalibratedVote:
     """Fuses the distances of fourteen voters, after asking the language what each can tell apart.
 
     Parameters
     ----------
     gestures
-        At least one.
-    shapes
-        The same gestures as drawings.
+        G gestures, at least one.
 
     """
 
-    def __init__(self, gestures: Sequence[Gesture], shapes: ShapeReferences) -> None:
+    def __init__(self, gestures: Sequence[Gesture]) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
-        thinkable = MotionReferences.of(gestures)
-        asked = thinkable.as_shown[:MAX_GESTURES_READ_OTHERWISE]
-        own = thinkable.own_distances(asked)
+        mirrored = [
+            index
+            for index, gesture in enumerate(gestures)
+            if gesture.switches.mirror == "on" and gesture.trajectory is not None
+        ]
+        sides = [*gestures, *(gestures[index].mirrored() for index in mirrored)]
+        self._owners = np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
+        self._shapes = ShapeReferences(sides)
+        self._motions = MotionReferences.of(sides)
+        self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
+        self._calibrate(sides)
+
+    def _calibrate(self, sides: Sequence[Gesture]) -> None:
+        """Ask the language for each voter's say, and which directions and tempos it needs."""
+        asked = self._motions.as_shown[:MAX_GESTURES_READ_OTHERWISE]
+        own = self._motions.own_distances(asked)
         pairs = own[:, :, asked][:, *np.triu_indices(len(asked), 1)]
+        shapes = self._shapes.own_distances(MAX_GESTURES_READ_OTHERWISE)
         self._say, self._between = says(
             VOTERS,
-            [
-                *shapes.own_distances(MAX_GESTURES_READ_OTHERWISE),
-                *(row[np.isfinite(row)] for row in pairs),
-            ],
-            len(thinkable.landmarks),
+            [*shapes, *(row[np.isfinite(row)] for row in pairs)],
+            len(self._motions.landmarks),
         )
-        self._motions = thinkable
-        if len(asked) == len(thinkable.as_shown):
-            self._motions = unambiguous(thinkable, own, *self._of_motion)
+        if len(asked) < len(self._motions.as_shown):
+            return
+        self._tempo = tempo_counts(self._motions, own, *self._of_motion, sides)
+        free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
+        self._motions = unambiguous(self._motions, own, *self._of_motion, free)
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The landmarks that any gesture needs, in alphabetical order."""
+        return self._shapes.needed
 
     @property
     def _of_motion(self) -> tuple[FloatArray, FloatArray]:
         """Say and typical distance of the motion voters alone."""
         return self._say[_SHAPES:], self._between[_SHAPES:]
 
-    def recognize(self, trajectory: Trajectory, shape_distances: FloatArray) -> Recognition:
-        """Recognise a query.
-
-        Parameters
-        ----------
-        trajectory
-            The condensed query.
-        shape_distances
-            ``(7, G)`` of the paper's voters, some finite.
-
-        """
-        count = len(self._labels)
-        comparable = np.isfinite(shape_distances).any(axis=0)
-        motion = np.full((len(MOTION_VOTERS), count), np.inf)
-        penalty = np.ones(count)
-        if len(self._motions) and len(trajectory) > 1:
-            query = describe_movement(trajectory, self._motions.landmarks)
-            motion, penalty = self._motions.nearest(
-                self._motions.distances(query), *self._of_motion, count
-            )
-        distances = np.concatenate([shape_distances, motion])
-        distances[:, ~comparable] = np.inf
+    def recognize(self, trajectory: Trajectory) -> Recognition | None:
+        """Recognise a condensed query; None where it moves nothing that a gesture needs."""
+        distances, penalty = self._compared(trajectory)
         scores = fused(distances, self._say, self._between) * penalty
+        slower = distances[VOTERS.index("tempo")]
+        scores = scores + np.where(self._tempo & np.isfinite(slower), TEMPO_SAY * slower, 0.0)
+        if not np.isfinite(scores).any():
+            return None
+        chosen = self._sides_nearest(scores)
+        distances, scores = distances[:, chosen], scores[chosen]
         winner = int(scores.argmin())
         votes = {
             voter: int(row.argmin())
             for voter, row, say in zip(VOTERS, distances, self._say, strict=True)
-            if say > 0 and np.isfinite(row).any()
+            if np.isfinite(row).any() and (say > 0 or (voter == "tempo" and self._tempo.any()))
         }
         return Recognition(
             label=self._labels[winner],
@@ -102,6 +112,27 @@ class CalibratedVote:
             distances=distances,
             votes={voter: self._labels[index] for voter, index in votes.items()},
         )
+
+    def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+        """Return ``(14, sides)`` distances and ``(sides,)`` penalties of the readings."""
+        shape = self._shapes.distances(trajectory)
+        motion = np.full((len(MOTION_VOTERS), len(self._owners)), np.inf)
+        penalty = np.ones(len(self._owners))
+        comparable = np.isfinite(shape).any(axis=0)
+        if len(self._motions) and len(trajectory) > 1 and comparable.any():
+            query = describe_movement(trajectory, self._motions.landmarks)
+            motion, penalty = self._motions.nearest(
+                self._motions.distances(query), *self._of_motion, len(self._owners)
+            )
+        motion[:, ~comparable] = np.inf
+        return np.concatenate([shape, motion]), penalty
+
+    def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
+        """Choose for each gesture itself or its mirror image: ``(G,)`` indices of sides."""
+        chosen = np.empty(len(self._labels), dtype=np.intp)
+        order = np.argsort(-scores, kind="stable")
+        chosen[self._owners[order]] = order  # the best is written last and stays
+        return chosen
 
     def _confidence(self, scores: FloatArray, winner: int, votes: dict[str, int]) -> float:
         """Average the winner's share of the say and its margin over the nearest other gesture."""

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
-from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS
+from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS, other_side
 from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.salience import (
@@ -21,6 +21,7 @@ from app.recognition.salience import (
     salient_landmarks,
 )
 from app.recognition.strict_json import read_json
+from app.recognition.switches import AUTOMATIC, Switches
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import (
     MARGIN,
@@ -113,6 +114,8 @@ class Gesture:
         What the gesture looks like or means, for people.
     command
         What the robot should do: free text, a JSON object, or None.
+    switches
+        What about the gesture counts: its direction, tempo and side.
 
     Raises
     ------
@@ -129,6 +132,7 @@ class Gesture:
     thresholds: Mapping[str, float] = field(default_factory=dict)
     description: str = ""
     command: str | dict[str, Any] | None = None
+    switches: Switches = AUTOMATIC
 
     def __post_init__(self) -> None:
         """Check texts, command and image, and freeze what could be changed."""
@@ -212,6 +216,31 @@ class Gesture:
         """The gesture as voters see it."""
         seen = None if self.trajectory is None else self.trajectory.select(self.salient)
         return Drawing(self.image, seen)
+
+    def mirrored(self) -> Gesture:
+        """Return the mirror image, shown with the other hand.
+
+        Raises
+        ------
+        GestureError
+            When only an image of the gesture is known.
+
+        """
+        if self.trajectory is None:
+            raise GestureError(
+                f"{self.label!r} was imported without its demonstration and cannot be mirrored: "
+                f"define it again from a clip"
+            )
+        trajectory = self.trajectory.mirrored()
+        salient = tuple(other_side(name) for name in self.salient)
+        drawing = draw(trajectory.select(sorted(salient)))
+        return replace(
+            self,
+            salient=salient,
+            trajectory=trajectory,
+            image=drawing.image,
+            descriptors=describe(drawing, PAPER_VOTERS),
+        )
 
     def redrawn(self) -> Gesture:
         """Make image and descriptors anew from the demonstration.

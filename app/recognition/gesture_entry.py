@@ -15,6 +15,7 @@ from app.recognition.outline import BinaryImage
 from app.recognition.png import decode_png, encode_png
 from app.recognition.poses import FloatArray
 from app.recognition.strict_json import pointer_to
+from app.recognition.switches import Switches
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import SIZE
 from app.recognition.voters import PAPER_VOTERS
@@ -32,6 +33,9 @@ def entry_of(gesture: Gesture) -> GestureEntry:
         image=base64.b64encode(encode_png(gesture.image)).decode("ascii"),
         descriptors={name: values.tolist() for name, values in gesture.descriptors.items()},
         thresholds=dict(gesture.thresholds),
+        direction=gesture.switches.direction,
+        tempo=gesture.switches.tempo,
+        mirror=gesture.switches.mirror,
     )
 
 
@@ -68,6 +72,7 @@ def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
         thresholds=entry.thresholds,
         description=entry.description,
         command=entry.command,
+        switches=Switches(direction=entry.direction, tempo=entry.tempo, mirror=entry.mirror),
     )
 
 

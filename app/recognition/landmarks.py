@@ -116,3 +116,12 @@ SKELETON: Final = (
     ("right_ankle", "right_foot_index"),
 )
 """Pairs of landmarks joined by a bone in drawings; the ten face landmarks are left out."""
+
+
+def other_side(name: str) -> str:
+    """Return the landmark's counterpart on the body's other side, or itself where it has none."""
+    for side, other in (("left", "right"), ("right", "left")):
+        words = name.split("_")
+        if side in words:
+            return "_".join(other if word == side else word for word in words)
+    return name

@@ -31,7 +31,7 @@ def write_document(document: LanguageDocument) -> str:
 
     Lines keep differences between revisions readable in version control.
     """
-    content = document.model_dump(mode="json", exclude={"sha256"})
+    content = document.model_dump(mode="json", exclude={"sha256"}, exclude_defaults=True)
     content["sha256"] = seal(content)
     lines = ",\n".join(f"{_compact(key)}: {_value(key, value)}" for key, value in content.items())
     return f"{{\n{lines}\n}}\n"

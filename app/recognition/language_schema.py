@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.switches import Switch
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
@@ -105,6 +106,27 @@ class GestureEntry(_Model):
         dict[str, FiniteFloat],
         Field(description="Per voter the distance beyond which the gesture is rejected."),
     ]
+    direction: Annotated[
+        Switch,
+        Field(
+            description="Whether the way it is drawn counts; auto: where another gesture is the "
+            "same figure turned round. Left out when auto."
+        ),
+    ] = "auto"
+    tempo: Annotated[
+        Switch,
+        Field(
+            description="Whether the duration counts; auto: where another gesture is the same "
+            "movement, clearly slower or quicker. Left out when auto."
+        ),
+    ] = "auto"
+    mirror: Annotated[
+        Switch,
+        Field(
+            description="on: the mirror image, with the other hand, is the same gesture; auto, "
+            "off: it is not. Left out when auto."
+        ),
+    ] = "auto"
 
 
 class LanguageDocument(_Model):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,10 +30,17 @@ CLEARANCE = 0.4
 """How much nearer a figure must be backwards than forwards for its direction to matter: two
 circles that begin at different places are about as near to each other either way."""
 
+CLEARLY_SLOWER = 0.8
+"""Doublings of the duration between two gestures from which their tempo is told apart: 1.75 times
+as long. One person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
+
 MAX_GESTURES_READ_OTHERWISE = 64
 """Gestures beyond which a language takes every gesture as shown. Among so many, figures that
 differ by nothing but direction are to be expected, and the comparison of all with all in all
 readings would take seconds."""
+
+
+_TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +74,9 @@ class MotionReferences:
             if gesture.trajectory is None or len(gesture.trajectory) < 2 or not gesture.salient:
                 continue
             shown = movement(gesture.trajectory, landmarks)
-            open_readings = readings(shown, hands=hands_in(gesture.salient), both_ways=True)
+            open_readings = readings(
+                shown, hands=hands_in(gesture.salient), both_ways=gesture.switches.direction != "on"
+            )
             if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
                 open_readings = open_readings[:1]
             rows += [(index, each, shown.reordered(each.order)) for each in open_readings]
@@ -150,6 +159,30 @@ class MotionReferences:
         return chosen, penalty
 
 
+def tempo_counts(
+    references: MotionReferences,
+    own: FloatArray,
+    say: FloatArray,
+    between: FloatArray,
+    gestures: Sequence[Gesture],
+) -> npt.NDArray[np.bool_]:
+    """Tell ``(G,)`` whose tempo the language needs, unless the author has said.
+
+    Of two gestures that are the same movement but for the time it takes. Parameters as for
+    `unambiguous`.
+    """
+    shown = references.as_shown
+    scores = fused(own, say, between)[:, shown]
+    doublings = own[_TEMPO][:, shown]
+    twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER)
+    needed = np.zeros(len(gestures), dtype=bool)
+    needed[references.gestures[shown]] = twins.any(axis=0)
+    for index, gesture in enumerate(gestures):
+        if gesture.switches.tempo != "auto":
+            needed[index] = gesture.switches.tempo == "on"
+    return needed
+
+
 def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[str, FloatArray]:
     """Describe a query once for each voter."""
     seen = movement(trajectory, landmarks)
@@ -157,7 +190,11 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
 
 
 def unambiguous(
-    references: MotionReferences, own: FloatArray, say: FloatArray, between: FloatArray
+    references: MotionReferences,
+    own: FloatArray,
+    say: FloatArray,
+    between: FloatArray,
+    free: Collection[int] = (),
 ) -> MotionReferences:
     """Drop the backward readings of gestures whose direction the language needs.
 
@@ -173,6 +210,8 @@ def unambiguous(
         `own_distances` of the rows as shown.
     say, between
         Of the voters, see `fusion.says`.
+    free
+        Indices of gestures whose direction does not count, whatever the others are.
 
     """
     labels = references.gestures
@@ -181,7 +220,7 @@ def unambiguous(
     scores = np.where(same, np.inf, fused(own, say, between))
     backward = np.array([reading.backward for reading in references.readings], dtype=bool)
     keep = np.ones(len(references), dtype=bool)
-    for gesture in np.unique(labels):
+    for gesture in np.setdiff1d(labels, [*free]):
         rows = labels == gesture
         forwards = scores[:, rows & ~backward].min(axis=1)
         backwards = scores[:, rows & backward].min(axis=1, initial=np.inf)

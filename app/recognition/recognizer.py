@@ -53,9 +53,7 @@ class Recognizer:
         self.language = language
         self.profile = profile
         self._shapes = ShapeReferences(language.gestures)
-        self._calibrated = (
-            CalibratedVote(language.gestures, self._shapes) if profile == "full" else None
-        )
+        self._calibrated = CalibratedVote(language.gestures) if profile == "full" else None
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.
@@ -72,16 +70,21 @@ class Recognizer:
 
         """
         trajectory = condensed(Trajectory.from_poses(poses))
+        if self._calibrated is not None:
+            result = self._calibrated.recognize(trajectory)
+            if result is None:
+                raise self._nothing_moves(self._calibrated.needed)
+            return result
         distances = self._shapes.distances(trajectory)
         if not np.isfinite(distances).any():
-            raise PoseError(
-                f"nothing to compare: of the landmarks that the gestures of "
-                f"{self.language.name!r} need ({', '.join(self._shapes.needed)}), none moves in "
-                f"this recording"
-            )
-        if self._calibrated is not None:
-            return self._calibrated.recognize(trajectory, distances)
+            raise self._nothing_moves(self._shapes.needed)
         return self._counted(distances)
+
+    def _nothing_moves(self, needed: tuple[str, ...]) -> PoseError:
+        return PoseError(
+            f"nothing to compare: of the landmarks that the gestures of "
+            f"{self.language.name!r} need ({', '.join(needed)}), none moves in this recording"
+        )
 
     def _counted(self, distances: FloatArray) -> Recognition:
         """Count the votes that follow from distances ``(V, G)``."""

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from app.recognition.errors import PoseError
+from app.recognition.landmarks import other_side
 from app.recognition.poses import FloatArray, PoseSequence
 
 Unit = Literal["torso_length", "extent"]
@@ -103,6 +104,11 @@ class Trajectory:
         """Keep the moments with ``start <= time <= end`` (seconds since the first moment)."""
         inside = (self.time >= start) & (self.time <= end)
         return replace(self, xy=self.xy[inside], time=self.time[inside])
+
+    def mirrored(self) -> Trajectory:
+        """Mirror left and right: x changes its sign, landmarks swap their sides."""
+        names = tuple(other_side(name) for name in self.landmarks)
+        return replace(self, landmarks=names, xy=self.xy * (-1.0, 1.0) + 0.0)
 
     def recentred(self) -> Trajectory:
         """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""

@@ -1,15 +1,24 @@
 """Profile ``full``: direction, hand and posture count where the language needs them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 
-from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
+from app.recognition import (
+    Gesture,
+    GestureError,
+    Language,
+    PoseError,
+    PoseSequence,
+    Recognizer,
+)
 from app.recognition.calibrated_vote import VOTERS
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE
 from app.recognition.poses import FloatArray
+from app.recognition.switches import Switches
 from tests.recognition.strategies import (
     SHAPES,
     Shape,
@@ -178,3 +187,90 @@ def test_among_many_gestures_each_is_taken_as_shown() -> None:
     many = taught(**{f"wedge {n}": turned_by(angles[n], wedge) for n in range(count)})
     result = many.recognize(recording(turned_by(angles[40], wedge)))
     assert result.label == "wedge 40"
+
+
+def with_switches(
+    shape: Shape, label: str = "shown", rate: float = 30.0, **switches: str
+) -> Gesture:
+    gesture = Gesture.from_demonstration(label, recording(shape, rate=rate))
+    return replace(gesture, switches=Switches(**switches))  # type: ignore[arg-type]
+
+
+def label_of(gestures: list[Gesture], query: PoseSequence) -> str | None:
+    return Recognizer(Language("pool", gestures), profile="full").recognize(query).label
+
+
+def test_an_author_can_insist_on_a_direction() -> None:
+    to_the_left = recording(backwards(line), jitter=0.01)
+    up = Gesture.from_demonstration("up", recording(turned_by(np.pi / 2, line)))
+    free, strict = (
+        Recognizer(Language("one", [with_switches(line, direction=each), up]), "full")
+        for each in ("auto", "on")
+    )
+    distances = [
+        each.recognize(to_the_left).distances[VOTERS.index("path"), 0] for each in (free, strict)
+    ]
+    assert distances[0] < 0.1 < distances[1]
+
+
+def test_an_author_can_waive_a_direction() -> None:
+    pair = [
+        with_switches(line, "right", direction="off"),
+        with_switches(backwards(line), "left", direction="off"),
+    ]
+    result = Recognizer(Language("pair", pair), "full").recognize(recording(line, jitter=0.01))
+    path = result.distances[VOTERS.index("path")]
+    assert path[1] == pytest.approx(path[0], abs=0.05)
+
+
+def test_tempo_counts_where_nothing_else_differs() -> None:
+    quick, slow = with_switches(circle, "quick"), with_switches(circle, "slow", rate=10.0)
+    for rate, expected in ((28.0, "quick"), (11.0, "slow")):
+        query = recording(circle, rate=rate, jitter=0.01, torso=80)
+        assert label_of([quick, slow], query) == expected
+        assert label_of([slow, quick], query) == expected
+        assert label_of([quick, with_switches(wedge, "slow")], query) == "quick"
+
+
+def test_a_tempo_that_does_not_count_is_not_looked_at() -> None:
+    waived = [
+        with_switches(circle, "quick", tempo="off"),
+        with_switches(circle, "slow", rate=10.0, tempo="off"),
+    ]
+    result = Recognizer(Language("pool", waived), "full").recognize(recording(circle))
+    assert "tempo" not in result.votes
+
+
+def test_a_mirror_image_counts_when_the_author_says_so() -> None:
+    def wedge_of_the_left(share: FloatArray) -> FloatArray:
+        return wedge(share) * (-1.0, 1.0)
+
+    query = recording(wedge_of_the_left, hand="left_wrist", jitter=0.01)
+    other = Gesture.from_demonstration("circle", recording(circle, hand="left_wrist"))
+    assert label_of([with_switches(wedge, mirror="on"), other], query) == "shown"
+    assert label_of([with_switches(wedge), other], query) == "circle"
+    with pytest.raises(PoseError, match="none moves in this recording"):
+        label_of([with_switches(wedge)], query)
+
+
+def test_an_imported_gesture_has_no_mirror_image() -> None:
+    drawn = Gesture.from_demonstration("circle", recording(circle))
+    imported = replace(drawn, trajectory=None, switches=Switches(mirror="on"))
+    assert label_of([imported], recording(circle)) == "circle"
+    with pytest.raises(GestureError, match="'circle' was imported without its demonstration"):
+        imported.mirrored()
+
+
+def test_switches_are_kept_in_the_file_and_left_out_when_automatic() -> None:
+    set_by_hand = with_switches(circle, direction="on", tempo="off", mirror="on")
+    text = Language("pool", [set_by_hand, with_switches(line, "line")]).to_json()
+    assert text.count('"direction"') == text.count('"mirror"') == 1
+    restored = Language.from_json(text)
+    assert restored.gesture("shown").switches == set_by_hand.switches
+    assert restored.gesture("line").switches == Switches()
+    assert restored.to_json() == text
+
+
+def test_a_switch_has_three_positions() -> None:
+    with pytest.raises(GestureError, match="tempo must be auto, on or off, got 'fast'"):
+        with_switches(circle, tempo="fast")
