@@ -36,7 +36,7 @@ distance of two takes (0.1), less than that of two gestures (1)."""
 
 
 class CalibratedVote:
-    """Fuses the distances of fourteen voters, after asking the language what each can tell apart.
+    """Fuses the distances of all voters, after asking the language what each can tell apart.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class CalibratedVote:
         )
 
     def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-        """Return ``(14, sides)`` distances and ``(sides,)`` penalties of the readings."""
+        """Return ``(V, sides)`` distances and ``(sides,)`` penalties of the readings."""
         shape = self._shapes.distances(trajectory)
         motion = np.full((len(MOTION_VOTERS), len(self._owners)), np.inf)
         penalty = np.ones(len(self._owners))

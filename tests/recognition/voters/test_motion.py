@@ -1,6 +1,7 @@
 """Motion voters: laws that hold for each, and what each of them alone can tell."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from app.recognition.voters.motion import (
     MOTION_VOTERS,
     Cloud,
     Direction,
+    HandAttitude,
     MotionVoter,
     Path,
     Posture,
@@ -55,12 +57,7 @@ def test_a_distance_is_zero_to_itself_and_the_same_either_way(
 def test_the_camera_does_not_matter(
     voter: MotionVoter, poses: PoseSequence, scale: float, shift: float
 ) -> None:
-    elsewhere = PoseSequence(
-        landmarks=poses.landmarks,
-        xy=poses.xy * scale + shift,
-        time=poses.time + 7.0,
-        frame_size=poses.frame_size,
-    )
+    elsewhere = replace(poses, xy=poses.xy * scale + shift, time=poses.time + 7.0)
     assert distance(voter, moved(poses), moved(elsewhere)) == pytest.approx(0.0, abs=1e-6)
 
 
@@ -95,9 +92,7 @@ def raised(forearm: Callable[[FloatArray], FloatArray]) -> PoseSequence:
     share = np.linspace(0, 1, len(xy))
     wrist, elbow = (poses.landmarks.index(f"right_{part}") for part in ("wrist", "elbow"))
     xy[:, elbow] = xy[:, wrist] + 60 * forearm(share)
-    return PoseSequence(
-        landmarks=poses.landmarks, xy=xy, time=poses.time, frame_size=poses.frame_size
-    )
+    return replace(poses, xy=xy)
 
 
 def test_the_posture_of_the_arm_is_seen_where_the_paths_agree() -> None:
@@ -109,4 +104,25 @@ def test_the_posture_of_the_arm_is_seen_where_the_paths_agree() -> None:
 
 def test_without_limbs_there_is_no_posture() -> None:
     wrists = recording(circle).select(HANDS)
-    assert distance(Posture(), moved(wrists), moved(wrists)) == np.inf
+    for voter in (Posture(), HandAttitude()):
+        assert distance(voter, moved(wrists), moved(wrists)) == np.inf
+
+
+def thumb(height: float) -> PoseSequence:
+    """Record a raised right hand whose thumb points up (negative height) or down."""
+    poses = recording(line)
+    xy = poses.xy.copy()
+    wrist, index, pinky, tip = (
+        poses.landmarks.index(f"right_{part}") for part in ("wrist", "index", "pinky", "thumb")
+    )
+    xy[:, index] = xy[:, pinky] = xy[:, wrist] + (20, 0)
+    xy[:, tip] = xy[:, wrist] + (0, height)
+    return replace(poses, xy=xy)
+
+
+def test_a_thumb_up_is_no_thumb_down() -> None:
+    up, down = (
+        movement(Trajectory.from_poses(thumb(height)), ("right_wrist",)) for height in (-12, 12)
+    )
+    assert distance(Path(), up, down) == 0.0
+    assert distance(HandAttitude(), up, down) > 3 * distance(Posture(), up, down)
