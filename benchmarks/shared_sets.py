@@ -76,12 +76,10 @@ def evaluate(
 
 def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer:
     """Teach a method one template a class."""
-    labels = [str(recorded.labels[template]) for template in templates]
-    demonstrations = [recorded.recordings[template] for template in templates]
     if method == "dtw":
-        return PlainWarping(demonstrations, labels).answer
-    gestures = [_gesture(*pair) for pair in zip(labels, demonstrations, strict=True)]
-    recognizer = Recognizer(Language(recorded.name, gestures), method)
+        demonstrations = [recorded.recordings[template] for template in templates]
+        return PlainWarping(demonstrations, recorded.labels[templates].tolist()).answer
+    recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)), method)
 
     def answer(poses: PoseSequence) -> str | None:
         try:
@@ -92,11 +90,16 @@ def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer
     return answer
 
 
-def _gesture(label: str, poses: PoseSequence) -> Gesture:
-    try:
-        return Gesture.from_demonstration(label, poses)
-    except GestureError:  # nothing moves enough by itself: follow every landmark
-        return Gesture.from_demonstration(label, poses, salient=poses.landmarks)
+def demonstrated(recorded: RecordedSet, templates: list[int]) -> list[Gesture]:
+    """Make a gesture of each template."""
+    gestures = []
+    for template in templates:
+        label, poses = str(recorded.labels[template]), recorded.recordings[template]
+        try:
+            gestures.append(Gesture.from_demonstration(label, poses))
+        except GestureError:  # nothing moves enough by itself: follow every landmark
+            gestures.append(Gesture.from_demonstration(label, poses, salient=poses.landmarks))
+    return gestures
 
 
 def main() -> None:

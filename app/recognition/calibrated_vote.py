@@ -82,6 +82,16 @@ class CalibratedVote:
         return self._shapes.needed
 
     @property
+    def say(self) -> dict[str, float]:
+        """Each voter's say in this language; 0: it cannot tell the gestures apart."""
+        return dict(zip(VOTERS, self._say.tolist(), strict=True))
+
+    @property
+    def between(self) -> dict[str, float]:
+        """Each voter's typical distance between two gestures of this language."""
+        return dict(zip(VOTERS, self._between.tolist(), strict=True))
+
+    @property
     def _of_motion(self) -> tuple[FloatArray, FloatArray]:
         """Say and typical distance of the motion voters alone."""
         return self._say[_SHAPES:], self._between[_SHAPES:]
@@ -136,7 +146,7 @@ class CalibratedVote:
 
     def _confidence(self, scores: FloatArray, winner: int, votes: dict[str, int]) -> float:
         """Average the winner's share of the say and its margin over the nearest other gesture."""
-        say = dict(zip(VOTERS, self._say.tolist(), strict=True))
+        say = self.say
         total = sum(say[voter] for voter in votes)
         agreeing = sum(say[voter] for voter, index in votes.items() if index == winner)
         nearest_other = float(np.delete(scores, winner).min(initial=np.inf))

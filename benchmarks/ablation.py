@@ -1,0 +1,86 @@
+"""What each voter of profile ``full`` contributes: alone, and left out.
+
+One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
+distances are measured once and fused anew for every choice of voters, in the reading that all of
+them together chose.
+
+    python -m benchmarks.ablation ../shared/data
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from app.recognition import PoseError
+from app.recognition.calibrated_vote import VOTERS, CalibratedVote
+from app.recognition.fusion import fused
+from app.recognition.gesture import condensed
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory
+from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.shared_sets import demonstrated
+
+ALL = "all together"
+
+
+def choices() -> dict[str, FloatArray]:
+    """Return per name a factor ``(V,)`` on every voter's say."""
+    alone = {f"{voter} alone": np.eye(len(VOTERS))[i] for i, voter in enumerate(VOTERS)}
+    without = {f"without {voter}": 1 - np.eye(len(VOTERS))[i] for i, voter in enumerate(VOTERS)}
+    return {ALL: np.ones(len(VOTERS))} | alone | without
+
+
+def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[str, float]:
+    """Return the share correct for each of the `choices`; a voter alone without a say gets 0."""
+    random = np.random.default_rng(seed)
+    correct, asked = dict.fromkeys(choices(), 0), 0
+    for _ in range(draws):
+        person = random.choice(np.unique(recorded.people))
+        own = recorded.people == person
+        templates = [
+            int(random.choice(np.flatnonzero(own & (recorded.labels == label))))
+            for label in np.unique(recorded.labels)
+        ]
+        vote = CalibratedVote(demonstrated(recorded, templates))
+        say, between = (np.array([*of.values()]) for of in (vote.say, vote.between))
+        pool = np.setdiff1d(np.flatnonzero(~own if (~own).any() else own), templates)
+        for query in random.choice(pool, min(queries, len(pool)), replace=False):
+            asked += 1
+            try:
+                seen = condensed(Trajectory.from_poses(recorded.recordings[query]))
+            except PoseError:
+                continue
+            if (result := vote.recognize(seen)) is None:
+                continue
+            for name, factor in choices().items():
+                scores = fused(result.distances, say * factor, between)
+                nearest = result.gestures[int(scores.argmin())]
+                correct[name] += bool(
+                    np.isfinite(scores.min()) and nearest == recorded.labels[query]
+                )
+    return {name: count / asked for name, count in correct.items()}
+
+
+def main() -> None:
+    """Print one line a voter, one pair of columns a set: alone, and left out."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
+    parser.add_argument("--draws", type=int, default=40, help="choices of templates per set")
+    parser.add_argument("--queries", type=int, default=25, help="queries per choice")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    sets = [*recorded_sets(given.data / "trajectories")]
+    shares = [ablate(each, given.draws, given.queries, given.seed) for each in sets]
+    print("| voter | " + " | ".join(each.name for each in sets) + " |")
+    print("| --- " * (len(sets) + 1) + "|")
+    print(f"| {ALL} | " + " | ".join(f"{share[ALL]:.1%}" for share in shares) + " |")
+    for voter in VOTERS:
+        cells = [f"{s[f'{voter} alone']:.1%} / {s[f'without {voter}']:.1%}" for s in shares]
+        print(f"| `{voter}` | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main()
