@@ -13,6 +13,7 @@ from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recognition_result import Recognition
 from app.recognition.shape_references import ShapeReferences
+from app.recognition.sides import with_sides_repaired
 from app.recognition.trajectory import Trajectory
 from app.recognition.voters import PAPER_VOTERS
 
@@ -71,7 +72,7 @@ class Recognizer:
         """
         trajectory = condensed(Trajectory.from_poses(poses))
         if self._calibrated is not None:
-            result = self._calibrated.recognize(trajectory)
+            result = self._calibrated.recognize(with_sides_repaired(trajectory))
             if result is None:
                 raise self._nothing_moves(self._calibrated.needed)
             return result
