@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 
-from app.recognition.calibrated_vote import VOTERS, CalibratedVote
+from app.recognition.calibrated_vote import CalibratedVote
 from app.recognition.errors import LanguageError, PoseError, RecognitionError
 from app.recognition.gesture import condensed
 from app.recognition.language import Language
@@ -15,11 +15,12 @@ from app.recognition.recognition_result import Recognition
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.sides import with_sides_repaired
 from app.recognition.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters import PAPER_VOTERS, Voter
+from app.recognition.voters.motion import MOTION_VOTERS, MotionVoter
 
-PROFILES: dict[str, tuple[str, ...]] = {
-    "paper": tuple(voter.name for voter in PAPER_VOTERS),
-    "full": VOTERS,
+PROFILES: dict[str, tuple[Voter | MotionVoter, ...]] = {
+    "paper": PAPER_VOTERS,
+    "full": (*PAPER_VOTERS, *MOTION_VOTERS),
 }
 """The voters of each profile. ``paper``: the seven of the paper, majority vote, no rejection.
 ``full``: also the movement itself, by calibrated distances."""
