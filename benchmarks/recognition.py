@@ -12,6 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.recognizer import PROFILES
 
 SIZES = (8, 100, 1000)
 ROUNDS = 15
@@ -36,21 +37,23 @@ def wander(seed: int) -> PoseSequence:
 
 
 def main() -> None:
-    """Print the time of one recognition relative to the smallest language."""
+    """Print the time of one recognition relative to the smallest language, per profile."""
     query = wander(seed=-1 % 2**32)
-    recognizers = {}
-    for size in SIZES:
-        gestures = [Gesture.from_demonstration(f"figure {n}", wander(n)) for n in range(size)]
-        recognizers[size] = Recognizer(Language(name="bench", gestures=gestures))
-    times: dict[int, list[float]] = {size: [] for size in SIZES}
-    for _ in range(ROUNDS):
-        for size, recognizer in recognizers.items():
-            start = perf_counter()
-            recognizer.recognize(query)
-            times[size].append(perf_counter() - start)
-    base = median(times[SIZES[0]])
-    for size in SIZES:
-        print(
-            f"recognition with {size:>4} gestures: {median(times[size]) / base:5.2f} times "
-            f"that with {SIZES[0]} ({size / SIZES[0]:.0f} times the gestures)"
-        )
+    gestures = [Gesture.from_demonstration(f"figure {n}", wander(n)) for n in range(max(SIZES))]
+    for profile in PROFILES:
+        recognizers = {
+            size: Recognizer(Language(name="bench", gestures=gestures[:size]), profile)
+            for size in SIZES
+        }
+        times: dict[int, list[float]] = {size: [] for size in SIZES}
+        for _ in range(ROUNDS):
+            for size, recognizer in recognizers.items():
+                start = perf_counter()
+                recognizer.recognize(query)
+                times[size].append(perf_counter() - start)
+        base = median(times[SIZES[0]])
+        for size in SIZES:
+            print(
+                f"profile {profile}, {size:>4} gestures: {median(times[size]) / base:5.2f} times "
+                f"the time of {SIZES[0]} ({size / SIZES[0]:.0f} times the gestures)"
+            )
