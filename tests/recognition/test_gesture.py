@@ -203,3 +203,11 @@ def test_a_gesture_known_by_its_image_alone_is_described_from_it() -> None:
     assert seen.trajectory is None
     for name, descriptor in drawn.descriptors.items():
         np.testing.assert_array_equal(seen.descriptors[name], descriptor)
+
+
+def test_of_another_set_of_landmarks_the_hands_are_kept_that_do_not_move() -> None:
+    poses = recording(circle).select(["right_wrist", "right_elbow", "left_index"])
+    tracked = replace(poses, landmarks=("right_wrist", "right_elbow", "left_hand_tip"))
+    gesture = Gesture.from_demonstration("circle", tracked)
+    assert gesture.trajectory is not None
+    assert gesture.trajectory.landmarks == tracked.landmarks

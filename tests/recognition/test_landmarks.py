@@ -7,6 +7,7 @@ from app.recognition.landmarks import (
     POSE_LANDMARKS,
     SHOULDERS,
     SKELETON,
+    other_side,
 )
 
 
@@ -28,3 +29,11 @@ def test_groups_and_bones_name_landmarks_of_the_body() -> None:
     assert len(set(grouped)) == len(grouped)
     assert set(grouped) <= set(POSE_LANDMARKS)
     assert {name for bone in SKELETON for name in bone} <= set(POSE_LANDMARKS)
+
+
+def test_every_landmark_has_a_counterpart_or_is_its_own() -> None:
+    assert other_side("left_wrist") == "right_wrist"
+    assert other_side("mouth_right") == "mouth_left"
+    assert other_side("nose") == "nose"
+    assert {other_side(name) for name in POSE_LANDMARKS} == set(POSE_LANDMARKS)
+    assert [other_side(other_side(name)) for name in POSE_LANDMARKS] == list(POSE_LANDMARKS)

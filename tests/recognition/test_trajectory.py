@@ -153,3 +153,14 @@ def test_fewer_than_two_moments_cannot_be_asked_for(count: int) -> None:
         trajectory([[0, 0], [1, 1]]).resampled_in_time(count)
     with pytest.raises(PoseError, match="cannot resample 1 moments"):
         trajectory([[0, 0]]).resampled_in_arc_length(3)
+
+
+@given(recordings())
+def test_a_mirror_image_of_a_mirror_image_is_the_movement_itself(poses: PoseSequence) -> None:
+    seen = Trajectory.from_poses(poses)
+    mirrored = seen.mirrored()
+    right = seen.select(HAND_ONLY).xy
+    np.testing.assert_array_equal(mirrored.select(["left_wrist"]).xy, right * (-1, 1))
+    again = mirrored.mirrored()
+    assert again.landmarks == seen.landmarks
+    np.testing.assert_array_equal(again.xy, seen.xy)
