@@ -21,9 +21,11 @@ class Recognition:
     nearest
         The best gesture even when rejected.
     confidence
-        In [0, 1]: the mean of the winner's share of the votes and of its margin, 1 - (its mean
+        In [0, 1]. Profile ``full``: the estimated probability that `nearest` is the gesture
+        meant, where half of all movements mean none, see `calibrated_confidence`. Profile
+        ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean
         relative distance over that of the nearest other gesture), or 0 where the other one is
-        nearer. Relative to the language: it cannot tell that a query was no gesture at all.
+        nearer; relative to the language, it cannot tell that a query was no gesture at all.
     profile
         The recogniser's profile.
     voters

@@ -1,0 +1,88 @@
+"""How far the confidence of profile ``full`` can be believed, and what it would reject.
+
+Of each recorded set a random half of the classes makes a language, one template each by one
+person; queries come from all classes, so that about half of them mean no gesture of the language.
+
+    python -m benchmarks.reliability ../shared/data
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from app.recognition import Language, PoseError, Recognizer
+from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.shared_sets import demonstrated
+
+BINS = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0001)
+REFUSED = 5.0
+"""Per cent of true gestures refused where false acceptance is reported."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One query's outcome: whether its gesture was in the language, and was named."""
+
+    confidence: float
+    known: bool
+    correct: bool
+
+
+def answers(recorded: RecordedSet, draws: int, queries: int, seed: int) -> Iterator[Answer]:
+    """Ask the same person where people are known, anybody where not."""
+    random = np.random.default_rng(seed)
+    classes = np.unique(recorded.labels)
+    for _ in range(draws):
+        chosen = random.permutation(classes)[: len(classes) // 2 + 1]
+        own = recorded.people == random.choice(np.unique(recorded.people))
+        templates = [
+            int(random.choice(np.flatnonzero(own & (recorded.labels == label)))) for label in chosen
+        ]
+        language = Language(recorded.name, demonstrated(recorded, templates))
+        recognizer = Recognizer(language, "full")
+        pool = np.setdiff1d(np.flatnonzero(own), templates)
+        for query in random.choice(pool, min(queries, len(pool)), replace=False):
+            label = str(recorded.labels[query])
+            try:
+                result = recognizer.recognize(recorded.recordings[query])
+            except PoseError:
+                continue
+            yield Answer(result.confidence, label in language.labels, result.nearest == label)
+
+
+def main() -> None:
+    """Print the reliability table, and false acceptance per set."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
+    parser.add_argument("--draws", type=int, default=40, help="languages per set")
+    parser.add_argument("--queries", type=int, default=30, help="queries per language")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    everything: list[Answer] = []
+    for recorded in recorded_sets(given.data / "trajectories"):
+        asked = [*answers(recorded, given.draws, given.queries, given.seed)]
+        known = [answer.confidence for answer in asked if answer.known]
+        foreign = [answer.confidence for answer in asked if not answer.known]
+        bar = np.percentile(known, REFUSED)
+        accepted = np.mean([confidence >= bar for confidence in foreign])
+        print(
+            f"{recorded.name}: {accepted:.1%} of {len(foreign)} foreign movements reach {bar:.2f}"
+        )
+        everything += asked
+    print("confidence, queries, mean confidence, share correct")
+    for low, high in pairwise(BINS):
+        inside = [answer for answer in everything if low <= answer.confidence < high]
+        if inside:
+            mean = np.mean([answer.confidence for answer in inside])
+            correct = np.mean([answer.correct for answer in inside])
+            print(f"{low:.1f} to {min(high, 1):.1f}: {len(inside)}, {mean:.2f}, {correct:.2f}")
+
+
+if __name__ == "__main__":
+    main()
