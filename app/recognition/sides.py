@@ -43,13 +43,14 @@ def with_sides_repaired(trajectory: Trajectory) -> Trajectory:
 
     Returns
     -------
-    The trajectory itself where nothing was mistaken.
+    The trajectory itself where nothing was mistaken, or where no shoulders are among its
+    landmarks: hands alone also jump when they only cross.
 
     """
     names = trajectory.landmarks
     lefts = {f"left_{part}" for part in PARTS}
     left = [i for i, name in enumerate(names) if name in lefts and other_side(name) in names]
-    if not left or len(trajectory) < 2:
+    if not set(SHOULDERS) <= set(names) or len(trajectory) < 2:
         return trajectory
     right = [names.index(other_side(names[index])) for index in left]
     clear = np.flatnonzero(~_blended(trajectory))
@@ -71,8 +72,6 @@ def with_sides_repaired(trajectory: Trajectory) -> Trajectory:
 
 def _blended(trajectory: Trajectory) -> npt.NDArray[np.bool_]:
     """Tell ``(T,)`` in which frames the shoulders are too close to each other."""
-    if not set(SHOULDERS) <= set(trajectory.landmarks):
-        return np.zeros(len(trajectory), dtype=bool)
     shoulders = trajectory.select(SHOULDERS).xy
     width = np.linalg.norm(shoulders[:, 0] - shoulders[:, 1], axis=1)
     known = width[np.isfinite(width)]

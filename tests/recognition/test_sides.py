@@ -61,6 +61,11 @@ def test_frames_between_the_sides_are_not_believed() -> None:
     assert np.flatnonzero(blended).tolist() == [19, 40]
 
 
+def test_hands_without_a_body_are_left_alone() -> None:
+    hands = exchanged(shown(), [7, 20, 21]).select(["left_wrist", "right_wrist"])
+    assert with_sides_repaired(hands) is hands
+
+
 def test_a_set_with_one_hand_has_no_sides_to_exchange() -> None:
     one = shown().select(["right_wrist", "right_elbow"])
     assert with_sides_repaired(one) is one
