@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import typer
 from rich import box
 from rich.console import Console
+from rich.measure import Measurement
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
@@ -21,13 +22,17 @@ people = Console(stderr=True)
 def show_recognition(take: Take, result: Recognition) -> None:
     """Print the label on stdout and the vote table, for a person, on stderr."""
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
-    people.print(vote_table(result))
+    table = vote_table(result)
+    # A terminal that is too narrow wraps the lines; cropping would lose distances.
+    unlimited = people.options.update(max_width=10_000)
+    needed = Measurement.get(people, unlimited, table).maximum
+    Console(stderr=True, width=max(people.width, needed)).print(table)
 
 
 def vote_table(result: Recognition) -> Table:
     """Lay out every voter's distance to every gesture, a gesture a row, votes marked by a star.
 
-    Gestures are rows since a language has many, and eighty columns hold all voters.
+    Gestures are rows since a language has many, and eighty columns hold the paper's voters.
     """
     table = Table(
         title="distance to every gesture, by voter; * its vote",
