@@ -22,6 +22,11 @@ people = Console(stderr=True)
 def show_recognition(take: Take, result: Recognition) -> None:
     """Print the label on stdout and the vote table, for a person, on stderr."""
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
+    if not take.closed:
+        people.print(
+            f"the take from {take.start:.2f} s was not closed by a second salute: it is taken to "
+            f"last until {take.end:.2f} s"
+        )
     table = vote_table(result)
     # A terminal that is too narrow wraps the lines; cropping would lose distances.
     unlimited = people.options.update(max_width=10_000)
