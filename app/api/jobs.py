@@ -71,6 +71,8 @@ def job_view(job: Job, progress: Progress | None) -> JobView:
         done=shown.done,
         total=shown.total,
         eta_s=shown.eta_s,
+        time=shown.time,
+        pose=shown.pose,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.api.extraction.messages import Pose
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
 from app.store import JobStatus
@@ -65,6 +66,15 @@ class JobView(BaseModel):
     done: int = Field(description="Frames")
     total: int = Field(description="Frames; an estimate where the container does not count them")
     eta_s: float | None = Field(description="Seconds left at the present rate")
+    time: float | None = Field(
+        description="Seconds after the clip's first frame, of the frame that `pose` was found in; "
+        "null in every stage but poses"
+    )
+    pose: Pose | None = Field(
+        description="The newest pose: of each of the 33 landmarks of the body (in the order of "
+        "`landmarks` in a clip's poses) x and y as fractions of the picture's width and height, "
+        "x right, y down; null: not seen. Null as a whole where nobody is in the frame"
+    )
     error: str | None
     error_code: str | None
     created: datetime

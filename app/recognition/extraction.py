@@ -21,12 +21,17 @@ Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
 Raising an exception in it cancels the work."""
 
+Observer = Callable[[float, FrameLandmarks], None]
+"""``observer(time, found)``: seconds after the clip's first frame, and what the models found in the
+frame of that time. Raising an exception in it cancels the work."""
+
 
 def record(
     clip: str | Path,
     *,
     estimator: PoseEstimator | None = None,
     progress: Progress | None = None,
+    observer: Observer | None = None,
     limits: VideoLimits | None = None,
 ) -> Recording:
     """Find body and hands in every frame of a clip.
@@ -41,6 +46,8 @@ def record(
         What finds the landmarks; it is reset first and left open. None: the default one.
     progress
         Called after every frame.
+    observer
+        Called with the landmarks of every frame, before `progress` counts it.
     limits
         What the clip may cost.
 
@@ -54,9 +61,9 @@ def record(
     """
     with read_frames(clip, limits) as reader:
         if estimator is not None:
-            return _record(reader, estimator, progress)
+            return _record(reader, estimator, progress, observer)
         with closing(create_estimator()) as own:
-            return _record(reader, own, progress)
+            return _record(reader, own, progress, observer)
 
 
 def extract_poses(
@@ -130,12 +137,20 @@ class _Collector:
         return tuple(found)
 
 
-def _record(reader: FrameReader, estimator: PoseEstimator, progress: Progress | None) -> Recording:
+def _record(
+    reader: FrameReader,
+    estimator: PoseEstimator,
+    progress: Progress | None,
+    observer: Observer | None,
+) -> Recording:
     estimator.reset()
     collector = _Collector(reader.info)
     done = 0
     for frame in reader:
-        collector.add(frame.time, estimator.estimate(frame.image, frame.time))
+        found = estimator.estimate(frame.image, frame.time)
+        collector.add(frame.time, found)
+        if observer is not None:
+            observer(frame.time, found)
         done = frame.index + 1
         if progress is not None:
             progress(done, _expected_frames(reader.info, frame))

@@ -50,6 +50,7 @@ export const clips = {
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
+  video: (clip) => `${BASE}/clips/${id(clip)}/video`,
 };
 
 export const jobs = {

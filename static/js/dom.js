@@ -1,7 +1,5 @@
 // Building elements. Text only ever becomes text nodes: nothing a user wrote is parsed as markup.
 
-const SVG = "http://www.w3.org/2000/svg";
-
 const ICONS = {
   close: "M5 5l10 10M15 5L5 15",
   more: "M4 10h.01M10 10h.01M16 10h.01",
@@ -31,15 +29,17 @@ export function h(tag, properties = {}, ...children) {
   return element;
 }
 
+/** Make an element of a drawing, with attributes. */
+export function svg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
 /** Make one of the line icons; it is decoration, so its button needs a label of its own. */
 export function icon(name) {
-  const svg = document.createElementNS(SVG, "svg");
-  svg.setAttribute("viewBox", "0 0 20 20");
-  svg.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(SVG, "path");
-  path.setAttribute("d", ICONS[name]);
-  svg.append(path);
-  return svg;
+  return svg("svg", { viewBox: "0 0 20 20", "aria-hidden": "true" }, svg("path", { d: ICONS[name] }));
 }
 
 /** Make a small button that shows only an icon. */

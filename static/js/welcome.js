@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { BUSY, samplesList, statusText } from "./clips.js";
 import { byId, h } from "./dom.js";
+import { drawPose, skeleton } from "./skeleton.js";
 import { selectedClip } from "./state.js";
 
 const STEPS = [
@@ -38,38 +39,48 @@ function welcome(samples) {
   ];
 }
 
-function progressOf(clip, job) {
-  const bar = h("progress", { "aria-label": "Progress", ...(job?.total ? { max: job.total, value: job.done } : {}) });
-  const poster = h("img", { className: "welcome-poster", src: api.clips.poster(clip.id), alt: "" });
-  poster.onerror = () => poster.remove(); // There is none before the clip's first frame was read.
-  return [
-    poster,
-    h("h1", {}, clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses"),
-    bar,
-    h("p", { className: "dim", role: "status" }, statusText(clip, job)),
-  ];
+/** The clip's own picture under the skeleton; `showProgress` moves both on. */
+function progressPanel(clip) {
+  return h("div", { className: "welcome-progress" },
+    h("div", { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
+      h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" }),
+      skeleton(clip.width, clip.height)),
+    h("h1"),
+    h("progress", { "aria-label": "Progress" }),
+    h("p", { className: "dim", role: "status" }));
+}
+
+/** Show the frame in which the newest pose was found, and the pose. */
+function showPose(panel, clip, { time, pose }) {
+  const video = panel.querySelector("video");
+  const playable = video && !video.error && (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
+  if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
+  // A seek that is cut short by the next shows nothing, so the next waits.
+  if (playable && !video.seeking) video.currentTime = time;
+  drawPose(panel.querySelector(".skeleton"), pose);
+}
+
+/** Change what moves in the panel, and keep the rest: the video would be loaded anew. */
+function showProgress(panel, clip, job) {
+  const bar = panel.querySelector("progress");
+  panel.querySelector("h1").textContent = clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses";
+  panel.querySelector("[role=status]").textContent = statusText(clip, job);
+  if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
+  else bar.removeAttribute("value");
+  if (Number.isFinite(job?.time)) showPose(panel, clip, job);
 }
 
 /** Draw it, or hide it when the frame has something to show. */
 export function drawWelcome({ clips, uploads, samples, jobs, loaded }) {
   const box = byId("welcome");
   const clip = selectedClip();
-  const busy = clip && BUSY.has(clip.status);
+  const busy = clip !== null && BUSY.has(clip.status);
   const nothing = loaded && !clips.length && !uploads.length;
-  box.hidden = !busy && !nothing;
-  if (nothing && box.dataset.shows !== `welcome ${samples.length}`) {
-    box.dataset.shows = `welcome ${samples.length}`;
-    box.replaceChildren(h("div", {}, welcome(samples)));
+  const shows = busy ? clip.job_id : nothing ? `welcome ${samples.length}` : "";
+  box.hidden = !shows;
+  if (box.dataset.shows !== shows) {
+    box.dataset.shows = shows;
+    box.replaceChildren(...(busy ? [progressPanel(clip)] : nothing ? [h("div", {}, welcome(samples))] : []));
   }
-  if (!busy) return;
-  const job = jobs.get(clip.job_id);
-  const bar = box.querySelector("progress");
-  if (box.dataset.shows === `${clip.id} ${clip.status}` && job?.total && bar.max === job.total) {
-    // Moving the bar rather than replacing it keeps its transition and the picture.
-    bar.value = job.done;
-    box.querySelector("[role=status]").textContent = statusText(clip, job);
-    return;
-  }
-  box.dataset.shows = `${clip.id} ${clip.status}`;
-  box.replaceChildren(h("div", { className: "welcome-progress" }, progressOf(clip, job)));
+  if (busy) showProgress(box, clip, jobs.get(clip.job_id));
 }

@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 
 from app.settings import Settings
 from tests.api.running import assert_problem, running, until
 from tests.api.test_clips import CLIPS, upload
 from tests.api.workers import alive, linux, workers_of
+from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
 
 JOBS = "/api/v1/jobs"
@@ -43,15 +45,27 @@ def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
     return job_id, worker
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("models")
-def test_progress_is_told_until_the_end(client: httpx.Client, small_clip: Path) -> None:
-    job_id = upload(client, small_clip).json()["job_id"]
+def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None:
+    accepted = upload(client, ROOT / "languages" / "clips" / "circle-demonstration.mp4").json()
+    clip_id, job_id = accepted["id"], accepted["job_id"]
     told = list(events_of(client, job_id))
     assert told[-1]["status"] == "done"
-    assert (told[-1]["done"], told[-1]["total"]) == (12, 12)
-    counted = [event["done"] for event in told if event["stage"] == "poses"]
+    poses = client.get(f"{CLIPS}/{clip_id}/poses").json()
+    frames = len(poses["time"])
+    assert (told[-1]["done"], told[-1]["total"]) == (frames, frames)
+    arriving = [event for event in told if event["stage"] == "poses"]
+    counted = [event["done"] for event in arriving]
     assert counted == sorted(counted)
-    assert counted[-1] == 12
+    assert counted[-1] == frames
+    for event in arriving:
+        frame = event["done"] - 1
+        assert event["time"] == pytest.approx(poses["time"][frame], abs=0.001)
+        assert np.multiply(event["pose"], poses["frame_size"]) == pytest.approx(
+            np.array(poses["xy"][frame]), abs=0.1
+        )
+    assert told[-1]["time"] is told[-1]["pose"] is None
     for event in told:
         assert {"stage", "done", "total", "eta_s"} <= set(event)
         assert 0 <= event["done"] <= event["total"]

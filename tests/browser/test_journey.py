@@ -39,13 +39,18 @@ def votes_in(table: Locator) -> dict[str, int]:
 
 
 def upload(page: Page, clip: Path) -> None:
-    """Drop a clip, watch its progress, and wait for its take."""
+    """Drop a clip, watch its poses arrive, and wait for its take."""
     drop(page, clip)
     progress = page.locator("#welcome").get_by_text(re.compile(r"Finding poses, \d+ of \d+ frames"))
     expect(progress).to_be_visible(timeout=EXTRACTION_MS)
+    # The skeleton lies over the clip itself, and is gone with the panel when all are found.
+    expect(page.locator("#welcome video")).to_be_visible()
+    bones = page.locator("#welcome .skeleton .bones")
+    expect(bones).to_have_attribute("d", re.compile("^M"))
     take = page.get_by_role("button", name=re.compile("^Take 1"))
     expect(take).to_be_visible(timeout=EXTRACTION_MS)
     expect(take).to_have_attribute("aria-pressed", "true")
+    expect(bones).to_have_count(0)
 
 
 def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> None:

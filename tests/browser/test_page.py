@@ -10,6 +10,7 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
+from app.recognition.landmarks import POSE_LANDMARKS, SKELETON
 from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -30,6 +31,13 @@ def client(server: Running) -> Iterator[httpx.Client]:
 @pytest.fixture
 def library(server: Running, client: httpx.Client, request: pytest.FixtureRequest) -> Library:
     return library_of(server, client, request.node.name[:40])
+
+
+def test_the_page_joins_the_landmarks_by_the_recognisers_bones(open_page: OpenPage) -> None:
+    page = open_page(scene=False)
+    bones = page.evaluate("async () => (await import('/static/js/skeleton.js')).BONES")
+    joined = tuple((POSE_LANDMARKS[start], POSE_LANDMARKS[end]) for start, end in bones)
+    assert joined == SKELETON
 
 
 def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(

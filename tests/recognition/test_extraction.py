@@ -120,6 +120,38 @@ def test_progress_estimates_the_count_where_the_container_has_none(tmp_path: Pat
     assert totals[10] == pytest.approx(20, abs=3)
 
 
+def test_an_observer_sees_every_frame_before_it_is_counted(clip: Path) -> None:
+    times: list[float] = []
+    seen: list[FrameLandmarks] = []
+    counted: list[tuple[int, int]] = []
+
+    def observe(time: float, found: FrameLandmarks) -> None:
+        times.append(time)
+        seen.append(found)
+
+    recording = record(
+        clip,
+        estimator=ScriptedEstimator(bodiless=frozenset({7})),
+        progress=lambda done, _: counted.append((done, len(seen))),
+        observer=observe,
+    )
+    assert times == recording.poses.time.tolist()
+    assert all(done == observed for done, observed in counted)
+    assert [index for index, found in enumerate(seen) if found.body is None] == [7]
+    bodies = [found.body.xy for found in seen if found.body is not None]
+    assert np.array_equal(np.stack(bodies), np.delete(recording.poses.xy, 7, axis=0))
+
+
+def test_an_exception_in_an_observer_cancels(clip: Path) -> None:
+    def cancel(time: float, _: FrameLandmarks) -> None:
+        raise InterruptedError(f"at {time} s")
+
+    estimator = ScriptedEstimator()
+    with pytest.raises(InterruptedError, match=r"at 0\.0 s"):
+        record(clip, estimator=estimator, observer=cancel)
+    assert len(estimator.times) == 1
+
+
 def test_an_exception_in_progress_cancels_and_frees_the_clip(clip: Path) -> None:
     class CancelledError(Exception):
         pass

@@ -6,6 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field, TypeAdapter
 
+Pose = tuple[tuple[float, float] | None, ...]
+"""A body in one frame, to be drawn: of each of `POSE_LANDMARKS` how far right and how far down it
+is, as fractions of the upright picture's width and height; outside of 0 to 1 where the model places
+it beyond the picture's edge, None where it was not seen."""
+
 
 class Probed(BaseModel):
     """What the clip says about itself (`app.recognition.video.VideoInfo`)."""
@@ -20,12 +25,27 @@ class Probed(BaseModel):
 
 
 class Progressed(BaseModel):
-    """How far the work is."""
+    """How far the work is, and the newest pose.
+
+    Attributes
+    ----------
+    stage
+        ``poses`` or ``saving``.
+    done, total
+        Frames; `total` is an estimate where the container does not count them.
+    time
+        Seconds after the first frame, of the newest frame; None where no frame is shown.
+    pose
+        The body in that frame; None where nobody is in it.
+
+    """
 
     kind: Literal["progressed"] = "progressed"
     stage: str
     done: int
     total: int
+    time: float | None = None
+    pose: Pose | None = None
 
 
 class Finished(BaseModel):

@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.broadcast import Broadcast
 from app.api.extraction import process
-from app.api.extraction.messages import Failed, Finished, Probed, Progressed
+from app.api.extraction.messages import Failed, Finished, Pose, Probed, Progressed
 from app.api.extraction.queue import FairQueue
 from app.settings import Settings
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
@@ -36,6 +36,11 @@ class Progress:
         Frames; `total` is an estimate where the container does not count them.
     eta_s
         Seconds still to go at the present rate, or None before there is one.
+    time
+        Seconds after the clip's first frame, of the newest frame whose landmarks were found; None
+        in the other stages.
+    pose
+        The body in that frame, or None where nobody is in it.
 
     """
 
@@ -43,6 +48,8 @@ class Progress:
     done: int = 0
     total: int = 0
     eta_s: float | None = None
+    time: float | None = None
+    pose: Pose | None = None
 
 
 class ExtractionRunner:
@@ -183,4 +190,4 @@ def _estimate(message: Progressed, elapsed: float) -> Progress:
     """Add the time left, from the rate so far; `elapsed` seconds since the first report."""
     left = message.total - message.done
     eta = round(elapsed / message.done * left, 1) if message.done and elapsed > 0 else None
-    return Progress(message.stage, message.done, message.total, eta)
+    return Progress(message.stage, message.done, message.total, eta, message.time, message.pose)

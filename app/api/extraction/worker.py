@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import math
 import os
 import sys
 import threading
@@ -15,11 +16,18 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, dump
+from app.api.extraction.messages import Failed, Finished, Message, Pose, Probed, Progressed, dump
+
+if TYPE_CHECKING:
+    from app.recognition.estimation.base import Body, FrameLandmarks
 
 PROGRESS_SECONDS = 0.1
 """Shortest time between two reports: what an eye follows on a progress bar."""
+
+POSE_DIGITS = 4
+"""Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 POSTER_SECONDS = 1.0
 """Where in the clip its still picture is taken: recordings often begin black or shaking."""
@@ -38,22 +46,41 @@ def probe(clip: Path, report: Report) -> None:
 
 
 def extract(clip: Path, recording: Path, poster: Path, report: Report) -> None:
-    """Write the clip's poster and recording, reporting progress."""
-    from app.recognition import extraction
+    """Write the clip's poster and recording, reporting progress and the newest pose."""
+    from app.recognition import extraction, video
 
     write_poster(clip, poster)
-    reported = 0.0
+    info = video.probe(clip)
+    reported, newest_time = 0.0, 0.0
+    newest: Body | None = None
+
+    def observe(frame_time: float, found: FrameLandmarks) -> None:
+        nonlocal newest_time, newest
+        newest_time, newest = frame_time, found.body
 
     def progress(done: int, total: int) -> None:
         nonlocal reported
         if (now := time.monotonic()) - reported >= PROGRESS_SECONDS or done == total:
             reported = now
-            report(Progressed(stage="poses", done=done, total=total))
+            pose = pose_in(newest, info.width, info.height) if newest else None
+            seconds = round(newest_time, 3)
+            report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
 
-    found = extraction.record(clip, progress=progress)
-    report(Progressed(stage="saving", done=len(found.poses), total=len(found.poses)))
-    found.save(recording)
-    report(Finished(frames=len(found.poses), warnings=found.warnings))
+    recorded = extraction.record(clip, progress=progress, observer=observe)
+    frames = len(recorded.poses)
+    report(Progressed(stage="saving", done=frames, total=frames))
+    recorded.save(recording)
+    report(Finished(frames=frames, warnings=recorded.warnings))
+
+
+def pose_in(body: Body, width: int, height: int) -> Pose:
+    """Return a body's landmarks as fractions of a picture of `width` x `height` pixels."""
+    return tuple(
+        (round(x / width, POSE_DIGITS), round(y / height, POSE_DIGITS))
+        if math.isfinite(x) and math.isfinite(y)
+        else None
+        for x, y in body.xy.tolist()
+    )
 
 
 def write_poster(clip: Path, poster: Path) -> None:

@@ -10,8 +10,9 @@ import cv2
 import numpy as np
 import pytest
 
-from app.api.extraction.worker import POSTER_WIDTH, write_poster
+from app.api.extraction.worker import POSTER_WIDTH, pose_in, write_poster
 from app.recognition import Recording
+from app.recognition.estimation.base import Body
 from tests.recognition.damaged_clips import write_clip
 
 COMMAND = [sys.executable, "-m", "app.api.extraction.worker"]
@@ -46,7 +47,9 @@ def test_extracting_reports_progress_and_leaves_recording_and_poster(tmp_path: P
     told = answers("extract", clip, recording, poster)
     assert told[-1]["kind"] == "finished"
     assert told[-1]["frames"] == 5
-    assert [answer["done"] for answer in told if answer.get("stage") == "poses"][-1] == 5
+    last = [answer for answer in told if answer.get("stage") == "poses"][-1]
+    assert (last["done"], last["time"]) == (5, pytest.approx(4 / 25))
+    assert last["pose"] is None  # Nobody is in this clip.
     assert len(Recording.load(recording).poses) == 5
     assert poster.read_bytes()[:2] == b"\xff\xd8"
     assert sorted(path.name for path in tmp_path.iterdir()) == [
@@ -54,6 +57,15 @@ def test_extracting_reports_progress_and_leaves_recording_and_poster(tmp_path: P
         "poster.jpg",
         "recording.npz",
     ]
+
+
+def test_a_pose_is_told_as_fractions_of_the_picture() -> None:
+    xy = np.tile([[320.0, 60.0]], (33, 1))
+    xy[1] = [-64.0, 480.0]
+    xy[2] = [np.nan, 10.0]
+    pose = pose_in(Body(xy, np.ones(33), 1.0), 640, 240)
+    assert pose[:4] == ((0.5, 0.25), (-0.1, 2.0), None, (0.5, 0.25))
+    assert len(pose) == 33
 
 
 def test_a_worker_whose_server_is_gone_ends(tmp_path: Path) -> None:
