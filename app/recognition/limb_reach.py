@@ -1,0 +1,84 @@
+"""Reach: how long the bones of an arm can look, and arms kept within it."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.movement import SIDES, limbs_of, part_of
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory
+
+SHARE_OF_TORSO = {"elbow": 0.65, "wrist": 0.51}
+"""Length of the bone that ends there, in torso lengths: upper arm 0.186, forearm 0.146 and trunk
+0.288 of the body's height (Drillis and Contini 1966). A bone looks shorter than it is where it
+points towards the camera, so the demonstration alone may not show its length."""
+
+LEEWAY = 1.05
+"""How much longer than in the demonstration a bone may look: a pose model's error from frame to
+frame."""
+
+_ARMS = limbs_of([side + "wrist" for side in SIDES])
+
+
+def within_reach(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
+    """Shorten the bones of arms that look longer than they can.
+
+    An elbow first follows a wrist that has gone too far; then, from the shoulder outwards, what
+    is too far away is brought back along its bone. The movement of the shoulders is left alone.
+
+    Parameters
+    ----------
+    paths
+        ``(..., T, K, 2)``, finite, of the demonstration's K landmarks.
+    demonstration
+        Each bone can look at least as long as here.
+
+    Returns
+    -------
+    Paths of the same shape.
+
+    """
+    within = paths.copy()
+    places = {part_of(name): index for index, name in enumerate(demonstration.landmarks)}
+    lengths = _longest(demonstration, places)
+    for inner, outer in lengths:
+        if outer.endswith("wrist"):
+            _bring(within, places[inner], places[outer], lengths[inner, outer])
+    for inner, outer in lengths:
+        _bring(within, places[outer], places[inner], lengths[inner, outer])
+    return within
+
+
+def _longest(demonstration: Trajectory, places: dict[str, int]) -> dict[tuple[str, str], float]:
+    """Return, from the trunk outwards, how long each bone that was seen can look."""
+    torso = _torso_length(demonstration)
+    longest = {}
+    for inner, outer in _ARMS:
+        if inner not in places or outer not in places:
+            continue
+        bone = demonstration.xy[:, places[outer]] - demonstration.xy[:, places[inner]]
+        seen = np.isfinite(bone).all(axis=1)
+        if seen.any():
+            shown = LEEWAY * float(np.linalg.norm(bone[seen], axis=1).max())
+            share = SHARE_OF_TORSO.get(outer.split("_", 1)[-1], 0.0)
+            longest[inner, outer] = max(shown, share * torso)
+    return longest
+
+
+def _torso_length(demonstration: Trajectory) -> float:
+    """Return the median distance of mid-shoulders and mid-hips; 0 where they are not seen."""
+    if not {*SHOULDERS, *HIPS} <= set(demonstration.landmarks):
+        return 0.0
+    trunk = demonstration.select((*SHOULDERS, *HIPS)).xy
+    lengths = np.linalg.norm(trunk[:, :2].mean(axis=1) - trunk[:, 2:].mean(axis=1), axis=1)
+    known = lengths[np.isfinite(lengths)]
+    return float(np.median(known)) if len(known) else 0.0
+
+
+def _bring(paths: FloatArray, mover: int, anchor: int, longest: float) -> None:
+    """Bring one landmark along its bone to within reach of another, in place."""
+    bone: npt.NDArray[np.float64] = paths[..., mover, :] - paths[..., anchor, :]
+    length = np.linalg.norm(bone, axis=-1, keepdims=True)
+    paths[..., mover, :] -= bone * np.maximum(0.0, 1.0 - longest / np.maximum(length, 1e-12))
