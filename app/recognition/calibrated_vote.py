@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.fusion import fused, says
+from app.recognition.comparison import Comparison
+from app.recognition.fusion import contributions, says
 from app.recognition.gesture import Gesture
 from app.recognition.motion_references import (
     MAX_GESTURES_READ_OTHERWISE,
@@ -21,6 +22,7 @@ from app.recognition.poses import FloatArray
 from app.recognition.recognition_result import Recognition
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.trajectory import Trajectory
+from app.recognition.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.voters import PAPER_VOTERS
 from app.recognition.voters.motion import MOTION_VOTERS
 
@@ -52,10 +54,17 @@ class CalibratedVote:
     ----------
     gestures
         G gestures, at least one.
+    tuning
+        Its weights are factors on what the language gives each voter to say.
+
+    Raises
+    ------
+    RecognitionError
+        When the weights do not fit the voters.
 
     """
 
-    def __init__(self, gestures: Sequence[Gesture]) -> None:
+    def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
         mirrored = [
             index
@@ -64,10 +73,12 @@ class CalibratedVote:
         ]
         sides = [*gestures, *(gestures[index].mirrored() for index in mirrored)]
         self._owners = np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
-        self._shapes = ShapeReferences(sides)
+        self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
+        # Last, for what a language needs does not change with what its author makes of it.
+        self._say: FloatArray = self._say * tuning.weights_of(VOTERS)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Ask the language for each voter's say, and which directions and tempos it needs."""
@@ -106,16 +117,39 @@ class CalibratedVote:
         """Say and typical distance of the motion voters alone."""
         return self._say[_SHAPES:], self._between[_SHAPES:]
 
+    @property
+    def references(self) -> MotionReferences:
+        """The gestures as movements, in the readings that the language leaves open."""
+        return self._motions
+
+    def compare(self, trajectory: Trajectory) -> Comparison:
+        """Compare a condensed query with every gesture, from its better side."""
+        distances, rows = self._compared(trajectory)
+        shares = contributions(distances, self._say, self._between)
+        readings = [self._motions.readings[row] if row >= 0 else None for row in rows]
+        factors = np.array([reading.penalty if reading else 1.0 for reading in readings])
+        turned = np.zeros(len(rows))
+        backward = np.flatnonzero(factors > 1)
+        turned[backward] = (factors[backward] - 1) * shares[:, backward].sum(axis=0)
+        tempo = VOTERS.index("tempo")
+        slower = self._tempo & np.isfinite(distances[tempo])
+        shares[tempo, slower] += TEMPO_SAY * distances[tempo, slower]
+        chosen = self._sides_nearest(shares.sum(axis=0) + turned)
+        return Comparison(
+            voters=VOTERS,
+            distances=distances[:, chosen],
+            contributions=shares[:, chosen],
+            turned=turned[chosen],
+            readings=tuple(readings[side] for side in chosen),
+            mirrored=chosen >= len(self._labels),
+        )
+
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
-        distances, penalty = self._compared(trajectory)
-        scores = fused(distances, self._say, self._between) * penalty
-        slower = distances[VOTERS.index("tempo")]
-        scores = scores + np.where(self._tempo & np.isfinite(slower), TEMPO_SAY * slower, 0.0)
+        compared = self.compare(trajectory)
+        distances, scores = compared.distances, compared.scores
         if not np.isfinite(scores).any():
             return None
-        chosen = self._sides_nearest(scores)
-        distances, scores = distances[:, chosen], scores[chosen]
         winner = int(scores.argmin())
         votes = {
             voter: int(row.argmin())
@@ -135,19 +169,19 @@ class CalibratedVote:
             votes={voter: self._labels[index] for voter, index in votes.items()},
         )
 
-    def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-        """Return ``(V, sides)`` distances and ``(sides,)`` penalties of the readings."""
+    def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the readings, -1: none."""
         shape = self._shapes.distances(trajectory)
         motion = np.full((len(MOTION_VOTERS), len(self._owners)), np.inf)
-        penalty = np.ones(len(self._owners))
+        rows = np.full(len(self._owners), -1, dtype=np.intp)
         comparable = np.isfinite(shape).any(axis=0)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
-            motion, penalty = self._motions.nearest(
-                self._motions.distances(query), *self._of_motion, len(self._owners)
-            )
+            measured = self._motions.distances(query)
+            rows = self._motions.nearest(measured, *self._of_motion, len(self._owners))
+            motion[:, rows >= 0] = measured[:, rows[rows >= 0]]
         motion[:, ~comparable] = np.inf
-        return np.concatenate([shape, motion]), penalty
+        return np.concatenate([shape, motion]), rows
 
     def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
         """Choose for each gesture itself or its mirror image: ``(G,)`` indices of sides."""

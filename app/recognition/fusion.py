@@ -100,7 +100,7 @@ def says(
 
 
 def fused(distances: FloatArray, say: FloatArray, between: FloatArray) -> FloatArray:
-    """Fuse distances ``(V, ...)`` to one score each.
+    """Fuse distances ``(V, ...)`` to one score each: the sum of the `contributions`.
 
     Returns
     -------
@@ -108,12 +108,23 @@ def fused(distances: FloatArray, say: FloatArray, between: FloatArray) -> FloatA
     another gesture; infinite where no voter with a say can compare.
 
     """
+    return np.asarray(contributions(distances, say, between).sum(axis=0), dtype=np.float64)
+
+
+def contributions(distances: FloatArray, say: FloatArray, between: FloatArray) -> FloatArray:
+    """Tell what each voter adds to the fused score.
+
+    Returns
+    -------
+    Of the shape of `distances`, ``(V, ...)``: 0 where a voter has no say or cannot compare, all
+    infinite where none with a say can.
+
+    """
     shape = (-1,) + (1,) * (distances.ndim - 1)
-    weight = np.where(np.isfinite(distances), say.reshape(shape), 0.0)
-    relative = np.where(np.isfinite(distances), distances, 0.0) / between.reshape(shape)
-    total = weight.sum(axis=0)
-    return np.asarray(
-        np.divide(
-            (weight * relative).sum(axis=0), total, out=np.full_like(total, np.inf), where=total > 0
-        )
-    )
+    known = np.isfinite(distances)
+    weight = np.where(known, say.reshape(shape), 0.0)
+    relative = np.where(known, distances, 0.0) / between.reshape(shape)
+    total = np.broadcast_to(weight.sum(axis=0), weight.shape)
+    shares: FloatArray = np.full(weight.shape, np.inf)
+    np.divide(weight * relative, total, out=shares, where=total > 0)
+    return shares

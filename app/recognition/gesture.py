@@ -242,14 +242,14 @@ class Gesture:
             descriptors=describe(drawing, PAPER_VOTERS),
         )
 
-    def redrawn(self) -> Gesture:
-        """Make image and descriptors anew from the demonstration.
+    def redrawn(self, simplification: float = SIMPLIFICATION) -> Gesture:
+        """Make image and descriptors anew from the demonstration, see `draw`.
 
         Where only an image is known, it stays, and the descriptors are made from it.
         """
         drawing = self.drawing
         if drawing.trajectory is not None and self.salient:
-            drawing = draw(drawing.trajectory)
+            drawing = draw(drawing.trajectory, simplification)
         descriptors = describe(drawing, PAPER_VOTERS)
         return replace(self, image=drawing.image, descriptors=descriptors)
 

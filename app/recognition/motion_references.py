@@ -131,7 +131,7 @@ class MotionReferences:
 
     def nearest(
         self, distances: FloatArray, say: FloatArray, between: FloatArray, count: int
-    ) -> tuple[FloatArray, FloatArray]:
+    ) -> npt.NDArray[np.intp]:
         """Choose for each gesture the reading that fits best.
 
         Parameters
@@ -145,18 +145,16 @@ class MotionReferences:
 
         Returns
         -------
-        ``(V, G)`` distances in that reading and ``(G,)`` its penalty; infinite and 1 for a
-        gesture without demonstration.
+        ``(G,)`` the row of that reading; -1 for a gesture without demonstration.
 
         """
         penalties = np.array([reading.penalty for reading in self.readings])
         scores = fused(distances, say, between) * penalties
-        chosen, penalty = np.full((len(distances), count), np.inf), np.ones(count)
-        # Writing the best last lets it stay.
-        order = np.argsort(-scores, kind="stable")
-        chosen[:, self.gestures[order]] = distances[:, order]
-        penalty[self.gestures[order]] = penalties[order]
-        return chosen, penalty
+        chosen = np.full(count, -1, dtype=np.intp)
+        # Writing the best last lets it stay, and of equals the first: as shown.
+        order = np.argsort(scores, kind="stable")[::-1]
+        chosen[self.gestures[order]] = order
+        return chosen
 
 
 def tempo_counts(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 
 import numpy as np
 
 from app.recognition.calibrated_vote import CalibratedVote
+from app.recognition.comparison import Comparison
 from app.recognition.errors import LanguageError, PoseError, RecognitionError
 from app.recognition.gesture import condensed
 from app.recognition.language import Language
@@ -15,6 +16,7 @@ from app.recognition.recognition_result import Recognition
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.sides import with_sides_repaired
 from app.recognition.trajectory import Trajectory
+from app.recognition.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.voters import PAPER_VOTERS, Voter
 from app.recognition.voters.motion import MOTION_VOTERS, MotionVoter
 
@@ -35,17 +37,21 @@ class Recognizer:
         At least one gesture.
     profile
         One of `PROFILES`.
+    tuning
+        How it deviates from the profile.
 
     Raises
     ------
     LanguageError
         When the language has no gestures.
     RecognitionError
-        When there is no such profile.
+        When there is no such profile, or the tuning does not fit it.
 
     """
 
-    def __init__(self, language: Language, profile: str = "paper") -> None:
+    def __init__(
+        self, language: Language, profile: str = "paper", *, tuning: Tuning = AS_THE_PROFILE
+    ) -> None:
         if profile not in PROFILES:
             raise RecognitionError(
                 f"no profile {profile!r}; this version has {', '.join(sorted(PROFILES))}"
@@ -54,8 +60,12 @@ class Recognizer:
             raise LanguageError(f"language {language.name!r} has no gestures yet: add one", "")
         self.language = language
         self.profile = profile
-        self._shapes = ShapeReferences(language.gestures)
-        self._calibrated = CalibratedVote(language.gestures) if profile == "full" else None
+        self.tuning = tuning
+        self._weights = tuning.weights_of([voter.name for voter in PROFILES[profile]])
+        self._shapes = ShapeReferences(language.gestures, tuning.simplification)
+        self._calibrated = CalibratedVote(language.gestures, tuning) if profile == "full" else None
+        repaired = tuning.sides_repaired
+        self._repairs_sides = profile == "full" if repaired is None else repaired
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.
@@ -71,16 +81,47 @@ class Recognizer:
             When the recording shows nothing, or no landmark that a gesture needs moves in it.
 
         """
-        trajectory = condensed(Trajectory.from_poses(poses))
+        return self.recognize_trajectory(condensed(Trajectory.from_poses(poses)))
+
+    def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
+        """Recognise the gesture in a recording that is normalised and condensed already.
+
+        Raises
+        ------
+        PoseError
+            As `recognize`.
+
+        """
+        seen = self.as_compared(trajectory)
         if self._calibrated is not None:
-            result = self._calibrated.recognize(with_sides_repaired(trajectory))
+            result = self._calibrated.recognize(seen)
             if result is None:
                 raise self._nothing_moves(self._calibrated.needed)
             return result
-        distances = self._shapes.distances(trajectory)
+        distances = self._shapes.distances(seen)
         if not np.isfinite(distances).any():
             raise self._nothing_moves(self._shapes.needed)
         return self._counted(distances)
+
+    def as_compared(self, trajectory: Trajectory) -> Trajectory:
+        """Return a condensed query as the voters see it: exchanged sides are put right or not."""
+        return with_sides_repaired(trajectory) if self._repairs_sides else trajectory
+
+    def compare(self, trajectory: Trajectory) -> Comparison:
+        """Take the comparison of a condensed query with every gesture apart, voter by voter."""
+        seen = self.as_compared(trajectory)
+        if self._calibrated is not None:
+            return self._calibrated.compare(seen)
+        distances = self._shapes.distances(seen)
+        count = len(self.language.gestures)
+        return Comparison(
+            voters=tuple(voter.name for voter in PAPER_VOTERS),
+            distances=distances,
+            contributions=relative_contributions(distances, self._weights),
+            turned=np.zeros(count),
+            readings=(None,) * count,
+            mirrored=np.zeros(count, dtype=bool),
+        )
 
     def _nothing_moves(self, needed: tuple[str, ...]) -> PoseError:
         return PoseError(
@@ -93,16 +134,18 @@ class Recognizer:
         gestures = tuple(gesture.label for gesture in self.language.gestures)
         votes = {
             voter.name: int(row.argmin())
-            for voter, row in zip(PAPER_VOTERS, distances, strict=True)
-            if np.isfinite(row).any()
+            for voter, row, weight in zip(PAPER_VOTERS, distances, self._weights, strict=True)
+            if np.isfinite(row).any() and weight > 0
         }
-        count = Counter(votes.values())
-        relative = mean_relative_distances(distances)
+        count: dict[int, float] = defaultdict(float)
+        for voter, index in votes.items():
+            count[index] += self.tuning.weights.get(voter, 1.0)
+        relative = relative_contributions(distances, self._weights).sum(axis=0)
         winner = min(count, key=lambda index: (-count[index], relative[index], index))
         return Recognition(
             label=gestures[winner],
             nearest=gestures[winner],
-            confidence=(count[winner] / len(votes) + _margin(relative, winner)) / 2,
+            confidence=(count[winner] / sum(count.values()) + _margin(relative, winner)) / 2,
             profile=self.profile,
             voters=tuple(voter.name for voter in PAPER_VOTERS),
             gestures=gestures,
@@ -111,26 +154,33 @@ class Recognizer:
         )
 
 
-def mean_relative_distances(distances: FloatArray) -> FloatArray:
-    """Bring voters with different units to one number per gesture.
+def relative_contributions(distances: FloatArray, weights: FloatArray) -> FloatArray:
+    """Bring voters with different units to one number per gesture, their sum.
 
     Parameters
     ----------
     distances
         ``(V, G)``, infinite where not comparable.
+    weights
+        ``(V,)``, 0: left out.
 
     Returns
     -------
-    ``(G,)``: the mean, over the voters that can compare anything, of a distance divided by that
-    voter's mean over all comparable gestures. 1 = as far as the average gesture; infinite where
-    not comparable.
+    ``(V, G)``, whose sum over the voters is the mean relative distance: the weighted mean, over
+    the voters that can compare anything, of a distance divided by that voter's mean over all
+    comparable gestures. 1 = as far as the average gesture; infinite where not comparable.
 
     """
-    voting = distances[np.isfinite(distances).any(axis=1)]
-    comparable = np.isfinite(voting)
-    means = np.where(comparable, voting, 0.0).sum(axis=1) / comparable.sum(axis=1)
-    relative = voting / np.where(means > 0, means, 1.0)[:, None]
-    return np.asarray(relative.mean(axis=0), dtype=np.float64)
+    comparable = np.isfinite(distances)
+    voting = comparable.any(axis=1) & (weights > 0)
+    if not voting.any():
+        return np.full_like(distances, np.inf)
+    sums = np.where(comparable, distances, 0.0).sum(axis=1)
+    means = sums[voting] / comparable[voting].sum(axis=1)
+    shares = weights[voting] / weights[voting].sum()
+    contributions = np.zeros_like(distances)
+    contributions[voting] = distances[voting] * (shares / np.where(means > 0, means, 1.0))[:, None]
+    return contributions
 
 
 def _margin(relative: FloatArray, winner: int) -> float:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from app.recognition.gesture import Gesture
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import draw
+from app.recognition.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.voters import PAPER_VOTERS, Voter, describe
 
 
@@ -42,11 +42,16 @@ class ShapeReferences:
     ----------
     gestures
         G gestures; those without an image or without salient keypoints match nothing.
+    simplification
+        Tolerance in pixels with which gestures and queries are drawn, see `draw`.
 
     """
 
-    def __init__(self, gestures: Sequence[Gesture]) -> None:
+    def __init__(self, gestures: Sequence[Gesture], simplification: float = SIMPLIFICATION) -> None:
         self._count = len(gestures)
+        self._simplification = simplification
+        if simplification != SIMPLIFICATION:
+            gestures = [gesture.redrawn(simplification) for gesture in gestures]
         self._ballots = _ballots(gestures, PAPER_VOTERS)
 
     @property
@@ -67,7 +72,7 @@ class ShapeReferences:
         """
         distances = np.full((len(PAPER_VOTERS), self._count), np.inf)
         for ballot in self._ballots:
-            _judge(trajectory, ballot, distances)
+            _judge(trajectory, ballot, self._simplification, distances)
         return distances
 
     def own_distances(self, most: int) -> list[FloatArray]:
@@ -88,14 +93,16 @@ class ShapeReferences:
         return [np.concatenate(parts) for parts in own]
 
 
-def _judge(trajectory: Trajectory, ballot: _Ballot, distances: FloatArray) -> None:
+def _judge(
+    trajectory: Trajectory, ballot: _Ballot, simplification: float, distances: FloatArray
+) -> None:
     """Fill in the distances ``(V, G)`` to the gestures of one ballot."""
     if not set(ballot.salient) <= set(trajectory.landmarks):
         return
     query = trajectory.select(ballot.salient)
     if not np.isfinite(query.xy).all(axis=2).any(axis=0).all():
         return  # a salient keypoint is never seen
-    descriptors = describe(draw(query), PAPER_VOTERS)
+    descriptors = describe(draw(query, simplification), PAPER_VOTERS)
     for row, voter in enumerate(PAPER_VOTERS):
         if voter.name in descriptors:
             distances[row, ballot.members] = voter.distances(

@@ -65,7 +65,7 @@ class Drawing:
         return not self.image.any()
 
 
-def draw(trajectory: Trajectory) -> Drawing:
+def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Drawing:
     """Draw the paths of a trajectory's landmarks into one image.
 
     The one way an image comes about, for reference and query alike: all landmarks share one
@@ -77,6 +77,8 @@ def draw(trajectory: Trajectory) -> Drawing:
     ----------
     trajectory
         Of the salient keypoints only.
+    simplification
+        Tolerance of Ramer-Douglas-Peucker in pixels.
 
     Returns
     -------
@@ -96,7 +98,7 @@ def draw(trajectory: Trajectory) -> Drawing:
     for path in np.moveaxis(trajectory.xy, 1, 0):
         pixels = (path - (low + high) / 2) * scale + (SIZE - 1) / 2
         for stroke in _strokes(pixels):
-            _draw_stroke(image, stroke)
+            _draw_stroke(image, simplified(stroke, simplification))
     return Drawing(image, trajectory)
 
 
@@ -106,8 +108,7 @@ def _strokes(path: FloatArray) -> list[FloatArray]:
     return [np.stack(list(points)) for known, points in runs if known]
 
 
-def _draw_stroke(image: BinaryImage, stroke: FloatArray) -> None:
-    corners = simplified(stroke, SIMPLIFICATION)
+def _draw_stroke(image: BinaryImage, corners: FloatArray) -> None:
     grid = np.rint(corners * 2**_SUBPIXEL_BITS).astype(np.int32)[:, None]
     cv2.polylines(
         image, [grid], isClosed=False, color=255, thickness=STROKE_WIDTH, shift=_SUBPIXEL_BITS

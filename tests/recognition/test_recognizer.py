@@ -17,7 +17,7 @@ from app.recognition import (
     RecognitionError,
     Recognizer,
 )
-from app.recognition.recognizer import mean_relative_distances
+from app.recognition.recognizer import relative_contributions
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import Drawing, draw
 from app.recognition.voters import PAPER_VOTERS
@@ -210,9 +210,9 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
     recognizer = Recognizer(Language("many", [*many, left]))
     drawn: list[tuple[str, ...]] = []
 
-    def noted(trajectory: Trajectory) -> Drawing:
+    def noted(trajectory: Trajectory, simplification: float) -> Drawing:
         drawn.append(trajectory.landmarks)
-        return draw(trajectory)
+        return draw(trajectory, simplification)
 
     monkeypatch.setattr("app.recognition.shape_references.draw", noted)
     recognizer.recognize(recording(circle))
@@ -222,7 +222,9 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
 def test_relative_distances_put_voters_on_one_scale() -> None:
     never = [np.inf] * 3  # a voter that abstains has no say
     distances = np.array([[1.0, 3.0, np.inf], [100.0, 300.0, np.inf], [0.0, 0.0, np.inf], never])
-    np.testing.assert_allclose(mean_relative_distances(distances), [1 / 3, 1.0, np.inf])
+    contributions = relative_contributions(distances, np.ones(4))
+    np.testing.assert_allclose(contributions.sum(axis=0), [1 / 3, 1.0, np.inf])
+    assert contributions[3].tolist() == [0.0, 0.0, 0.0]
 
 
 def test_a_tie_goes_to_the_smaller_mean_relative_distance(recognizer: Recognizer) -> None:

@@ -1,0 +1,50 @@
+"""A comparison: a query beside every gesture, and what the distances add up to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.poses import FloatArray
+from app.recognition.readings import Reading
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Comparison:
+    """What decides a recognition, taken apart voter by voter.
+
+    Attributes
+    ----------
+    voters
+        V names.
+    distances
+        ``(V, G)``, each voter in its own unit; infinite where not comparable.
+    contributions
+        ``(V, G)``: what each voter adds to a gesture's score, smaller = more alike; 0 where it
+        cannot compare or has no say, infinite for a gesture that no voter can compare.
+    turned
+        ``(G,)``: what is added since the gesture fits only when read backwards.
+    readings
+        The order in which each gesture's steps fit best; None where only its image is compared.
+    mirrored
+        ``(G,)``: whether it is the gesture's mirror image that fits best.
+
+    """
+
+    voters: tuple[str, ...]
+    distances: FloatArray
+    contributions: FloatArray
+    turned: FloatArray
+    readings: tuple[Reading | None, ...]
+    mirrored: npt.NDArray[np.bool_]
+
+    @property
+    def scores(self) -> FloatArray:
+        """``(G,)``: the sums of contributions and `turned`, smaller = more alike.
+
+        Profile ``full``: the fused distance, which decides. Profile ``paper``: the mean relative
+        distance, which decides among gestures with as many votes.
+        """
+        return np.asarray(self.contributions.sum(axis=0) + self.turned, dtype=np.float64)

@@ -1,0 +1,78 @@
+"""A comparison taken apart: the parts add up to what decides."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.comparison import Comparison
+from app.recognition.gesture import condensed
+from app.recognition.recognizer import PROFILES
+from app.recognition.switches import Switches
+from app.recognition.trajectory import Trajectory
+from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
+
+LANGUAGE = Language(
+    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
+)
+RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
+
+
+def compared(recognizer: Recognizer, poses: PoseSequence) -> Comparison:
+    return recognizer.compare(condensed(Trajectory.from_poses(poses)))
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@given(recordings())
+def test_the_distances_are_those_of_the_recognition(profile: str, query: PoseSequence) -> None:
+    comparison = compared(RECOGNIZERS[profile], query)
+    result = RECOGNIZERS[profile].recognize(query)
+    assert comparison.voters == result.voters
+    np.testing.assert_array_equal(comparison.distances, result.distances)
+
+
+@given(recordings())
+def test_the_smallest_score_wins_in_profile_full(query: PoseSequence) -> None:
+    scores = compared(RECOGNIZERS["full"], query).scores
+    nearest = RECOGNIZERS["full"].recognize(query).nearest
+    assert LANGUAGE.labels[int(scores.argmin())] == nearest
+
+
+def test_a_figure_read_backwards_costs_half_as_much_again() -> None:
+    comparison = compared(RECOGNIZERS["full"], recording(lambda share: line(1 - share)))
+    at = LANGUAGE.labels.index("line")
+    reading = comparison.readings[at]
+    assert reading is not None
+    assert reading.backward
+    assert comparison.turned[at] == pytest.approx(comparison.contributions[:, at].sum() / 2)
+
+
+def test_the_mirror_image_that_fits_is_named() -> None:
+    gestures = [
+        replace(gesture, switches=Switches(mirror="on")) if gesture.label == "wedge" else gesture
+        for gesture in LANGUAGE.gestures
+    ]
+    recognizer = Recognizer(Language("pool", gestures), "full")
+    shown = PoseSequence(
+        landmarks=(query := recording(SHAPES["wedge"])).landmarks,
+        xy=query.xy,
+        time=query.time,
+        frame_size=query.frame_size,
+    )
+    assert not compared(recognizer, shown).mirrored.any()
+    trajectory = condensed(Trajectory.from_poses(shown)).mirrored()
+    assert recognizer.compare(trajectory).mirrored.tolist() == [
+        label == "wedge" for label in LANGUAGE.labels
+    ]
+
+
+def test_what_no_voter_can_compare_is_infinitely_far() -> None:
+    left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
+    language = Language("pool", [*LANGUAGE.gestures, left])
+    landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
+    query = recording(circle, landmarks=landmarks)
+    for profile in PROFILES:
+        scores = compared(Recognizer(language, profile), query).scores
+        assert np.isfinite(scores).tolist() == [True] * len(SHAPES) + [False]
