@@ -144,12 +144,9 @@ class CalibratedVote:
             mirrored=chosen >= len(self._labels),
         )
 
-    def recognize(self, trajectory: Trajectory) -> Recognition | None:
-        """Recognise a condensed query; None where it moves nothing that a gesture needs."""
-        compared = self.compare(trajectory)
+    def decided(self, compared: Comparison) -> Recognition:
+        """Decide for the gesture with the smallest score; one of them must be finite."""
         distances, scores = compared.distances, compared.scores
-        if not np.isfinite(scores).any():
-            return None
         winner = int(scores.argmin())
         votes = {
             voter: int(row.argmin())

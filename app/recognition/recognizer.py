@@ -92,16 +92,26 @@ class Recognizer:
             As `recognize`.
 
         """
-        seen = self.as_compared(trajectory)
+        return self.decided(self.compare(trajectory))
+
+    def decided(self, compared: Comparison) -> Recognition:
+        """Decide what a comparison of this recogniser's means.
+
+        Raises
+        ------
+        PoseError
+            As `recognize`.
+
+        """
+        if not np.isfinite(compared.scores).any():
+            needed = (self._calibrated or self._shapes).needed
+            raise PoseError(
+                f"nothing to compare: of the landmarks that the gestures of "
+                f"{self.language.name!r} need ({', '.join(needed)}), none moves in this recording"
+            )
         if self._calibrated is not None:
-            result = self._calibrated.recognize(seen)
-            if result is None:
-                raise self._nothing_moves(self._calibrated.needed)
-            return result
-        distances = self._shapes.distances(seen)
-        if not np.isfinite(distances).any():
-            raise self._nothing_moves(self._shapes.needed)
-        return self._counted(distances)
+            return self._calibrated.decided(compared)
+        return self._counted(compared.distances)
 
     def as_compared(self, trajectory: Trajectory) -> Trajectory:
         """Return a condensed query as the voters see it: exchanged sides are put right or not."""
@@ -121,12 +131,6 @@ class Recognizer:
             turned=np.zeros(count),
             readings=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
-        )
-
-    def _nothing_moves(self, needed: tuple[str, ...]) -> PoseError:
-        return PoseError(
-            f"nothing to compare: of the landmarks that the gestures of "
-            f"{self.language.name!r} need ({', '.join(needed)}), none moves in this recording"
         )
 
     def _counted(self, distances: FloatArray) -> Recognition:
