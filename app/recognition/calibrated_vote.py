@@ -144,6 +144,11 @@ class CalibratedVote:
             mirrored=chosen >= len(self._labels),
         )
 
+    def recognize(self, trajectory: Trajectory) -> Recognition | None:
+        """Recognise a condensed query; None where it moves nothing that a gesture needs."""
+        compared = self.compare(trajectory)
+        return self.decided(compared) if np.isfinite(compared.scores).any() else None
+
     def decided(self, compared: Comparison) -> Recognition:
         """Decide for the gesture with the smallest score; one of them must be finite."""
         distances, scores = compared.distances, compared.scores
