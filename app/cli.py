@@ -24,6 +24,7 @@ from app.clip_argument import (
     read_clip,
     take_by_hand,
 )
+from app.evaluate_command import evaluate
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take, takes_in
 from app.recognition.errors import RecognitionError
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
@@ -45,6 +46,7 @@ models_command = typer.Typer(
     help="Pose and hand models: install, list, export.", invoke_without_command=True
 )
 command_line.add_typer(models_command, name="models")
+command_line.command()(evaluate)
 
 
 class FileFormat(StrEnum):

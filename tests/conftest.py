@@ -8,6 +8,7 @@ import pytest
 
 from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
+from tests.command_line import OsgStudio
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
@@ -35,3 +36,9 @@ def installed_models() -> None:
             model_path(name)
     except ModelError as error:
         pytest.skip(f"needs the pose and hand models: {error}")
+
+
+@pytest.fixture
+def osg_studio(capsys: pytest.CaptureFixture[str]) -> OsgStudio:
+    """Return what runs a command line and tells how it ended."""
+    return OsgStudio(capsys)

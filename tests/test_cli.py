@@ -4,46 +4,17 @@ import json
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app import __version__
-from app.cli import main
 from app.recognition import Gesture, Language, PoseSequence
+from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """How a run of the command ended."""
-
-    code: int
-    out: str
-    error: str
-
-
-@pytest.fixture
-def osg_studio(capsys: pytest.CaptureFixture[str]) -> "OsgStudio":
-    return OsgStudio(capsys)
-
-
-class OsgStudio:
-    """Runs `osg-studio` in this process, which spares loading everything for each test."""
-
-    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
-        self._capsys = capsys
-
-    def __call__(self, *arguments: str | Path) -> Outcome:
-        with pytest.raises(SystemExit) as ended:
-            main([str(argument) for argument in arguments])
-        captured = self._capsys.readouterr()
-        code = ended.value.code
-        return Outcome(code if isinstance(code, int) else 0, captured.out, captured.err)
 
 
 def a_language(labels: Sequence[str] = ("sign",)) -> Language:

@@ -1,0 +1,135 @@
+"""From labelled files to labelled takes; what was extracted from a clip once is kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from platformdirs import user_data_path
+
+from app import __version__
+from app.evaluation.labelled_files import LabelledFile
+from app.evaluation.one_shot import LabelledTake
+from app.recognition import Recording, record, takes_in
+from app.recognition.errors import ModelError, RecognitionError
+from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.recording import FILE_VERSION
+
+Progress = Callable[[int, int, str], None]
+"""``progress(done, total, name)``: frames of the file of that name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Collection:
+    """What was found in a folder.
+
+    Attributes
+    ----------
+    takes
+        In the order of the files.
+    problems
+        Per file that could not be read, the reason.
+
+    """
+
+    takes: tuple[LabelledTake, ...]
+    problems: dict[str, str]
+
+
+def recordings_dir() -> Path:
+    """Return the folder in the user's data that keeps what was extracted from clips."""
+    kept: Path = user_data_path("osg-studio", appauthor=False) / "recordings"
+    return kept
+
+
+def collected(
+    files: Sequence[LabelledFile],
+    *,
+    keep_in: Path | None = None,
+    progress: Progress | None = None,
+) -> Collection:
+    """Read all files; one that cannot be read does not end the work.
+
+    Parameters
+    ----------
+    files
+        Clips, and recordings that `Recording.save` wrote.
+    keep_in
+        Folder for what is extracted, `recordings_dir` by default. A clip is known by its content,
+        so it may be renamed or moved.
+    progress
+        Called after every frame that is extracted; an exception in it ends the work.
+
+    Raises
+    ------
+    ModelError
+        When a clip must be extracted and the models are not installed.
+
+    """
+    takes: list[LabelledTake] = []
+    problems: dict[str, str] = {}
+    with closing(_Extractor(keep_in or recordings_dir(), progress)) as extractor:
+        for file in files:
+            try:
+                takes += _takes(file, extractor.recording(file.path))
+            except ModelError:
+                raise
+            except (RecognitionError, OSError) as error:
+                problems[str(file.path)] = str(error)
+    return Collection(tuple(takes), problems)
+
+
+class _Extractor:
+    """Gives the recording of a file, extracting no clip twice; models are loaded when needed."""
+
+    def __init__(self, folder: Path, progress: Progress | None) -> None:
+        self._folder = folder
+        self._progress = progress
+        self._estimator: PoseEstimator | None = None
+
+    def recording(self, path: Path) -> Recording:
+        if path.suffix.lower() == ".npz":
+            return Recording.load(path)
+        kept = self._folder / f"{_content_key(path)}.npz"
+        if kept.is_file():
+            return Recording.load(kept)
+        if self._estimator is None:
+            self._estimator = create_estimator()
+        progress = None
+        if self._progress is not None:
+            progress = partial(self._advance, path.name, self._progress)
+        recording = record(path, estimator=self._estimator, progress=progress)
+        self._folder.mkdir(parents=True, exist_ok=True)
+        recording.save(kept)
+        return recording
+
+    def close(self) -> None:
+        if self._estimator is not None:
+            self._estimator.close()
+
+    @staticmethod
+    def _advance(name: str, progress: Progress, done: int, total: int) -> None:
+        progress(done, total, name)
+
+
+def _content_key(path: Path) -> str:
+    """Name a clip by its content, and by the program whose models saw it."""
+    with path.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return f"{digest}-{__version__}-{FILE_VERSION}"
+
+
+def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:
+    """Return what lies between the salutes, or the whole recording where nobody salutes."""
+    found = [take.poses for take in takes_in(recording)] or [recording.poses]
+    sources = [f"{file.path}, take {number}" for number in range(1, len(found) + 1)]
+    if len(found) == 1:
+        sources = [str(file.path)]
+    return [
+        LabelledTake(source, file.label, file.person, poses)
+        for source, poses in zip(sources, found, strict=True)
+    ]

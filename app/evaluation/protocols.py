@@ -1,0 +1,96 @@
+"""The paper's protocols: a language is asked to name plausible variants of its own gestures.
+
+The paper draws 200 variants of each of 3 gestures, after Cabrera and Wachs, and shows each of 8
+gestures 50 times (Sec. V). Here both are variants: nobody shows a gesture fifty times to a
+computer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from app.evaluation.confusion import ConfusionMatrix
+from app.recognition import Language, PoseError, PoseSequence, RecognitionError, Recognizer
+from app.recognition.language_schema import MAX_GESTURES
+from app.recognition.trajectory import Trajectory
+from app.recognition.variation import Person, variants
+
+Progress = Callable[[int, int], None]
+"""``progress(done, total)``, after every query."""
+
+FRAME = (640, 480)
+PIXELS_PER_UNIT = 120.0
+"""A torso of a quarter of the picture's height: an arm stretched out stays inside."""
+
+
+def recognised_variants(
+    language: Language,
+    count: int,
+    *,
+    profile: str,
+    seed: int = 0,
+    person: Person = "same",
+    progress: Progress | None = None,
+) -> ConfusionMatrix:
+    """Let a language name variants of each of its gestures.
+
+    Parameters
+    ----------
+    language
+        Each gesture with its demonstration.
+    count
+        Variants of each gesture.
+    profile
+        Of the recogniser.
+    seed
+        Of the variants; each gesture has its own beside it.
+    person
+        Whether the variants differ as takes by the demonstrator do or as those by other people.
+    progress
+        Called after every query.
+
+    Raises
+    ------
+    RecognitionError
+        When a gesture was imported without its demonstration, or there is no such profile.
+
+    """
+    recognizer = Recognizer(language, profile)
+    shown: list[str] = []
+    read: list[str | None] = []
+    for number, gesture in enumerate(language.gestures):
+        if gesture.trajectory is None:
+            raise RecognitionError(
+                f"{gesture.label!r} was imported without its demonstration, so it has no "
+                "variants: define it again from a clip"
+            )
+        # Gestures drawn with one seed would all waver alike.
+        drawn = variants(
+            gesture.trajectory, count, seed=seed * MAX_GESTURES + number, person=person
+        )
+        for variant in drawn:
+            shown.append(gesture.label)
+            read.append(label_read(recognizer, as_poses(variant)))
+            if progress is not None:
+                progress(len(read), count * len(language.gestures))
+    return ConfusionMatrix.of(language.labels, shown, read)
+
+
+def label_read(recognizer: Recognizer, poses: PoseSequence) -> str | None:
+    """Return the label of a recognition, None also where nothing can be compared."""
+    try:
+        return recognizer.recognize(poses).label
+    except PoseError:
+        return None
+
+
+def as_poses(trajectory: Trajectory) -> PoseSequence:
+    """Put a trajectory into a picture, as a camera would have seen it."""
+    return PoseSequence(
+        landmarks=trajectory.landmarks,
+        xy=trajectory.xy * PIXELS_PER_UNIT + np.array(FRAME) / 2,
+        time=trajectory.time,
+        frame_size=FRAME,
+    )

@@ -1,0 +1,59 @@
+"""Shares of something counted, with the interval that their number allows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+CONFIDENCE_95 = 1.96
+"""Standard deviations of a normal distribution that hold 95 % of it."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """Correct answers out of all that were asked.
+
+    Attributes
+    ----------
+    correct, asked
+        Counts; `asked` may be 0, then there is no share.
+
+    """
+
+    correct: int
+    asked: int
+
+    @property
+    def value(self) -> float | None:
+        """The share in [0, 1], or None when nothing was asked."""
+        return self.correct / self.asked if self.asked else None
+
+    def interval(self) -> tuple[float, float] | None:
+        """Return Wilson's interval, 95 % (Wilson 1927), or None when nothing was asked."""
+        if (share := self.value) is None:
+            return None
+        n, z = self.asked, CONFIDENCE_95
+        middle = (share + z * z / (2 * n)) / (1 + z * z / n)
+        half = z * sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+        return max(0.0, middle - half), min(1.0, middle + half)
+
+    def __add__(self, other: Share) -> Share:
+        return Share(self.correct + other.correct, self.asked + other.asked)
+
+    def __str__(self) -> str:
+        interval = self.interval()
+        if self.value is None or interval is None:
+            return "-"
+        low, high = interval
+        return f"{self.value:.1%} ({low:.0%}-{high:.0%})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        interval = self.interval()
+        return {
+            "correct": self.correct,
+            "asked": self.asked,
+            "share": self.value,
+            "interval": None if interval is None else list(interval),
+        }

@@ -1,0 +1,77 @@
+"""One-shot accuracy: who is asked for what, on drawn movements."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.evaluation.one_shot import LabelledTake, one_shot, read_by
+from app.recognition import Gesture, Language, RecognitionError
+from tests.evaluation.takes import drawn_takes
+
+
+@pytest.fixture(scope="module")
+def swipes() -> list[LabelledTake]:
+    return drawn_takes("swipes", people=(0, 1), takes=3)
+
+
+def test_every_take_is_asked_for_under_every_choice_that_did_not_take_it_as_template(
+    swipes: list[LabelledTake],
+) -> None:
+    result = one_shot(swipes, profile="full")
+    # Two people, three takes of three gestures each: three languages a person.
+    assert result.languages == 6
+    assert result.same_person.correct.asked == 6 * (9 - 3)
+    assert result.other_people.correct.asked == 6 * 9
+    assert result.same_person.labels == ("left", "right", "up")
+    assert result.unusable == {}
+
+
+def test_swipes_to_three_sides_are_told_apart_by_full_and_not_by_shape_alone(
+    swipes: list[LabelledTake],
+) -> None:
+    full, paper = (one_shot(swipes, profile=profile) for profile in ("full", "paper"))
+    assert full.other_people.correct.correct >= 0.9 * full.other_people.correct.asked
+    assert paper.other_people.correct.correct < 0.8 * paper.other_people.correct.asked
+
+
+def test_where_people_are_not_known_all_queries_are_the_same_persons(
+    swipes: list[LabelledTake],
+) -> None:
+    unknown = [replace(take, person="") for take in swipes]
+    result = one_shot(unknown, profile="paper")
+    assert result.languages == 6
+    assert result.same_person.correct.asked == 6 * (18 - 3)
+    assert result.other_people.correct.asked == 0
+
+
+def test_a_take_that_cannot_be_a_demonstration_is_named_and_still_asked_for(
+    swipes: list[LabelledTake],
+) -> None:
+    shown = swipes[0].poses
+    still = replace(shown, xy=np.broadcast_to(shown.xy[:1], shown.xy.shape))
+    bad = replace(swipes[0], source="still.mp4", poses=still)
+    result = one_shot([bad, *swipes[1:]], profile="paper")
+    assert list(result.unusable) == ["still.mp4"]
+    assert "nothing moves" in result.unusable["still.mp4"]
+    assert result.other_people.refused.correct == 3  # by each language of the other person
+
+
+def test_one_gesture_alone_cannot_be_confused_with_anything(swipes: list[LabelledTake]) -> None:
+    with pytest.raises(RecognitionError, match="at least two gestures"):
+        one_shot([take for take in swipes if take.label == "up"], profile="paper")
+
+
+def test_single_takes_leave_nothing_to_ask_for(swipes: list[LabelledTake]) -> None:
+    firsts = {take.label: take for take in reversed(swipes) if take.person == "person 0"}
+    with pytest.raises(RecognitionError, match="at least two takes"):
+        one_shot([*firsts.values()], profile="paper")
+
+
+def test_a_given_language_is_asked_for_foreign_gestures_too(swipes: list[LabelledTake]) -> None:
+    templates = {take.label: take.poses for take in swipes if take.label != "up"}
+    gestures = [Gesture.from_demonstration(label, poses) for label, poses in templates.items()]
+    matrix = read_by(Language("two", gestures), swipes, profile="full")
+    assert matrix.labels == ("left", "right", "up")
+    assert matrix.counts.sum(axis=1).tolist() == [6, 6, 6]
+    assert matrix.counts[2, 2] == 0

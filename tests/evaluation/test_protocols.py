@@ -1,0 +1,48 @@
+"""The paper's protocols on the sample languages."""
+
+import numpy as np
+import pytest
+
+from app.evaluation.protocols import as_poses, recognised_variants
+from app.recognition import Language, RecognitionError
+from app.recognition.osg_reference import from_reference, to_reference
+from app.recognition.trajectory import Trajectory
+from tests.conftest import ROOT
+
+
+@pytest.fixture(scope="module")
+def table_1() -> Language:
+    return Language.load(ROOT / "languages" / "osg-table-1.json")
+
+
+def test_variants_of_three_gestures_are_nearly_all_named(table_1: Language) -> None:
+    matrix = recognised_variants(table_1, 10, profile="full", seed=3)
+    assert matrix.labels == table_1.labels
+    assert matrix.counts.sum(axis=1).tolist() == [10, 10, 10]
+    assert matrix.correct.correct >= 27
+
+
+def test_the_same_seed_gives_the_same_matrix_and_progress_counts_every_query(
+    table_1: Language,
+) -> None:
+    seen: list[tuple[int, int]] = []
+    once = recognised_variants(
+        table_1, 4, profile="paper", seed=5, progress=lambda *counts: seen.append(counts)
+    )
+    again = recognised_variants(table_1, 4, profile="paper", seed=5)
+    np.testing.assert_array_equal(once.counts, again.counts)
+    assert seen == [(done, 12) for done in range(1, 13)]
+
+
+def test_a_gesture_without_demonstration_is_told_by_name(table_1: Language) -> None:
+    images_only = from_reference(to_reference(table_1), "images")
+    with pytest.raises(RecognitionError, match=r"circle.*define it again"):
+        recognised_variants(images_only, 1, profile="paper")
+
+
+def test_a_trajectory_seen_by_a_camera_is_the_same_trajectory(table_1: Language) -> None:
+    for gesture in table_1.gestures:
+        assert gesture.trajectory is not None
+        seen = Trajectory.from_poses(as_poses(gesture.trajectory))
+        assert seen.unit == gesture.trajectory.unit
+        np.testing.assert_allclose(seen.xy, gesture.trajectory.xy, atol=2e-4)
