@@ -31,7 +31,7 @@ from app.recognition.osg_reference import from_reference, is_reference, to_refer
 from app.recognition.recognizer import PROFILES
 from app.terminal import describe, people, progress_bar, show_recognition
 
-DEFAULT_PROFILE = "paper"
+DEFAULT_PROFILE = "full"
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
 

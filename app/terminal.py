@@ -37,10 +37,12 @@ def show_recognition(take: Take, result: Recognition) -> None:
 def vote_table(result: Recognition) -> Table:
     """Lay out every voter's distance to every gesture, a gesture a row, votes marked by a star.
 
+    A vote without weight is marked by a point.
+
     Gestures are rows since a language has many, and eighty columns hold the paper's voters.
     """
     table = Table(
-        title="distance to every gesture, by voter; * its vote",
+        title="distance to every gesture, by voter; * its vote, . a vote without weight",
         title_justify="left",
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
@@ -50,11 +52,17 @@ def vote_table(result: Recognition) -> Table:
         table.add_column(voter.replace("_", "\n"), justify="right", vertical="bottom", no_wrap=True)
     for column, label in enumerate(result.gestures):
         cells = [
-            f"{distances[column]:.2f}{'*' if result.votes.get(voter) == label else ' '}"
+            f"{distances[column]:.2f}{_mark(result, voter, label)}"
             for voter, distances in zip(result.voters, result.distances, strict=True)
         ]
         table.add_row(Text(label), *cells)
     return table
+
+
+def _mark(result: Recognition, voter: str, label: str) -> str:
+    if result.votes.get(voter) != label:
+        return " "
+    return "*" if result.weights[voter] > 0 else "."
 
 
 @contextmanager

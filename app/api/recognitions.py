@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any
 
-import numpy as np
 from fastapi import APIRouter, Query
 
 from app.api.demonstrations import demonstration_in
@@ -15,7 +14,7 @@ from app.api.studio import CurrentStudio
 from app.recognition import Recognition
 from app.store import RecognitionRecord
 
-DEFAULT_PROFILE = "paper"
+DEFAULT_PROFILE = "full"
 """Profile of whoever names none."""
 
 MOST_LISTED = 500
@@ -69,20 +68,7 @@ def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionVi
 def kept_recognition(record: RecognitionRecord) -> Recognition:
     """Return the recogniser's answer as it was when `record` was made."""
     result: dict[str, Any] = json.loads(record.result)
-    distances = [
-        [np.inf if distance is None else distance for distance in row]
-        for row in result["distances"]
-    ]
-    return Recognition(
-        label=result["label"],
-        nearest=result["nearest"],
-        confidence=result["confidence"],
-        profile=result["profile"],
-        voters=tuple(result["voters"]),
-        gestures=tuple(result["gestures"]),
-        distances=np.array(distances, dtype=np.float64),
-        votes=result["votes"],
-    )
+    return Recognition.from_dict(result)
 
 
 def _view(record: RecognitionRecord) -> RecognitionView:

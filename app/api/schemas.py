@@ -220,7 +220,10 @@ class RecognitionView(BaseModel):
     distances: list[list[float | None]] = Field(
         description="Voters x gestures, smaller: more alike"
     )
-    votes: dict[str, str | None]
+    votes: dict[str, str | None] = Field(description="Each voter's nearest gesture")
+    weights: dict[str, float] = Field(
+        default_factory=dict, description="Each voter's share in the decision; 0: has no say"
+    )
 
 
 class SampleView(BaseModel):

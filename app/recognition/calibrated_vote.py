@@ -108,6 +108,14 @@ class CalibratedVote:
         return dict(zip(VOTERS, self._say.tolist(), strict=True))
 
     @property
+    def weights(self) -> dict[str, float]:
+        """Each voter's share in the decision, summing to 1."""
+        say = self._say.copy()
+        if self._tempo.any():
+            say[VOTERS.index("tempo")] += TEMPO_SAY
+        return dict(zip(VOTERS, (say / say.sum()).tolist(), strict=True))
+
+    @property
     def between(self) -> dict[str, float]:
         """Each voter's typical distance between two gestures of this language."""
         return dict(zip(VOTERS, self._between.tolist(), strict=True))
@@ -155,8 +163,8 @@ class CalibratedVote:
         winner = int(scores.argmin())
         votes = {
             voter: int(row.argmin())
-            for voter, row, say in zip(VOTERS, distances, self._say, strict=True)
-            if np.isfinite(row).any() and (say > 0 or (voter == "tempo" and self._tempo.any()))
+            for voter, row in zip(VOTERS, distances, strict=True)
+            if np.isfinite(row).any()
         }
         return Recognition(
             label=self._labels[winner],
@@ -169,6 +177,7 @@ class CalibratedVote:
             gestures=self._labels,
             distances=distances,
             votes={voter: self._labels[index] for voter, index in votes.items()},
+            weights=self.weights,
         )
 
     def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, npt.NDArray[np.intp]]:

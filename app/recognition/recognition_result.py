@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from app.recognition.poses import FloatArray
 
@@ -36,7 +39,10 @@ class Recognition:
         ``(V, G)``, smaller = more alike, each voter in its own unit; infinite where query and
         gesture cannot be compared, since the query lacks a salient keypoint or does not move it.
     votes
-        Per voter's name the label it votes for.
+        Per voter's name the label of its nearest gesture, whether or not the vote has weight.
+    weights
+        Per voter's name its share in the decision, summing to 1; 0 for a voter that cannot tell
+        the gestures of this language apart. Every voter of profile ``paper`` weighs the same.
 
     """
 
@@ -48,12 +54,39 @@ class Recognition:
     gestures: tuple[str, ...]
     distances: FloatArray
     votes: Mapping[str, str]
+    weights: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
-        """Freeze a private copy of the distances."""
+        """Freeze a private copy of the distances; voters without told weights weigh the same."""
+        if not self.weights:
+            equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
+            object.__setattr__(self, "weights", MappingProxyType(equal))
         distances = self.distances.copy()
         distances.setflags(write=False)
         object.__setattr__(self, "distances", distances)
+
+    @property
+    def counted(self) -> dict[str, str]:
+        """The votes that have weight."""
+        return {voter: label for voter, label in self.votes.items() if self.weights[voter] > 0}
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> Recognition:
+        """Return the recognition that `to_dict` told, or an earlier version did."""
+        rows = [
+            [np.inf if value is None else value for value in row] for row in content["distances"]
+        ]
+        return cls(
+            label=content["label"],
+            nearest=content["nearest"],
+            confidence=content["confidence"],
+            profile=content["profile"],
+            voters=tuple(content["voters"]),
+            gestures=tuple(content["gestures"]),
+            distances=np.array(rows, dtype=np.float64),
+            votes=content["votes"],
+            weights=content.get("weights", {}),
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; a distance that is infinite becomes None."""
@@ -63,6 +96,7 @@ class Recognition:
             "nearest": self.nearest,
             "confidence": self.confidence,
             "votes": dict(self.votes),
+            "weights": dict(self.weights),
             "voters": list(self.voters),
             "gestures": list(self.gestures),
             "distances": [

@@ -50,7 +50,7 @@ class Recognizer:
     """
 
     def __init__(
-        self, language: Language, profile: str = "paper", *, tuning: Tuning = AS_THE_PROFILE
+        self, language: Language, profile: str = "full", *, tuning: Tuning = AS_THE_PROFILE
     ) -> None:
         if profile not in PROFILES:
             raise RecognitionError(

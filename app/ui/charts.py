@@ -23,7 +23,7 @@ MAX_CHART_POINTS = 400
 
 def verdict(recognition: Recognition, expected: str | None) -> str:
     """Say what was recognised, whether that was meant, and who voted for it."""
-    label, votes = recognition.label, recognition.votes
+    label, votes = recognition.label, recognition.counted
     count = sum(vote == recognition.nearest for vote in votes.values())
     support = (
         f"{count} of {len(votes)} voters, confidence {recognition.confidence:.0%}"
@@ -73,13 +73,14 @@ def vote_sentence(votes: Mapping[str, str | None]) -> str:
 def vote_table(recognition: Recognition, expected: str | None) -> str:
     """Tabulate every voter's distance to every gesture; each voter's choice is marked.
 
-    One row per gesture, most votes first, one column per voter. Each voter has its own unit, so
-    shades compare within a column only: the stronger, the nearer. The choice carries a dot and a
+    One row per gesture, most votes first, one column per voter, the weightiest first; voters that
+    have no say in this language come last, faintly. Each voter has its own unit, so shades
+    compare within a column only: the stronger, the nearer. The choice carries a dot and a
     frame, the expected and the chosen gesture carry their name as a tag: nothing is told by
     colour alone.
     """
     counts = {label: 0 for label in recognition.gestures}
-    for label in recognition.votes.values():
+    for label in recognition.counted.values():
         if label in counts:
             counts[label] += 1
     nearness = _nearness(recognition.distances)
@@ -90,12 +91,13 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
             -float(nearness[:, row].mean()) if len(nearness) else 0.0,
         ),
     )
-    head = "".join(
-        f"<th scope='col'><span>{escape(readable(voter))}</span></th>"
-        for voter in recognition.voters
+    columns = np.argsort(
+        [-recognition.weights[voter] for voter in recognition.voters], kind="stable"
     )
+    head = "".join(_voter_head(recognition, recognition.voters[column]) for column in columns)
     rows = "".join(
-        _vote_row(recognition, row, expected, nearness[:, row], counts) for row in order[:MAX_ROWS]
+        _vote_row(recognition, row, expected, nearness[:, row], counts, columns)
+        for row in order[:MAX_ROWS]
     )
     hidden = len(order) - MAX_ROWS
     rest = f"<p class='dim'>{hidden} farther gestures are not shown.</p>" if hidden > 0 else ""
@@ -104,7 +106,18 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
         f"<table aria-label='Votes'><thead><tr><th></th>{head}"
         f"<th scope='col'><span>votes</span></th></tr></thead><tbody>{rows}</tbody></table></div>"
         "<p class='dim'>\N{BLACK CIRCLE} a voter\N{RIGHT SINGLE QUOTATION MARK}s choice. "
-        "The stronger the shade, the nearer, within a column.</p>" + rest
+        "The stronger the shade, the nearer, within a column. Under each voter its share in the "
+        "decision; the faint ones cannot tell these gestures apart and have none.</p>" + rest
+    )
+
+
+def _voter_head(recognition: Recognition, voter: str) -> str:
+    weight = recognition.weights[voter]
+    mute = "" if weight > 0 else " class='mute'"
+    share = f"{weight:.0%}" if weight >= 0.005 or weight == 0 else "<1%"
+    return (
+        f"<th scope='col'{mute}><span>{escape(readable(voter))}</span>"
+        f"<small>{escape(share)}</small></th>"
     )
 
 
@@ -114,6 +127,7 @@ def _vote_row(
     expected: str | None,
     nearness: FloatArray,
     counts: Mapping[str, int],
+    columns: npt.NDArray[np.intp],
 ) -> str:
     gesture = recognition.gestures[row]
     tags = ""
@@ -125,9 +139,10 @@ def _vote_row(
         _vote_cell(
             float(recognition.distances[column, row]),
             float(nearness[column]),
-            recognition.votes.get(voter) == gesture,
+            recognition.votes.get(recognition.voters[column]) == gesture,
+            recognition.weights[recognition.voters[column]] > 0,
         )
-        for column, voter in enumerate(recognition.voters)
+        for column in columns
     )
     kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
     return (
@@ -136,9 +151,9 @@ def _vote_row(
     )
 
 
-def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
+def _vote_cell(distance: float, nearness: float, chosen: bool, counts: bool) -> str:
     shade = f"background:rgba(var(--osg-chosen-rgb),{0.04 + 0.42 * nearness**2:.2f})"
-    kind = " class='choice'" if chosen else ""
+    kind = " class='mute'" if not counts else " class='choice'" if chosen else ""
     return f"<td{kind} style='{shade}'>{short_number(distance)}</td>"
 
 

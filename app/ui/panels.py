@@ -132,7 +132,7 @@ class Inspector:
         self._verdict.content = charts.verdict(recognition, expected)
         self._table.content = charts.vote_table(recognition, expected)
         self._images.content = charts.image_row(images)
-        self._sentence.content = charts.vote_sentence(recognition.votes)
+        self._sentence.content = charts.vote_sentence(recognition.counted)
 
     def show_tracks(
         self, trajectory: Trajectory | None, start: float, salute: tuple[FloatArray, FloatArray]

@@ -53,6 +53,8 @@ PANEL_STYLE: Final = """<style>
 .osg td.choice { position: relative; }
 .osg td.choice::after { content: ""; position: absolute; left: calc(50% - 3px); bottom: 3px;
   width: 6px; height: 6px; border-radius: 50%; background: var(--osg-chosen); }
+.osg .mute { opacity: .45; }
+.osg thead th small { display: block; font-size: 9px; }
 .osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 13px; }
 .osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
 .osg figure { margin: 0; }

@@ -292,6 +292,15 @@ CLIPS = (
         Manner(tempo=1.25, size=1.12, tilt=-5, wobble=0.03, drift=0.03),
     ),
     Clip(
+        "unfinished-triangle",
+        "unfinished triangle",
+        "engineer",
+        "lagoon",
+        View(1.75, yaw=6, aim=(0.0, -0.06)),
+        Manner(tempo=1.1, size=1.05, wobble=0.02),
+        32,
+    ),
+    Clip(
         "ordinary-movement",
         None,
         "student",

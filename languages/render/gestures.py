@@ -96,5 +96,7 @@ DRAWINGS = {
         polygon((-0.88, 0.88), (0.88, 0.88), (0.88, -0.88), (-0.88, -0.88), (-0.88, 0.88))
     ),
     "line": Drawing((straight((1.35, 0), (-1.35, 0)),)),
+    "unfinished triangle": Drawing(polygon((-0.9, 0.85), (0.05, -0.95), (0.95, 0.8), (0.4, 0.83))),
 }
-"""Gestures by label; the first three are Table 1 (Joshi and Sattar 2025)."""
+"""Gestures by label; the first three are Table 1 (Joshi and Sattar 2025), and the last one is a
+triangle by a diver in a hurry: point down, and the third side broken off."""

@@ -94,8 +94,8 @@ export async function loadResult() {
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, nearest, expected, votes } = result;
-  const voters = Object.values(votes);
+  const { label, nearest, expected, votes, weights } = result;
+  const voters = Object.keys(votes).filter((voter) => weights[voter] !== 0).map((voter) => votes[voter]);
   const count = voters.filter((vote) => vote === nearest).length;
   const wrong = label === null || (expected !== null && expected !== label);
   const parts = label === null

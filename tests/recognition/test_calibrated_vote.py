@@ -122,8 +122,9 @@ def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
 
 def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(wedge, jitter=0.01))
-    assert {"path", "direction", "cloud"} <= set(result.votes)
-    assert not {"tempo", "which_hand"} & set(result.votes)  # all with one hand, none by its tempo
+    assert {"path", "direction", "cloud"} <= set(result.counted)
+    assert not {"tempo", "which_hand"} & set(result.counted)  # one hand in all, none by its tempo
+    assert sum(result.weights.values()) == pytest.approx(1.0)
     for voter, label in result.votes.items():
         row = result.distances[VOTERS.index(voter)]
         assert result.gestures[int(row.argmin())] == label
@@ -238,7 +239,7 @@ def test_a_tempo_that_does_not_count_is_not_looked_at() -> None:
         with_switches(circle, "slow", rate=10.0, tempo="off"),
     ]
     result = Recognizer(Language("pool", waived), "full").recognize(recording(circle))
-    assert "tempo" not in result.votes
+    assert "tempo" not in result.counted
 
 
 def test_a_mirror_image_counts_when_the_author_says_so() -> None:

@@ -1,6 +1,7 @@
 """A result is plain data that cannot be changed afterwards."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,10 +30,25 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
         "nearest": "circle",
         "confidence": 0.75,
         "votes": {"hu": "circle", "zernike": "circle"},
+        "weights": {"hu": 0.5, "zernike": 0.5},
         "voters": ["hu", "zernike"],
         "gestures": ["circle", "line"],
         "distances": [[0.5, 2.0], [0.1, None]],
     }
+
+
+def test_a_result_comes_back_from_its_plain_form() -> None:
+    there = replace(result(label=None), weights={"hu": 0.0, "zernike": 1.0})
+    back = Recognition.from_dict(json.loads(json.dumps(there.to_dict())))
+    assert back.to_dict() == there.to_dict()
+    np.testing.assert_array_equal(back.distances, there.distances)
+    assert back.counted == {"zernike": "circle"}
+
+
+def test_a_record_of_an_earlier_version_weighs_all_voters_the_same() -> None:
+    content = result().to_dict()
+    del content["weights"]
+    assert Recognition.from_dict(content).weights == {"hu": 0.5, "zernike": 0.5}
 
 
 def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:

@@ -44,7 +44,7 @@ def language() -> Language:
 
 @pytest.fixture(scope="module")
 def recognizer(language: Language) -> Recognizer:
-    return Recognizer(language)
+    return Recognizer(language, profile="paper")
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -66,6 +66,7 @@ def test_a_result_has_what_is_needed_to_question_it(recognizer: Recognizer) -> N
     assert result.gestures == tuple(SHAPES)
     assert result.distances.shape == (len(VOTERS), len(SHAPES))
     assert tuple(result.votes) == VOTERS
+    assert list(result.weights.values()) == [1 / 7] * 7
     for row, voter in enumerate(VOTERS):
         assert result.votes[voter] == result.gestures[result.distances[row].argmin()]
 

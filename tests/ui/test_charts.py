@@ -102,7 +102,7 @@ def test_each_voters_choice_is_marked_once_and_not_by_colour_alone() -> None:
 
 
 def test_the_votes_are_also_told_as_sentences() -> None:
-    text = Elements(charts.vote_sentence(recognition().votes)).text
+    text = Elements(charts.vote_sentence(recognition().counted)).text
     assert "wedge: hu, aspect ratio." in text
     assert "circle: solidity." in text
 
