@@ -25,7 +25,8 @@ class Comparison:
         ``(V, G)``: what each voter adds to a gesture's score, smaller = more alike; 0 where it
         cannot compare or has no say, infinite for a gesture that no voter can compare.
     turned
-        ``(G,)``: what is added since the gesture fits only when read backwards.
+        ``(G,)``: what is added since the gesture fits only when read backwards, or with its sides
+        exchanged.
     readings
         The order in which each gesture's steps fit best; None where only its image is compared.
     mirrored

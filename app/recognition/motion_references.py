@@ -10,7 +10,13 @@ import numpy.typing as npt
 
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
-from app.recognition.movement import Movement, followed_landmarks, hands_in, movement
+from app.recognition.movement import (
+    Movement,
+    followed_landmarks,
+    hands_in,
+    movement,
+    on_both_sides,
+)
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading, readings
 from app.recognition.trajectory import Trajectory
@@ -75,11 +81,14 @@ class MotionReferences:
                 continue
             shown = movement(gesture.trajectory, landmarks)
             open_readings = readings(
-                shown, hands=hands_in(gesture.salient), both_ways=gesture.switches.direction != "on"
+                shown,
+                hands=hands_in(gesture.salient),
+                both_ways=gesture.switches.direction != "on",
+                either_side=gesture.switches.mirror == "auto" and on_both_sides(gesture.salient),
             )
             if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
                 open_readings = open_readings[:1]
-            rows += [(index, each, shown.reordered(each.order)) for each in open_readings]
+            rows += [(index, each, each.of(shown, landmarks)) for each in open_readings]
         return cls(
             landmarks,
             np.array([index for index, _, _ in rows], dtype=np.intp),
@@ -194,11 +203,12 @@ def unambiguous(
     between: FloatArray,
     free: Collection[int] = (),
 ) -> MotionReferences:
-    """Drop the backward readings of gestures whose direction the language needs.
+    """Drop the readings by which a gesture would be taken for another one of the language.
 
-    It needs the direction of a gesture when another one is the same figure the other way round:
-    wherever both begin, they lie within `SAME_FIGURE` of each other when one of them is turned
-    round, or within `TURNED` times what they do when not, and at least clear of that.
+    The language needs the direction of a gesture when another one is the same figure the other way
+    round: wherever both begin, they lie within `SAME_FIGURE` of each other when one of them is
+    turned round, or within `TURNED` times what they do when not, and at least clear of that. It
+    needs its sides when another one is the same figure with left and right exchanged.
 
     Parameters
     ----------
@@ -217,12 +227,14 @@ def unambiguous(
     same = labels[shown][:, None] == labels[None]
     scores = np.where(same, np.inf, fused(own, say, between))
     backward = np.array([reading.backward for reading in references.readings], dtype=bool)
+    exchanged = np.array([reading.exchanged for reading in references.readings], dtype=bool)
     keep = np.ones(len(references), dtype=bool)
-    for gesture in np.setdiff1d(labels, [*free]):
+    for gesture in np.unique(labels):
         rows = labels == gesture
-        forwards = scores[:, rows & ~backward].min(axis=1)
-        backwards = scores[:, rows & backward].min(axis=1, initial=np.inf)
-        alike = np.maximum(SAME_FIGURE, TURNED * forwards)
-        if ((backwards < alike) & (backwards < CLEARANCE * forwards)).any():
-            keep[rows & backward] = False
+        plain = scores[:, rows & ~backward & ~exchanged].min(axis=1)
+        for otherwise, matters in ((backward, gesture not in free), (exchanged, True)):
+            turned = scores[:, rows & otherwise].min(axis=1, initial=np.inf)
+            alike = np.maximum(SAME_FIGURE, TURNED * plain)
+            if matters and ((turned < alike) & (turned < CLEARANCE * plain)).any():
+                keep[rows & otherwise] = False
     return references.kept(np.flatnonzero(keep))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.landmarks import other_side
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory import Trajectory
 
@@ -77,6 +78,26 @@ class Movement:
         """Take the steps in another order, each as long as before."""
         return replace(self, paths=self.paths[order], limbs=self.limbs[order])
 
+    def with_sides_exchanged(self, landmarks: Sequence[str]) -> Movement:
+        """Take what each landmark and limb of the left does for the right one's, and vice versa.
+
+        Parameters
+        ----------
+        landmarks
+            Names of the paths; one whose counterpart is not among them stays as it is.
+
+        """
+        parts = tuple(part_of(name) for name in landmarks)
+        sides = _sides_of(parts)
+        by_side = self.limbs.reshape(len(self.limbs), len(sides), len(LIMBS), 2)
+        return replace(
+            self,
+            paths=self.paths[:, [_index_across(parts, part) for part in parts]],
+            limbs=by_side[:, [_index_across(sides, side) for side in sides]].reshape(
+                self.limbs.shape
+            ),
+        )
+
 
 def followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return the landmarks that are salient in any gesture of a language, in alphabetical order."""
@@ -85,9 +106,18 @@ def followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
 
 def limbs_of(landmarks: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return the bones of the arms that the landmarks belong to, by the parts at their ends."""
-    parts = [part_of(name) for name in landmarks]
-    sides = [side for side in SIDES if any(part.startswith(side) for part in parts)]
+    sides = _sides_of([part_of(name) for name in landmarks])
     return tuple((side + inner, side + outer) for side in sides for inner, outer in LIMBS)
+
+
+def _sides_of(parts: Sequence[str]) -> tuple[str, ...]:
+    return tuple(side for side in SIDES if any(part.startswith(side) for part in parts))
+
+
+def _index_across(names: Sequence[str], name: str) -> int:
+    """Return where the counterpart on the other side stands, or the name itself without one."""
+    other = other_side(name)
+    return names.index(other if other in names else name)
 
 
 def part_of(landmark: str) -> str:
@@ -102,6 +132,12 @@ def hands_in(landmarks: Sequence[str]) -> int:
     """Count the bodies' parts that move by themselves: all landmarks of one arm are one."""
     parts = [part_of(name) for name in landmarks]
     return len({next((side for side in SIDES if part.startswith(side)), part) for part in parts})
+
+
+def on_both_sides(landmarks: Sequence[str]) -> bool:
+    """Tell whether every landmark's counterpart on the other side is among them."""
+    parts = {part_of(name) for name in landmarks}
+    return all(other_side(part) in parts for part in parts)
 
 
 def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:

@@ -24,7 +24,9 @@ class Switches:
         movement, clearly slower or quicker.
     mirror
         ``on``: its mirror image, with the other hand, is the same gesture. ``auto``, ``off``: it
-        is not; what one hand means, the other does not mean unless the author says so.
+        is not; what one hand means, the other does not mean unless the author says so. ``off``
+        also insists on the sides of a two-handed gesture, which are otherwise read as exchanged
+        where nothing else in the language is meant by it.
 
     Raises
     ------

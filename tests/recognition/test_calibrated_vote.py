@@ -16,6 +16,7 @@ from app.recognition import (
     Recognizer,
 )
 from app.recognition.calibrated_vote import VOTERS, calibrated_confidence
+from app.recognition.landmarks import other_side
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE
 from app.recognition.poses import FloatArray
 from app.recognition.switches import Switches
@@ -222,6 +223,56 @@ def test_an_author_can_waive_a_direction() -> None:
     result = Recognizer(Language("pair", pair), "full").recognize(recording(line, jitter=0.01))
     path = result.distances[VOTERS.index("path")]
     assert path[1] == pytest.approx(path[0], abs=0.05)
+
+
+def with_both_hands(left: Shape, right: Shape, jitter: float = 0.0) -> PoseSequence:
+    """Record two hands, each at its own figure, the left one mirrored to its own side."""
+
+    def mirrored(share: FloatArray) -> FloatArray:
+        return np.asarray(left(share) * (-1.0, 1.0))
+
+    poses = recording(right, jitter=jitter)
+    one_hand = recording(mirrored, hand="left_wrist", jitter=jitter, seed=1)
+    xy, at = poses.xy.copy(), poses.landmarks.index("left_wrist")
+    xy[:, at] = one_hand.xy[:, at]
+    return replace(poses, xy=xy)
+
+
+def with_sides_mistaken(poses: PoseSequence) -> PoseSequence:
+    return replace(poses, landmarks=tuple(map(other_side, poses.landmarks)))
+
+
+def test_a_two_handed_figure_is_known_when_left_and_right_were_exchanged_throughout() -> None:
+    gestures = [
+        Gesture.from_demonstration("round and up", with_both_hands(circle, wedge)),
+        Gesture.from_demonstration("both round", with_both_hands(circle, circle)),
+    ]
+    query = with_sides_mistaken(with_both_hands(circle, wedge, jitter=0.01))
+    result = Recognizer(Language("pool", gestures), profile="full").recognize(query)
+    assert result.label == "round and up"
+    assert result.distances[VOTERS.index("path"), 0] < 0.1
+
+
+def test_sides_count_where_another_gesture_is_the_same_with_sides_exchanged() -> None:
+    pair = [
+        Gesture.from_demonstration("right one", with_both_hands(circle, wedge)),
+        Gesture.from_demonstration("left one", with_sides_mistaken(with_both_hands(circle, wedge))),
+        Gesture.from_demonstration("line", recording(line)),
+    ]
+    query = with_both_hands(circle, wedge, jitter=0.01)
+    result = Recognizer(Language("pool", pair), profile="full").recognize(query)
+    assert result.label == "right one"
+    path = result.distances[VOTERS.index("path")]
+    assert path[0] < 0.1 < path[1]
+
+
+def test_an_author_can_insist_on_the_sides() -> None:
+    shown = Gesture.from_demonstration("round and up", with_both_hands(circle, wedge))
+    strict = replace(shown, switches=Switches(mirror="off"))
+    query = with_sides_mistaken(with_both_hands(circle, wedge))
+    both = Gesture.from_demonstration("both round", with_both_hands(circle, circle))
+    result = Recognizer(Language("pool", [strict, both]), profile="full").recognize(query)
+    assert result.distances[VOTERS.index("path"), 0] > 0.1
 
 
 def test_tempo_counts_where_nothing_else_differs() -> None:

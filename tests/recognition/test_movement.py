@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.recognition.landmarks import other_side
 from app.recognition.movement import (
     STEPS,
     followed_landmarks,
     hands_in,
     limbs_of,
     movement,
+    on_both_sides,
     part_of,
 )
 from app.recognition.trajectory import Trajectory
@@ -47,6 +49,24 @@ def test_a_gap_is_bridged_however_long() -> None:
     hidden[10:40, poses.landmarks.index("right_wrist")] = np.nan
     seen = movement(Trajectory.from_poses(replace(poses, xy=hidden)), WRIST)
     assert np.isfinite(seen.paths).all()
+
+
+def test_exchanging_sides_is_naming_the_landmarks_of_the_other_side() -> None:
+    wrists = ("left_wrist", "right_wrist")
+    shown = Trajectory.from_poses(recording(circle))
+    mistaken = replace(shown, landmarks=tuple(map(other_side, shown.landmarks)))
+    exchanged = movement(shown, wrists).with_sides_exchanged(wrists)
+    np.testing.assert_allclose(exchanged.paths, movement(mistaken, wrists).paths)
+    np.testing.assert_allclose(exchanged.limbs, movement(mistaken, wrists).limbs)
+    spread = np.ptp(exchanged.paths, axis=0).max(axis=1)
+    assert spread[0] > 0.5 > 1e-9 > spread[1]
+    again = exchanged.with_sides_exchanged(wrists)
+    np.testing.assert_array_equal(again.paths, movement(shown, wrists).paths)
+
+
+def test_a_landmark_in_the_middle_is_on_both_sides() -> None:
+    assert on_both_sides(("left_wrist", "right_wrist", "nose"))
+    assert not on_both_sides(("left_elbow", "right_wrist"))
 
 
 def test_limbs_are_seen_under_other_names() -> None:

@@ -3,7 +3,14 @@
 import numpy as np
 
 from app.recognition.movement import STEPS, Movement, movement
-from app.recognition.readings import AS_SHOWN, BACKWARD_PENALTY, STARTS, is_closed, readings
+from app.recognition.readings import (
+    AS_SHOWN,
+    BACKWARD_PENALTY,
+    SIDES_EXCHANGED,
+    STARTS,
+    is_closed,
+    readings,
+)
 from app.recognition.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
@@ -32,6 +39,12 @@ def test_a_closed_figure_begins_anywhere_and_an_open_one_at_its_ends() -> None:
 
 def test_figures_of_two_hands_are_read_as_shown() -> None:
     assert readings(moved(circle), hands=2, both_ways=True) == (AS_SHOWN,)
+
+
+def test_sides_may_have_been_exchanged_where_both_take_part() -> None:
+    asked = readings(moved(circle), hands=2, both_ways=True, either_side=True)
+    assert asked == (AS_SHOWN, SIDES_EXCHANGED)
+    assert SIDES_EXCHANGED.penalty > AS_SHOWN.penalty
 
 
 def test_every_reading_takes_every_step_once_and_only_turning_round_costs() -> None:
