@@ -67,6 +67,8 @@ export const languages = {
   list: () => request("GET", "/languages"),
   get: (language) => request("GET", `/languages/${id(language)}`),
   create: (name) => request("POST", "/languages", { body: { name } }),
+  restore: (language) => request("POST", `/languages/${id(language)}/restore`),
+  remove: (language) => request("DELETE", `/languages/${id(language.id)}`, "revision" in language ? { headers: matching(language) } : {}),
   import: (name, text) => request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),
   revert: (language, revision) => request("POST", `/languages/${id(language.id)}/revert`, { body: { revision }, headers: matching(language) }),
   addGesture: (language, gesture) => request("POST", `/languages/${id(language.id)}/gestures`, { body: gesture, headers: matching(language) }),

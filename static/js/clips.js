@@ -4,7 +4,8 @@ import * as api from "./api.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { duration, plural, timeLeft } from "./format.js";
 import { state, update } from "./state.js";
-import { attempt, toast } from "./toasts.js";
+import { attempt } from "./toasts.js";
+import { did, tellDone } from "./undo.js";
 
 export const BUSY = new Set(["queued", "running"]);
 const STAGES = { queued: "Waiting for its turn", starting: "Starting", poses: "Finding poses", saving: "Saving" };
@@ -43,14 +44,8 @@ async function remove(clip) {
   if (!done) return;
   if (state.clip === clip.id) select(null);
   await reloadClips();
-  toast("Clip deleted", clip.name, { action: { label: "Undo", run: () => restore(clip) } });
-}
-
-async function restore(clip) {
-  if (await attempt("Restoring the clip", () => api.clips.restore(clip.id))) {
-    await reloadClips();
-    select(clip.id);
-  }
+  did({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
+  tellDone("Clip deleted", clip.name);
 }
 
 async function retry(clip) {

@@ -5,15 +5,20 @@ import { ask } from "./dialogs.js";
 import { byId, h, iconButton, reconcile } from "./dom.js";
 import { reloadLanguage } from "./languages.js";
 import { selectedClip, state, update } from "./state.js";
-import { complain, toast } from "./toasts.js";
+import { complain } from "./toasts.js";
+import { did, tellDone } from "./undo.js";
 
-/** Change the language; when someone else was faster, show theirs and say so. */
-export async function edit(doing, change) {
+/**
+ * Change the language; it can be taken back under `title`. When someone else was faster, show
+ * theirs and say so.
+ */
+export async function edit(doing, title, change) {
   const before = state.gestures;
   try {
     const language = await change(before);
     update({ gestures: language });
-    return { before, language };
+    did({ title, kind: "edit", language: language.id, before: before.revision, after: language.revision });
+    return language;
   } catch (error) {
     if (error.status !== 412) throw error;
     await reloadLanguage();
@@ -32,7 +37,7 @@ function rename(gesture) {
       { name: "command", label: "Command", value: typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, ""), hint: "What the robot should do." },
     ],
     action: "Save",
-    submit: (values) => edit("Changing the gesture", (language) => api.languages.changeGesture(language, gesture.label, changesOf(gesture, values))),
+    submit: (values) => edit("Changing the gesture", `Change of ${gesture.label}`, (language) => api.languages.changeGesture(language, gesture.label, changesOf(gesture, values))),
   });
 }
 
@@ -46,18 +51,10 @@ function changesOf(gesture, values) {
 
 async function remove(gesture) {
   try {
-    const { before } = await edit("Deleting the gesture", (language) => api.languages.removeGesture(language, gesture.label));
-    toast("Gesture deleted", gesture.label, { action: { label: "Undo", run: () => undo(before.revision) } });
+    await edit("Deleting the gesture", `Deletion of ${gesture.label}`, (language) => api.languages.removeGesture(language, gesture.label));
+    tellDone("Gesture deleted", gesture.label);
   } catch (error) {
     complain(error, "Deleting the gesture");
-  }
-}
-
-async function undo(revision) {
-  try {
-    await edit("Undo", (language) => api.languages.revert(language, revision));
-  } catch (error) {
-    complain(error, "Undo");
   }
 }
 

@@ -6,9 +6,12 @@ import { byId, icon } from "./dom.js";
 import { drawGestures } from "./gestures.js";
 import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
 import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
-import { follow, readUrl, selectedClip, state, update } from "./state.js";
+import { listenToKeys, showKeys } from "./keys.js";
+import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
 import { attempt } from "./toasts.js";
+import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
+import { followViews } from "./views.js";
 import { drawWelcome } from "./welcome.js";
 import { followTheme, openWorkspace, restart } from "./workspace.js";
 
@@ -74,6 +77,12 @@ function loadWithSelection() {
 async function start() {
   byId("new-language").append(icon("plus"));
   update(readUrl());
+  followHistory();
+  addEventListener("popstate", reloadLanguages);
+  followViews();
+  listenToKeys();
+  byId("keys").onclick = showKeys;
+  bindUndo();
   acceptFiles();
   manageLanguages();
   stageButtons();

@@ -8,6 +8,7 @@ import { newLanguage } from "./languages.js";
 import { selectedClip, selectedRange, state, update } from "./state.js";
 import { drawTimeline } from "./timeline.js";
 import { attempt, complain, toast } from "./toasts.js";
+import { tellDone } from "./undo.js";
 import { show } from "./workspace.js";
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
@@ -60,14 +61,10 @@ async function saveGesture() {
       { name: "command", label: "Command", hint: "What the robot should do." },
     ],
     action: "Save gesture",
-    submit: (values) => edit("Saving the gesture", (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null })),
+    submit: (values) => edit("Saving the gesture", `New gesture ${values.label}`, (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null })),
   });
   if (!saved) return;
-  const { before, language } = saved;
-  const label = language.gestures.at(-1).label;
-  toast("Gesture saved", `${label}, in ${language.name}`, {
-    action: { label: "Undo", run: () => edit("Undo", (now) => api.languages.revert(now, before.revision)).catch((error) => complain(error, "Undo")) },
-  });
+  tellDone("Gesture saved", `${saved.gestures.at(-1).label}, in ${saved.name}`);
 }
 
 async function recognise() {

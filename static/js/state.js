@@ -1,15 +1,17 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
-const IN_URL = { clip: "clip", take: "take", start: "start", end: "end", language: "language", recognition: "recognition" };
+const IN_URL = { view: "view", clip: "clip", take: "take", start: "start", end: "end", language: "language", recognition: "recognition" };
 const NUMBERS = new Set(["take", "start", "end"]);
 
 const values = {
-  clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
+  view: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
   languages: [], gestures: null, result: null, connected: null, loaded: false,
   clip: null, take: null, start: null, end: null, language: null, recognition: null,
 };
 
 const listeners = [];
+
+let returning = false; // to another entry of the browser's history, which says the URL already
 
 /** The present values; read only. */
 export const state = values;
@@ -19,7 +21,8 @@ export function update(change) {
   const changed = Object.keys(change).filter((name) => values[name] !== change[name]);
   if (!changed.length) return;
   Object.assign(values, change);
-  if (changed.some((name) => name in IN_URL)) writeUrl();
+  // Another view is another page to go back from; the rest is only where one is in it.
+  if (!returning && changed.some((name) => name in IN_URL)) writeUrl(changed.includes("view"));
   for (const { names, react } of listeners) if (names.some((name) => changed.includes(name))) react(values);
 }
 
@@ -42,14 +45,25 @@ export function readUrl() {
   return change;
 }
 
-function writeUrl() {
+/** Follow the browser's Back and Forward. */
+export function followHistory() {
+  addEventListener("popstate", () => {
+    returning = true;
+    update(readUrl());
+    returning = false;
+  });
+}
+
+function writeUrl(another) {
   const query = new URLSearchParams();
   for (const [name, key] of Object.entries(IN_URL)) {
     const value = values[name];
     if (value !== null && value !== undefined) query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
   }
   const text = query.toString();
-  history.replaceState(null, "", text ? `?${text}` : location.pathname);
+  const url = text ? `?${text}` : location.pathname;
+  if (another) history.pushState(null, "", url);
+  else history.replaceState(null, "", url);
 }
 
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;

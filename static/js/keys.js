@@ -1,0 +1,60 @@
+// The keyboard: one list of what every key does, which is also what `?` shows.
+
+import { byId, h } from "./dom.js";
+
+const bound = [];
+
+const TYPED_IN = "input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]";
+
+/**
+ * Let a key do something. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,", the first
+ * is the one told; `when` says whether it means anything now. Plain keys are left alone where text
+ * is typed. None may shadow what the browser itself does.
+ */
+export function bind({ keys, text, group, run, when = () => true }) {
+  bound.push({ keys, text, group, run, when });
+}
+
+/** A key press as it is written in `bind`; what Shift makes of a letter or sign is undone. */
+function written(event) {
+  const name = event.key === " " ? "Space" : event.code.startsWith("Key") ? event.code.slice(3)
+    : { Comma: ",", Period: ".", BracketLeft: "[", BracketRight: "]" }[event.code] ?? event.key;
+  const held = [event.ctrlKey || event.metaKey ? "Ctrl" : "", event.altKey ? "Alt" : "", event.shiftKey && event.key !== "?" ? "Shift" : ""];
+  return [...held.filter(Boolean), name].join("+");
+}
+
+function pressed(event) {
+  if (event.defaultPrevented || byId("dialog").open) return;
+  const typing = event.target instanceof Element && event.target.matches(TYPED_IN);
+  if (typing) return;
+  // A button that has the focus is pressed with the space bar.
+  if (event.key === " " && event.target instanceof Element && event.target.closest("button, a, summary, [role=tab]")) return;
+  const combination = written(event);
+  const found = bound.find((each) => each.keys.includes(combination) && each.when());
+  if (!found) return;
+  event.preventDefault();
+  found.run(event);
+}
+
+const keyCaps = (combination) => combination.split("+").map((key) => h("kbd", {}, key));
+
+/** Show all keys, by what they belong to. */
+export function showKeys() {
+  const dialog = byId("dialog");
+  const groups = [...new Set(bound.map((each) => each.group))];
+  dialog.replaceChildren(h("div", { className: "key-list" },
+    h("h2", { id: "dialog-title" }, "Keys"),
+    groups.map((group) => h("section", {},
+      h("h3", {}, group),
+      h("dl", {}, bound.filter((each) => each.group === group).map((each) => h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)))))),
+    h("div", { className: "dialog-actions" }, h("button", { type: "button", className: "primary", onclick: () => dialog.close() }, "Close"))));
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+}
+
+/** Begin to listen. */
+export function listenToKeys() {
+  addEventListener("keydown", pressed);
+  bind({ keys: ["?"], text: "Show all keys", group: "Everywhere", run: showKeys });
+}

@@ -1,0 +1,91 @@
+// What was done here and can be taken back, and done again: across reloads, until the tab closes.
+
+import * as api from "./api.js";
+import { reloadClips, select } from "./clips.js";
+import { bind } from "./keys.js";
+import { reloadLanguages } from "./languages.js";
+import { complain, toast } from "./toasts.js";
+
+const KEY = "osg-studio.undo"; // sessionStorage: a tab takes back what was done in it.
+const MOST = 100;
+
+const stored = () => { try { return JSON.parse(sessionStorage.getItem(KEY)); } catch { return null; } };
+
+// heads: per language its newest revision as this tab left it, and the one whose content that shows.
+let { done, undone, heads } = stored() ?? { done: [], undone: [], heads: {} };
+
+/**
+ * Remember something done. `deed` is plain data, `{ title, kind, ... }`, of one of these kinds:
+ * `edit`: `{ language, before, after }` revisions of a language; `clip`, `language`: `{ id }` of
+ * something deleted; `created`: `{ id }` of a language made.
+ */
+export function did(deed) {
+  done = [...done, deed].slice(-MOST);
+  undone = [];
+  if (deed.kind === "edit") heads[deed.language] = { revision: deed.after, shows: deed.after };
+  keep();
+}
+
+/** Whether there is something to take back, and to do again. */
+export const canUndo = () => done.length > 0;
+export const canRedo = () => undone.length > 0;
+
+/** The titles of what `undo` would take back, newest first. */
+export const titles = () => done.map((deed) => deed.title).reverse();
+
+const KINDS = {
+  edit: { back: ({ language, before, after }) => turn(language, after, before), again: ({ language, before, after }) => turn(language, before, after) },
+  clip: { back: ({ id }) => api.clips.restore(id).then(reloadClips).then(() => select(id)), again: ({ id }) => api.clips.remove(id).then(reloadClips) },
+  language: { back: ({ id }) => api.languages.restore(id).then(reloadLanguages), again: ({ id }) => api.languages.remove({ id }).then(reloadLanguages) },
+  created: { back: ({ id }) => api.languages.remove({ id }).then(reloadLanguages), again: ({ id }) => api.languages.restore(id).then(reloadLanguages) },
+};
+
+/**
+ * Turn a language from one revision's content to another's, which makes a new revision. Only where
+ * it still is as this tab left it: taking back must not take back what somebody else did.
+ */
+async function turn(language, from, to) {
+  const head = await api.languages.get(language);
+  const left = heads[language];
+  if (left?.revision !== head.revision || left.shows !== from) {
+    throw Object.assign(new Error(`The language was changed elsewhere as well; its newest revision is ${head.revision}. Its history shows every revision, and can go back to any.`), { status: 412 });
+  }
+  const now = await api.languages.revert(head, to);
+  heads[language] = { revision: now.revision, shows: to };
+  await reloadLanguages();
+}
+
+async function step(from, to, how, words) {
+  const deed = from.at(-1);
+  if (!deed) return;
+  try {
+    await KINDS[deed.kind][how](deed);
+    from.pop();
+    to.push(deed);
+    keep();
+    toast(words, deed.title);
+  } catch (error) {
+    complain(error, words);
+  }
+}
+
+/** Take back the newest deed. */
+export const undo = () => step(done, undone, "back", "Undone");
+
+/** Do again what was taken back last. */
+export const redo = () => step(undone, done, "again", "Done again");
+
+function keep() {
+  sessionStorage.setItem(KEY, JSON.stringify({ done, undone, heads }));
+}
+
+/** Show what was done, with a button that takes it back. */
+export function tellDone(title, detail = "") {
+  toast(title, detail, { action: { label: "Undo", run: undo } });
+}
+
+/** Wire the keys. */
+export function bindUndo() {
+  bind({ keys: ["Ctrl+Z"], text: "Undo", group: "Everywhere", run: undo, when: canUndo });
+  bind({ keys: ["Ctrl+Shift+Z", "Ctrl+Y"], text: "Redo", group: "Everywhere", run: redo, when: canRedo });
+}

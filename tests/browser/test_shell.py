@@ -1,0 +1,72 @@
+"""What every view shares: keys, undo and redo, and the browser's own history."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, request.node.name[:40])
+
+
+def delete_line(page: Page) -> None:
+    card = page.get_by_role("list", name="Gestures").get_by_role("listitem").filter(has_text="line")
+    card.hover()
+    card.get_by_role("button", name="Delete line", exact=True).click()
+    expect(page.get_by_role("img", name="Trajectory of line")).to_have_count(0)
+
+
+def test_a_question_mark_lists_all_keys_and_escape_closes_the_list(open_page: OpenPage) -> None:
+    page = open_page(scene=False)
+    expect(page.get_by_role("link", name="Studio", exact=True)).to_have_attribute(
+        "aria-current", "page"
+    )
+    page.keyboard.press("?")
+    listed = page.get_by_role("dialog", name="Keys")
+    expect(listed.get_by_text("Undo", exact=True)).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(listed).to_be_hidden()
+
+
+def test_a_deleted_gesture_comes_back_and_goes_again_even_after_a_reload(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    delete_line(page)
+    page.reload()
+    expect(page.get_by_role("img", name="Trajectory of circle")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    page.keyboard.press("Control+Shift+Z")
+    expect(page.get_by_role("img", name="Trajectory of line")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
+
+
+def test_undo_does_not_take_back_what_another_tab_did(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    delete_line(page)
+    elsewhere = open_page(library.address, scene=False)
+    card = elsewhere.get_by_role("list", name="Gestures").get_by_role("listitem")
+    card.hover()
+    card.get_by_role("button", name="Change circle", exact=True).click()
+    elsewhere.get_by_label("Label").fill("round")
+    elsewhere.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(page.get_by_role("alert").get_by_text("changed elsewhere")).to_be_visible()
+    expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
