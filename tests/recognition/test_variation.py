@@ -11,7 +11,8 @@ from app.recognition import Gesture, Language, PoseSequence
 from app.recognition.calibrated_vote import CalibratedVote
 from app.recognition.errors import RecognitionError
 from app.recognition.gesture import condensed
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory, Unit
 from app.recognition.variation import SPREADS, Person, variants
 from tests.recognition.strategies import SHAPES, recording, recordings
 
@@ -62,6 +63,73 @@ def test_what_is_not_seen_in_the_demonstration_is_not_seen_in_its_variants() -> 
         np.testing.assert_array_equal(np.isnan(variant.xy), np.isnan(xy))
 
 
+def test_a_single_moment_does_not_vary() -> None:
+    single = demonstration(recording(SHAPES["circle"])).between(0.0, 0.0)
+    np.testing.assert_array_equal(variants(single, 2)[1].xy, single.xy)
+
+
+def similar(trajectory: Trajectory, factor: float, shift: tuple[float, float]) -> Trajectory:
+    return replace(trajectory, xy=trajectory.xy * factor + shift)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    recordings(),
+    st.floats(0.2, 5.0),
+    st.tuples(st.floats(-3, 3), st.floats(-3, 3)),
+    people,
+    st.sampled_from(["torso_length", "extent"]),
+)
+def test_variants_of_a_larger_demonstration_elsewhere_are_larger_and_elsewhere(
+    poses: PoseSequence, factor: float, shift: tuple[float, float], person: Person, unit: Unit
+) -> None:
+    shown = replace(demonstration(poses), unit=unit)
+    here = variants(shown, 2, person=person)
+    there = variants(similar(shown, factor, shift), 2, person=person)
+    for one, other in zip(here, there, strict=True):
+        np.testing.assert_allclose(other.xy, similar(one, factor, shift).xy, atol=1e-9 * factor)
+
+
+def bone_lengths(trajectory: Trajectory, inner: str, outer: str) -> FloatArray:
+    ends = trajectory.select([inner, outer]).xy
+    return np.asarray(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
+
+
+@settings(max_examples=15, deadline=None)
+@given(recordings(), seeds, people)
+def test_no_bone_of_an_arm_becomes_longer_than_a_bone_can_look(
+    poses: PoseSequence, seed: int, person: Person
+) -> None:
+    shown = demonstration(poses)
+    for bone, share in (("shoulder", "elbow"), 0.65), (("elbow", "wrist"), 0.51):
+        inner, outer = (f"right_{end}" for end in bone)
+        bound = max(1.05 * bone_lengths(shown, inner, outer).max(), share)
+        for variant in variants(shown, 5, seed=seed, person=person):
+            # The shoulders sway, so the trunk's length is not exactly 1.
+            assert bone_lengths(variant, inner, outer).max() <= 1.02 * bound
+
+
+def test_somebody_elses_takes_differ_by_more_than_ones_own() -> None:
+    shown = demonstration(recording(SHAPES["infinity"], jitter=0.003))
+    wrist = [shown.landmarks.index("right_wrist")]
+    size = np.sqrt(((shown.xy - shown.xy.mean(axis=0))[:, wrist] ** 2).sum(axis=2).mean())
+    away, doublings = [], []
+    for person in PEOPLE:
+        takes = variants(shown, 100, person=person)
+        offsets = np.array([take.xy[:, wrist] - shown.xy[:, wrist] for take in takes])
+        away.append(float(np.sqrt((offsets**2).sum(axis=(2, 3)).mean()) / size))
+        doublings.append(float(np.std([np.log2(take.time[-1] / shown.time[-1]) for take in takes])))
+    assert 0.1 < away[0] < 0.8 * away[1] < 0.6
+    assert 0.1 < doublings[0] < 0.5 * doublings[1] < 0.5
+
+
+def test_what_rests_stays_near_its_place() -> None:
+    shown = demonstration(recording(SHAPES["circle"]))
+    for variant in variants(shown, 20, person="another"):
+        moved = np.abs(variant.select(["left_wrist"]).xy - shown.select(["left_wrist"]).xy)
+        assert 0 < moved.max() < 0.15
+
+
 def test_fewer_than_none_are_refused() -> None:
     shown = demonstration(recording(SHAPES["circle"]))
     assert variants(shown, 0) == ()
@@ -69,8 +137,8 @@ def test_fewer_than_none_are_refused() -> None:
         variants(shown, -1)
 
 
-@pytest.mark.parametrize("person", PEOPLE)
-def test_most_variants_are_recognised_as_their_gesture(person: Person) -> None:
+@pytest.mark.parametrize(("person", "share"), [("same", 0.9), ("another", 0.8)])
+def test_most_variants_are_recognised_as_their_gesture(person: Person, share: float) -> None:
     gestures = [Gesture.from_demonstration(n, recording(s)) for n, s in SHAPES.items()]
     vote = CalibratedVote(Language(name="shapes", gestures=gestures).gestures)
     named = []
@@ -79,4 +147,4 @@ def test_most_variants_are_recognised_as_their_gesture(person: Person) -> None:
         for variant in variants(gesture.trajectory, 10, person=person):
             result = vote.recognize(condensed(variant))
             named.append(result is not None and result.nearest == gesture.label)
-    assert np.mean(named) >= 0.9
+    assert np.mean(named) >= share
