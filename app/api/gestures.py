@@ -13,9 +13,8 @@ from app.api.languages import ExpectedRevision, Revision, announced
 from app.api.problems import Fault, ProblemError, documented
 from app.api.schemas import GestureChange, GestureDraft, LanguageView
 from app.api.studio import CurrentStudio
-from app.recognition import Gesture, Language
+from app.recognition import Gesture, GestureError, Language
 from app.recognition.png import encode_png
-from app.recognition.salience import chosen_landmarks
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
 
@@ -115,14 +114,11 @@ def _with_change(language: Language, *, label: str, change: GestureChange) -> La
 
 def _with_salient(gesture: Gesture, names: list[str]) -> Gesture:
     """Draw and describe a gesture anew with other salient keypoints."""
-    if gesture.trajectory is None:
-        detail = (
-            f"the gesture {gesture.label!r} was imported without its demonstration, so its "
-            "salient keypoints cannot be changed; save it again from a clip"
-        )
-        fault = Fault(pointer="/salient", detail=detail)
-        raise ProblemError(422, "gesture_unusable", detail, errors=[fault])
-    return replace(gesture, salient=chosen_landmarks(gesture.trajectory, names)).redrawn()
+    try:
+        return gesture.with_salient(names)
+    except GestureError as error:
+        fault = Fault(pointer="/salient", detail=str(error))
+        raise ProblemError(422, "gesture_unusable", str(error), errors=[fault]) from error
 
 
 def _found(language: Language, label: str) -> Gesture:

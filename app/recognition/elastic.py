@@ -8,6 +8,7 @@ diagonals is one array operation over all references.
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 
@@ -53,6 +54,40 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
             best + costs[(diagonal + offset) // 2, (diagonal - offset) // 2]
         )
     return np.asarray(total[band + 1] / steps, dtype=np.float64)
+
+
+def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:
+    """Find the best alignment itself, for one reference: which step corresponds to which.
+
+    Parameters
+    ----------
+    query, reference
+        ``(N, D)`` each, with NaN as for `elastic_distances`.
+    band
+        As for `elastic_distances`.
+
+    Returns
+    -------
+    ``(S, 2)``: steps of the query and of the reference, from the first of both to the last of
+    both, of which each or either runs on. The costs of these pairs add up to the distance; of
+    equally good alignments the one in which both run on is taken.
+
+    """
+    costs = squared_distances(query, reference[None])[:, :, 0]
+    steps = len(query)
+    # Row and column 0 stand before the first steps.
+    total = np.full((steps + 1, steps + 1), np.inf)
+    total[0, 0] = 0.0
+    for i in range(steps):
+        for j in range(max(0, i - band), min(steps, i + band + 1)):
+            before = min(total[i, j], total[i, j + 1], total[i + 1, j])
+            total[i + 1, j + 1] = before + costs[i, j]
+    pairs = [(steps, steps)]
+    while pairs[-1] != (1, 1):
+        i, j = pairs[-1]
+        before = [cell for cell in ((i - 1, j - 1), (i - 1, j), (i, j - 1)) if min(cell) > 0]
+        pairs.append(min(before, key=lambda cell: total[cell]))
+    return np.array(pairs[::-1], dtype=np.intp) - 1
 
 
 def squared_distances(query: FloatArray, references: FloatArray) -> FloatArray:

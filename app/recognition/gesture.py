@@ -242,6 +242,22 @@ class Gesture:
             descriptors=describe(drawing, PAPER_VOTERS),
         )
 
+    def with_salient(self, salient: Sequence[str]) -> Gesture:
+        """Return the gesture with other salient keypoints, drawn and described anew.
+
+        Raises
+        ------
+        GestureError
+            When only an image of the gesture is known, or its demonstration lacks one of them.
+
+        """
+        if self.trajectory is None:
+            raise GestureError(
+                f"the gesture {self.label!r} was imported without its demonstration, so its "
+                f"salient keypoints cannot be changed; save it again from a clip"
+            )
+        return replace(self, salient=chosen_landmarks(self.trajectory, salient)).redrawn()
+
     def redrawn(self, simplification: float = SIMPLIFICATION) -> Gesture:
         """Make image and descriptors anew from the demonstration, see `draw`.
 

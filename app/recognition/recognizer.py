@@ -65,7 +65,7 @@ class Recognizer:
         self._shapes = ShapeReferences(language.gestures, tuning.simplification)
         self._calibrated = CalibratedVote(language.gestures, tuning) if profile == "full" else None
         repaired = tuning.sides_repaired
-        self._repairs_sides = profile == "full" if repaired is None else repaired
+        self.repairs_sides = profile == "full" if repaired is None else repaired
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.
@@ -115,7 +115,22 @@ class Recognizer:
 
     def as_compared(self, trajectory: Trajectory) -> Trajectory:
         """Return a condensed query as the voters see it: exchanged sides are put right or not."""
-        return with_sides_repaired(trajectory) if self._repairs_sides else trajectory
+        return with_sides_repaired(trajectory) if self.repairs_sides else trajectory
+
+    @property
+    def say(self) -> dict[str, float]:
+        """What each voter has to say in this language; 0: it does not count."""
+        if self._calibrated is not None:
+            return self._calibrated.say
+        names = [voter.name for voter in PAPER_VOTERS]
+        return dict(zip(names, self._weights.tolist(), strict=True))
+
+    @property
+    def landmarks(self) -> tuple[str, ...]:
+        """The landmarks that any gesture of the language follows, in alphabetical order."""
+        if self._calibrated is not None:
+            return self._calibrated.references.landmarks
+        return self._shapes.needed
 
     def compare(self, trajectory: Trajectory) -> Comparison:
         """Take the comparison of a condensed query with every gesture apart, voter by voter."""

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.elastic import elastic_distances
+from app.recognition.elastic import elastic_distances, elastic_pairs, squared_distances
 from app.recognition.poses import FloatArray
 
 
@@ -85,3 +85,31 @@ def test_nothing_in_common_is_infinitely_far() -> None:
     query = np.array([[0.0, np.nan], [1.0, np.nan]])
     references = np.array([[[np.nan, 0.0], [np.nan, 1.0]], [[0.0, 0.0], [1.0, 0.0]]])
     np.testing.assert_array_equal(elastic_distances(query, references, 1), [np.inf, 0.0])
+
+
+@given(sequences(2), st.integers(0, 15))
+def test_the_costs_of_the_alignment_add_up_to_the_distance(drawn: FloatArray, band: int) -> None:
+    pairs = elastic_pairs(drawn[0], drawn[1], band)
+    costs = ((drawn[0][pairs[:, 0]] - drawn[1][pairs[:, 1]]) ** 2).sum(axis=1)
+    distance = elastic_distances(drawn[0], drawn[1:], band)[0]
+    assert costs.sum() / len(drawn[0]) == pytest.approx(distance, abs=1e-9)
+
+
+@given(sequences(2), st.integers(0, 15))
+def test_the_alignment_runs_on_from_start_to_end_within_the_band(
+    drawn: FloatArray, band: int
+) -> None:
+    pairs = elastic_pairs(drawn[0], drawn[1], band)
+    assert pairs[0].tolist() == [0, 0]
+    assert pairs[-1].tolist() == [len(drawn[0]) - 1] * 2
+    assert {tuple(step) for step in np.diff(pairs, axis=0)} <= {(0, 1), (1, 0), (1, 1)}
+    assert np.abs(pairs[:, 0] - pairs[:, 1]).max() <= band
+
+
+def test_the_alignment_leaves_out_what_is_not_known() -> None:
+    generator = np.random.default_rng(4)
+    query, reference = generator.normal(size=(9, 4)), generator.normal(size=(9, 4))
+    query[:, 3] = np.nan
+    pairs = elastic_pairs(query, reference, 3)
+    costs = squared_distances(query, reference[None])[pairs[:, 0], pairs[:, 1], 0]
+    assert costs.sum() / 9 == pytest.approx(elastic_distances(query, reference[None], 3)[0])

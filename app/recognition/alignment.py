@@ -1,0 +1,212 @@
+"""Alignments: which moment of a query corresponds to which of a gesture, and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.elastic import elastic_pairs
+from app.recognition.gesture import Gesture
+from app.recognition.movement import Movement, hands_in, limbs_of, movement
+from app.recognition.poses import FloatArray
+from app.recognition.readings import AS_SHOWN, Reading, readings
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters.motion import BAND, Direction, HandAttitude, Path, Posture
+
+DIGITS = 4
+"""Decimals of costs and seconds in JSON: a tenth of a millisecond, and of what two gestures
+typically cost."""
+
+ElasticVoter = Path | Direction | Posture | HandAttitude
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Example:
+    """A gesture as a query was compared with it: from one side, in one reading.
+
+    Attributes
+    ----------
+    label
+        The gesture's.
+    reading
+        The order of its steps.
+    mirrored
+        Whether it is its mirror image.
+    movement
+        In that reading.
+    time
+        ``(N,)`` seconds of the demonstration at which each step was shown.
+
+    """
+
+    label: str
+    reading: Reading
+    mirrored: bool
+    movement: Movement
+    time: FloatArray
+
+    @classmethod
+    def of(
+        cls, gesture: Gesture, landmarks: Sequence[str], reading: Reading, *, mirrored: bool = False
+    ) -> Example | None:
+        """Return a gesture's example; None where the gesture has no demonstration."""
+        trajectory = (gesture.mirrored() if mirrored else gesture).trajectory
+        if trajectory is None or len(trajectory) < 2:
+            return None
+        shown = movement(trajectory, landmarks)
+        return cls(
+            label=gesture.label,
+            reading=reading,
+            mirrored=mirrored,
+            movement=shown.reordered(reading.order),
+            time=shown.reached[reading.order],
+        )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Alignment:
+    """The best alignment of a query with a gesture, by one elastic voter.
+
+    Attributes
+    ----------
+    label
+        The gesture's.
+    voter
+        The voter's name.
+    parts
+        P landmarks; for voters that compare limbs, the limbs' outer ends.
+    pairs
+        ``(S, 2)``: steps of the query and of the gesture that correspond.
+    time
+        ``(N,)`` seconds of the query's clock at which it reached each step.
+    gesture_time
+        ``(N,)`` seconds of the demonstration at which the gesture did.
+    costs
+        ``(S, P)`` >= 0: what each pair adds to the voter's distance, part by part; their sum is
+        the distance.
+    backward, mirrored
+        Whether the gesture is read backwards, and whether as its mirror image.
+
+    """
+
+    label: str
+    voter: str
+    parts: tuple[str, ...]
+    pairs: npt.NDArray[np.intp]
+    time: FloatArray
+    gesture_time: FloatArray
+    costs: FloatArray
+    backward: bool
+    mirrored: bool
+
+    @property
+    def distance(self) -> float:
+        """The voter's distance, in its unit."""
+        return float(self.costs.sum())
+
+    @property
+    def over_time(self) -> FloatArray:
+        """``(N, P)``: the costs gathered by the query's steps."""
+        gathered = np.zeros((len(self.time), len(self.parts)))
+        np.add.at(gathered, self.pairs[:, 0], self.costs)
+        return gathered
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types, rounded."""
+        return {
+            "label": self.label,
+            "voter": self.voter,
+            "distance": round(self.distance, DIGITS),
+            "backward": self.backward,
+            "mirrored": self.mirrored,
+            "parts": list(self.parts),
+            "pairs": self.pairs.tolist(),
+            "time": np.round(self.time, DIGITS).tolist(),
+            "gesture_time": np.round(self.gesture_time, DIGITS).tolist(),
+            "costs": np.round(self.costs, DIGITS).tolist(),
+        }
+
+
+def align(
+    query: Movement,
+    example: Example,
+    landmarks: Sequence[str],
+    *,
+    start: float = 0.0,
+    voter: ElasticVoter | None = None,
+) -> Alignment | None:
+    """Align a query with a gesture's example.
+
+    Parameters
+    ----------
+    query
+        Following the same landmarks as the example.
+    example
+        What it was compared with.
+    landmarks
+        The landmarks followed.
+    start
+        Second of the query's clock at which its movement begins.
+    voter
+        Which of the elastic voters; `Path` when not given.
+
+    Returns
+    -------
+    None where the voter cannot compare the two.
+
+    """
+    voter = voter or Path()
+    parts = _parts(voter, landmarks)
+    left, right = voter.describe(query), voter.describe(example.movement)
+    known = np.asarray(np.isfinite(left).any(axis=0) & np.isfinite(right).any(axis=0))
+    if not known.any():
+        return None
+    left, right = left[:, known], right[:, known]
+    pairs = elastic_pairs(left, right, BAND)
+    squares = (left[pairs[:, 0]] - right[pairs[:, 1]]) ** 2
+    compared = np.isfinite(squares).sum(axis=1, keepdims=True)
+    # What is known of two vectors stands for the whole, as in `elastic_distances`.
+    costs = np.zeros((len(pairs), len(known)))
+    costs[:, known] = np.nan_to_num(squares) * known.sum() / np.maximum(compared, 1)
+    return Alignment(
+        label=example.label,
+        voter=voter.name,
+        parts=parts,
+        pairs=pairs,
+        time=start + query.reached,
+        gesture_time=example.time,
+        costs=costs.reshape(len(pairs), len(parts), 2).sum(axis=2) / len(left),
+        backward=example.reading.backward,
+        mirrored=example.mirrored,
+    )
+
+
+def nearest_example(
+    query: Trajectory, gesture: Gesture, landmarks: Sequence[str]
+) -> Example | None:
+    """Return a gesture's example in the reading whose path is nearest to the query's.
+
+    For voters that see drawings, to which all readings are the same. None where one of the two
+    has no movement.
+    """
+    shown = Example.of(gesture, landmarks, AS_SHOWN)
+    if shown is None or len(query) < 2:
+        return None
+    open_to = readings(shown.movement, hands=hands_in(gesture.salient), both_ways=True)
+    voter, moved = Path(), movement(query, landmarks)
+    read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
+    nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
+    return Example.of(gesture, landmarks, nearest)
+
+
+def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
+    if isinstance(voter, Path | Direction):
+        return tuple(landmarks)
+    bones = limbs_of(landmarks)
+    if isinstance(voter, HandAttitude):
+        bones = tuple(bone for bone in bones if bone[0].endswith("wrist"))
+    return tuple(outer for _, outer in bones)

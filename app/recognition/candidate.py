@@ -1,0 +1,170 @@
+"""Candidates: changes worth trying, in series of which the smallest that helps is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from app.recognition.change import (
+    Change,
+    NewDemonstration,
+    OtherProfile,
+    SalientKeypoints,
+    SidesRepair,
+    Simplification,
+    Situation,
+    SwitchName,
+    SwitchPosition,
+    Trim,
+    VoterWeight,
+)
+from app.recognition.gesture import Gesture, condensed
+from app.recognition.recognizer import PROFILES
+from app.recognition.salience import salient_landmarks
+from app.recognition.sides import with_sides_repaired
+from app.recognition.switches import Switch
+from app.recognition.trajectory import Trajectory
+
+TRIM_STEP = 0.1
+"""Share of the stroke by which it is trimmed earlier or later, step by step."""
+
+TRIM_STEPS = 4
+"""Steps at either end: what is cut by more than that at one end is hardly a gesture's transit."""
+
+WEIGHTS = (0.5, 0.0, 2.0, 4.0)
+"""Factors on a voter's weight: halved, off, doubled, and once more."""
+
+TOLERANCES = (0.5, 2.0, 4.0)
+"""Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
+
+Series = list[Change]
+
+
+def candidates(situation: Situation, expected: str, chosen: str) -> Iterator[Series]:
+    """Give all changes worth trying.
+
+    Parameters
+    ----------
+    situation
+        In which `expected` was not recognised.
+    expected, chosen
+        Labels of its language: what should have been, and what was nearest.
+
+    Returns
+    -------
+    Series of changes of one kind; of each the smallest that helps is wanted.
+
+    """
+    yield from _trims(situation)
+    yield from _weights(situation)
+    yield from _drawings(situation)
+    yield from _repairs(situation)
+    yield from _gestures(situation, expected, chosen)
+    yield [
+        OtherProfile(size=1.0, profile=other) for other in PROFILES if other != situation.profile
+    ]
+
+
+def _trims(situation: Situation) -> Iterator[Series]:
+    """Move the start, the end, or both, within what the stroke was cut out of."""
+    time, whole = situation.poses.time, situation.whole.time
+    start, end = float(time[0]), float(time[-1])
+    duration = end - start
+    shifts = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * duration
+    spans: list[list[tuple[float, float]]] = [
+        [(start + shift, end) for shift in shifts],
+        [(start, end - shift) for shift in shifts],
+        [(start + shift, end - shift) for shift in shifts],
+        [(start - shift, end) for shift in shifts],
+        [(start, end + shift) for shift in shifts],
+        [(float(whole[0]), float(whole[-1]))],
+    ]
+    for series in spans:
+        inside = {(max(a, float(whole[0])), min(b, float(whole[-1]))) for a, b in series}
+        inside -= {(start, end)}
+        yield [
+            Trim(size=min(1.0, (abs(a - start) + abs(b - end)) / duration), start=a, end=b)
+            for a, b in inside
+            if duration > 0
+        ]
+
+
+def _weights(situation: Situation) -> Iterator[Series]:
+    """Weigh each voter that has a say less, and more."""
+    says = situation.recognizer.say
+    total = sum(says.values())
+    for voter, say in says.items():
+        if 0 < say < total:
+            for factors in (WEIGHTS[:2], WEIGHTS[2:]):
+                yield [
+                    VoterWeight(size=_moved(say / total, factor), voter=voter, factor=factor)
+                    for factor in factors
+                ]
+
+
+def _moved(share: float, factor: float) -> float:
+    """Return what share of all say changes hands when one voter's share is multiplied."""
+    return abs(share * factor / (1 - share + share * factor) - share)
+
+
+def _drawings(situation: Situation) -> Iterator[Series]:
+    now = situation.tuning.simplification
+    if now > 0:
+        for factors in (TOLERANCES[:1], TOLERANCES[1:]):
+            yield [
+                Simplification(size=1 - min(factor, 1 / factor), tolerance=now * factor)
+                for factor in factors
+            ]
+
+
+def _repairs(situation: Situation) -> Iterator[Series]:
+    """Put exchanged sides right, or leave them, where there are any."""
+    trajectory = condensed(Trajectory.from_poses(situation.poses))
+    same = np.isclose(with_sides_repaired(trajectory).xy, trajectory.xy, equal_nan=True)
+    share = 1.0 - float(same.all(axis=(1, 2)).mean())
+    if share > 0:
+        yield [SidesRepair(size=share, on=not situation.recognizer.repairs_sides)]
+
+
+def _gestures(situation: Situation, expected: str, chosen: str) -> Iterator[Series]:
+    """Change the expected gesture, or the one it was taken for."""
+    moved = salient_landmarks(condensed(Trajectory.from_poses(situation.poses)))
+    for label in dict.fromkeys((expected, chosen)):
+        gesture = situation.language.gesture(label)
+        if gesture.trajectory is None:
+            continue
+        yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
+        if situation.profile == "full":
+            yield from _switches(gesture, expected=label == expected)
+    yield [NewDemonstration(size=1.0, label=expected)]
+
+
+def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
+    """Follow one keypoint less, one that the query moves more, or just those that it moves."""
+    now = {*gesture.salient}
+    others = [now - {name} for name in now] + [now | {name} for name in moved] + [moved]
+    return [
+        SalientKeypoints(
+            size=len(now ^ other) / len(now | other),
+            label=gesture.label,
+            salient=tuple(sorted(other)),
+        )
+        for other in others
+        if other and other != now
+    ]
+
+
+def _switches(gesture: Gesture, *, expected: bool) -> Iterator[Series]:
+    """Let less count of the expected gesture, and more of the one it was taken for."""
+    strict: Switch = "off" if expected else "on"
+    positions: dict[SwitchName, Switch] = {
+        "direction": strict,
+        "tempo": strict,
+        "mirror": "on" if expected else "off",
+    }
+    for switch, position in positions.items():
+        if getattr(gesture.switches, switch) != position:
+            yield [
+                SwitchPosition(size=1 / 3, label=gesture.label, switch=switch, position=position)
+            ]

@@ -1,0 +1,268 @@
+"""Changes: what might have been otherwise about a recognition, each a step that can be taken.
+
+A change turns one situation into another: another language, profile, tuning or stretch of the
+take. Whoever shows it can also apply it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar, Literal
+
+from app.recognition.gesture import Gesture
+from app.recognition.language import Language
+from app.recognition.poses import PoseSequence
+from app.recognition.recognizer import Recognizer
+from app.recognition.switches import Switch
+from app.recognition.tuning import AS_THE_PROFILE, Tuning
+
+SwitchName = Literal["direction", "tempo", "mirror"]
+
+Reach = Literal["take", "gesture", "language"]
+"""What a change touches: this take alone, one gesture, or how the whole language is recognised."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Situation:
+    """All that a recognition depends on.
+
+    Attributes
+    ----------
+    language, profile, tuning
+        The recogniser's.
+    poses
+        The stroke that is recognised.
+    whole
+        What the stroke was cut out of, so that it may be cut otherwise.
+
+    """
+
+    language: Language
+    profile: str
+    poses: PoseSequence
+    whole: PoseSequence
+    tuning: Tuning = AS_THE_PROFILE
+
+    @cached_property
+    def recognizer(self) -> Recognizer:
+        """A recogniser for this situation."""
+        return Recognizer(self.language, self.profile, tuning=self.tuning)
+
+    def with_gesture(self, changed: Gesture) -> Situation:
+        """Put a gesture in the place of the one with its label."""
+        gestures = [
+            changed if gesture.label == changed.label else gesture
+            for gesture in self.language.gestures
+        ]
+        return replace(self, language=replace(self.language, gestures=gestures))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One thing that might have been otherwise.
+
+    Attributes
+    ----------
+    size
+        In [0, 1]: how much of the thing that it touches it changes; see each kind.
+
+    """
+
+    kind: ClassVar[str]
+    reach: ClassVar[Reach]
+    size: float
+
+    @property
+    def words(self) -> str:
+        """A clause for people that follows "it would have been read so"."""
+        raise NotImplementedError
+
+    def applied(self, situation: Situation) -> Situation:
+        """Return the situation with this change.
+
+        Raises
+        ------
+        RecognitionError
+            When it cannot be made here.
+
+        """
+        raise NotImplementedError
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types: the kind, what it touches, and the values to apply."""
+        values = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(self).items()}
+        return {"kind": self.kind, "reach": self.reach, **values, "words": self.words}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trim(Change):
+    """Another stretch of the clip; its size is the share of the stroke added or taken away."""
+
+    kind = "trim"
+    reach = "take"
+    start: float
+    end: float
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        # The ends are moments of frames; a rounding error must not lose them.
+        poses = situation.whole.between(self.start - 1e-6, self.end + 1e-6)
+        return replace(situation, poses=poses)
+
+
+@dataclass(frozen=True, kw_only=True)
+class VoterWeight(Change):
+    """Another weight for a voter, 0: off; its size is the share of all say that moves."""
+
+    kind = "voter_weight"
+    reach = "language"
+    voter: str
+    factor: float
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        if self.factor == 0:
+            return f"without the voter {self.voter}"
+        return f"with {self.factor:g} times the weight on the voter {self.voter}"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        weights = {**situation.tuning.weights}
+        weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
+        return replace(situation, tuning=replace(situation.tuning, weights=weights))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simplification(Change):
+    """Another tolerance for the drawings; its size is 1 - the smaller over the larger."""
+
+    kind = "simplification"
+    reach = "language"
+    tolerance: float
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with drawings simplified by {self.tolerance:g} pixels"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        tuning = replace(situation.tuning, simplification=self.tolerance)
+        return replace(situation, tuning=tuning)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SidesRepair(Change):
+    """Exchanged sides put right, or left as they are; its size is the share of such moments."""
+
+    kind = "sides_repair"
+    reach = "language"
+    on: bool
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        if self.on:
+            return "with left and right put right where they were taken for each other"
+        return "with left and right left as the pose model saw them"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        return replace(situation, tuning=replace(situation.tuning, sides_repaired=self.on))
+
+
+@dataclass(frozen=True, kw_only=True)
+class OtherProfile(Change):
+    """Another set of voters: all is changed, its size is 1."""
+
+    kind = "profile"
+    reach = "language"
+    profile: str
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with the profile {self.profile}"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`; weights of voters that this profile lacks are dropped."""
+        tuning = replace(situation.tuning, weights={})
+        return replace(situation, profile=self.profile, tuning=tuning)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SalientKeypoints(Change):
+    """Other salient keypoints of a gesture; its size is the share of either that is not both."""
+
+    kind = "salient"
+    reach = "gesture"
+    label: str
+    salient: tuple[str, ...]
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with {_listed(self.salient)} as the salient keypoints of {self.label!r}"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        gesture = situation.language.gesture(self.label)
+        return situation.with_gesture(gesture.with_salient(self.salient))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SwitchPosition(Change):
+    """Another position of one of a gesture's three switches: its size is a third."""
+
+    kind = "switch"
+    reach = "gesture"
+    label: str
+    switch: SwitchName
+    position: Switch
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with the switch {self.switch} of {self.label!r} {self.position}"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        gesture = situation.language.gesture(self.label)
+        switches = replace(gesture.switches, **{self.switch: self.position})
+        return situation.with_gesture(replace(gesture, switches=switches))
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewDemonstration(Change):
+    """The take as the gesture's demonstration: the gesture is another, its size is 1."""
+
+    kind = "demonstration"
+    reach = "gesture"
+    label: str
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with this take as the demonstration of {self.label!r}"
+
+    def applied(self, situation: Situation) -> Situation:
+        """See `Change`."""
+        before = situation.language.gesture(self.label)
+        made = Gesture.from_demonstration(
+            self.label,
+            situation.poses,
+            description=before.description,
+            command=before.command,
+        )
+        return situation.with_gesture(replace(made, switches=before.switches))
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " and ".join(name.replace("_", " ") for name in names)

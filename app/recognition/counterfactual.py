@@ -1,0 +1,249 @@
+"""Counterfactuals: the smallest changes with which a recognition would have turned out right.
+
+Each is verified: the situation is changed, and the recogniser run again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from app.recognition.candidate import candidates
+from app.recognition.change import Change, Situation
+from app.recognition.comparison import Comparison
+from app.recognition.errors import RecognitionError
+from app.recognition.gesture import condensed
+from app.recognition.recognition_result import Recognition
+from app.recognition.trajectory import Trajectory
+from app.recognition.variation import variants
+
+MOST = 8
+"""Counterfactuals told: more would be a list to search, not an answer."""
+
+MOST_OF_A_KIND = 2
+"""Of them of one kind: a second voter that may be switched off is worth knowing, a sixth not."""
+
+VARIANTS = 1
+"""Takes by another person that are imagined of each gesture, beside its demonstration, to see what
+a change does to the rest of the language."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LanguageEffect:
+    """What a change does to the other gestures.
+
+    Attributes
+    ----------
+    takes
+        Demonstrations and plausible other takes of all gestures that were recognised again.
+    right_before, right_after
+        How many of them are recognised without and with the change.
+    lost
+        Labels of gestures of which a take is no longer recognised.
+
+    """
+
+    takes: int
+    right_before: int
+    right_after: int
+    lost: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return vars(self) | {"lost": list(self.lost)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counterfactual:
+    """A change with which the expected gesture is recognised.
+
+    Attributes
+    ----------
+    change
+        What to change; its `size` orders the counterfactuals.
+    label, confidence
+        The recogniser's answer after the change.
+    margin
+        The score of the nearest other gesture minus that of the expected one, after it.
+    effect
+        On the rest of the language; None for a change of this take alone.
+
+    """
+
+    change: Change
+    label: str
+    confidence: float
+    margin: float
+    effect: LanguageEffect | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return {
+            "change": self.change.to_dict(),
+            "label": self.label,
+            "confidence": self.confidence,
+            "margin": self.margin if np.isfinite(self.margin) else None,
+            "effect": None if self.effect is None else self.effect.to_dict(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counterfactuals:
+    """The changes that help, the smallest first, and how many were tried.
+
+    Attributes
+    ----------
+    found
+        At most `MOST`, each verified.
+    tried
+        How many changes were put to the recogniser.
+
+    """
+
+    found: tuple[Counterfactual, ...]
+    tried: int
+
+
+NONE_NEEDED = Counterfactuals(found=(), tried=0)
+
+
+def margin(scores: Sequence[float], expected: int) -> float:
+    """Return the least other score minus the expected gesture's: positive when it is nearest.
+
+    Infinite where nothing else can be compared, minus infinite where the expected cannot.
+    """
+    if not np.isfinite(scores[expected]):
+        return -np.inf
+    return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
+
+
+def counterfactuals(situation: Situation, expected: str) -> Counterfactuals:
+    """Find the smallest changes with which `expected` is recognised.
+
+    Of each series of ever larger changes the first that helps is kept.
+
+    Parameters
+    ----------
+    situation
+        In which another label was recognised, or none.
+    expected
+        A label of the language.
+
+    """
+    _, result = answer(situation)
+    rest = _Rest(situation)
+    found: list[Counterfactual] = []
+    tried = 0
+    for series in candidates(situation, expected, result.nearest):
+        for change in sorted(series, key=lambda each: each.size):
+            tried += 1
+            if (helps := _verified(situation, change, expected)) is not None:
+                found.append(helps)
+                break
+    kept = tuple(_with_effect(each, situation, rest) for each in _smallest(found))
+    return Counterfactuals(found=kept, tried=tried)
+
+
+def _smallest(found: Iterable[Counterfactual]) -> list[Counterfactual]:
+    """Choose the smallest changes, not too many of a kind."""
+    by_kind = sorted(found, key=lambda each: (each.change.kind, each.change.size, -each.margin))
+    chosen = [
+        each
+        for _, group in groupby(by_kind, key=lambda each: each.change.kind)
+        for each in list(group)[:MOST_OF_A_KIND]
+    ]
+    return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
+
+
+def _verified(situation: Situation, change: Change, expected: str) -> Counterfactual | None:
+    """Run the recogniser with a change: None where it does not help or cannot be made."""
+    try:
+        changed = change.applied(situation)
+        comparison, result = answer(changed)
+    except RecognitionError:
+        return None
+    if result.label != expected:
+        return None
+    return Counterfactual(
+        change=change,
+        label=expected,
+        confidence=result.confidence,
+        margin=margin(comparison.scores.tolist(), result.gestures.index(expected)),
+        effect=None,
+    )
+
+
+def answer(situation: Situation) -> tuple[Comparison, Recognition]:
+    """Recognise a situation's stroke, and keep what decided.
+
+    Raises
+    ------
+    PoseError
+        When it shows nothing that a gesture needs.
+
+    """
+    trajectory = condensed(Trajectory.from_poses(situation.poses))
+    comparison = situation.recognizer.compare(trajectory)
+    return comparison, situation.recognizer.decided(comparison)
+
+
+def _with_effect(found: Counterfactual, situation: Situation, rest: _Rest) -> Counterfactual:
+    if found.change.reach == "take":
+        return found
+    after = rest.recognised(found.change.applied(situation))
+    lost = {
+        label
+        for label, before, now in zip(rest.labels, rest.before, after, strict=True)
+        if before and not now
+    }
+    effect = LanguageEffect(
+        takes=len(after),
+        right_before=sum(rest.before),
+        right_after=sum(after),
+        lost=tuple(sorted(lost)),
+    )
+    return Counterfactual(**vars(found) | {"effect": effect})
+
+
+class _Rest:
+    """Takes of all gestures of a language, to see whether they are still recognised."""
+
+    def __init__(self, situation: Situation) -> None:
+        self._situation = situation
+
+    @cached_property
+    def _takes(self) -> list[tuple[str, Trajectory]]:
+        return list(self._all())
+
+    def _all(self) -> Iterator[tuple[str, Trajectory]]:
+        for gesture in self._situation.language.gestures:
+            if gesture.trajectory is not None:
+                yield gesture.label, gesture.trajectory
+                for variant in variants(gesture.trajectory, VARIANTS, person="another"):
+                    yield gesture.label, condensed(variant)
+
+    @property
+    def labels(self) -> list[str]:
+        """Of the takes."""
+        return [label for label, _ in self._takes]
+
+    @cached_property
+    def before(self) -> list[bool]:
+        """Whether each take is recognised as things are."""
+        return self.recognised(self._situation)
+
+    def recognised(self, situation: Situation) -> list[bool]:
+        """Tell whether each take is recognised in another situation."""
+        return [_is_recognised(situation, label, take) for label, take in self._takes]
+
+
+def _is_recognised(situation: Situation, label: str, take: Trajectory) -> bool:
+    try:
+        return situation.recognizer.recognize_trajectory(take).label == label
+    except RecognitionError:
+        return False

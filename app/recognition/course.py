@@ -1,0 +1,103 @@
+"""The course of a movement where it parts from another's: when, on which joint, and which way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.recognition.alignment import Alignment, align
+from app.recognition.pairing import Pairing
+from app.recognition.poses import FloatArray
+
+DIRECTIONS = (
+    "right",
+    "down and right",
+    "down",
+    "down and left",
+    "left",
+    "up and left",
+    "up",
+    "up and right",
+)
+"""Eighths of a turn in the image, x to the right, y down, from the x axis on."""
+
+STANDS = 0.15
+"""Net way, as a share of the gesture's extent, below which a joint goes nowhere: a hand that turns
+or rests; the shortest side of a figure is larger."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """Where a query and a gesture part most.
+
+    Attributes
+    ----------
+    landmark
+        The joint that costs most there.
+    start, end
+        Seconds of the query's clock.
+    share
+        Of the whole cost, what lies between the two.
+    shown, expected
+        What the joint does there, and what it does in the gesture: a verb and a direction.
+
+    """
+
+    landmark: str
+    start: float
+    end: float
+    share: float
+    shown: str
+    expected: str
+
+
+def course(pairing: Pairing) -> Course:
+    """Find the stretch of a query where it parts most from a gesture."""
+    alignment = align(pairing.query, pairing.example, pairing.landmarks, start=pairing.start)
+    assert alignment is not None  # paths can always be compared
+    return course_of(alignment, pairing.query.paths, pairing.example.movement.paths)
+
+
+def course_of(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> Course:
+    """Find it along an alignment of two paths ``(N, L, 2)``."""
+    costs = alignment.over_time
+    first, last = costliest_stretch(costs.sum(axis=1))
+    joint = int(costs[first : last + 1].sum(axis=0).argmax())
+    steps = alignment.pairs[:, 0]
+    partners = alignment.pairs[(steps >= first) & (steps <= last), 1]
+    return Course(
+        landmark=alignment.parts[joint],
+        start=float(alignment.time[first]),
+        end=float(alignment.time[last]),
+        share=float(costs[first : last + 1].sum() / max(costs.sum(), 1e-12)),
+        shown=_way(query[:, joint], first, last),
+        expected=_way(gesture[:, joint], int(partners[0]), int(partners[-1])),
+    )
+
+
+def costliest_stretch(costs: FloatArray) -> tuple[int, int]:
+    """Return the first and last step of the stretch that costs most above the average.
+
+    The contiguous run with the largest sum of what exceeds the mean (Bentley 1984).
+    """
+    excess = costs - costs.mean()
+    best, span = -np.inf, (0, len(costs) - 1)
+    total, first = 0.0, 0
+    for step, value in enumerate(excess.tolist()):
+        if total <= 0:
+            total, first = 0.0, step
+        total += value
+        if total > best:
+            best, span = total, (first, step)
+    return span
+
+
+def _way(path: FloatArray, first: int, last: int) -> str:
+    """Say which way ``(N, 2)`` goes from one step to another, or that it goes nowhere."""
+    # One step on either side: a stretch of a single step has a direction too.
+    way = path[min(last + 1, len(path) - 1)] - path[max(first - 1, 0)]
+    if np.hypot(*way) < STANDS * np.hypot(*np.ptp(path, axis=0)):
+        return "goes nowhere"
+    eighth = round(float(np.arctan2(way[1], way[0])) / (np.pi / 4)) % 8
+    return f"goes {DIRECTIONS[eighth]}"

@@ -1,0 +1,324 @@
+"""Differences: in what way a query is not the gesture that was expected, where and when.
+
+Each kind is tried by undoing it: the query is turned round, shown with the other hand, cut short,
+and compared again. What that takes away of the distance between the paths is the difference's
+share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from app.recognition.course import course
+from app.recognition.fusion import TYPICAL
+from app.recognition.landmarks import other_side
+from app.recognition.motion_references import CLEARLY_SLOWER
+from app.recognition.movement import STEPS, movement
+from app.recognition.pairing import Pairing
+from app.recognition.poses import FloatArray
+from app.recognition.sides import with_sides_repaired
+from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.trajectory_image import MIN_EXTENT
+
+Kind = Literal[
+    "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
+    "tempo", "place", "size", "unseen",
+]  # fmt: skip
+"""In what way: left and right exchanged by the pose model; the other way round; with the other
+hand; as its mirror image; a part missing, or too much; another course; slower or quicker; elsewhere
+beside the body; larger or smaller; not seen for a while."""
+
+CLEARLY_ALIKE = TYPICAL["path"].within
+"""Distance between paths below which two takes are one figure: that of two people's takes."""
+
+LEAST_SHARE = 0.5
+"""Share of the distance that undoing a difference must take away for it to be named: what it
+explains is then more than what remains."""
+
+CUTS = tuple(range(STEPS // 8, STEPS // 2 + 1, 2))
+"""Steps of 32 that may be missing or too many at either end: from an eighth, the least that is a
+stroke of its own, to a half, beyond which the rest is no longer most of the gesture."""
+
+AS_GOOD = 1.15
+"""Factor on the least distance up to which a smaller cut is as good: a little less than the least
+difference that people see in a figure, a fifth."""
+
+ELSEWHERE = 0.5
+"""Torso lengths between the mean places from which a gesture is shown elsewhere: raised or lowered
+by more than a forearm's half; where people show the same, they differ by half of that."""
+
+CLEARLY_LARGER = 1.0
+"""Doublings of the size from which it is told; two people differ by a third of one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Difference:
+    """One way in which a query is not the expected gesture.
+
+    Attributes
+    ----------
+    kind
+        See `Kind`.
+    share
+        In [0, 1]: of the distance between the paths, what undoing it takes away; 0 for what is
+        told beside it and changes no path: tempo, place, size, what was not seen.
+    landmark
+        The joint concerned most; None: all of them.
+    start, end
+        Seconds of the query's clock between which it lies; None: throughout. What is missing lies
+        where `start` is `end`.
+    words
+        A clause for people.
+
+    """
+
+    kind: Kind
+    share: float
+    landmark: str | None
+    start: float | None
+    end: float | None
+    words: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return dict(vars(self))
+
+
+def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, ...]:
+    """Tell in what ways a query is not a gesture, the most telling first.
+
+    Parameters
+    ----------
+    pairing
+        The two.
+    sees_direction
+        Whether the voters can tell one way round from the other; to those that see drawings both
+        are the same.
+
+    """
+    told = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing), *_paced(pairing)]
+    if pairing.base > CLEARLY_ALIKE:
+        undone = [*_exchanged(pairing), *_on_the_other_side(pairing), *_cut(pairing)]
+        if sees_direction:
+            undone += _turned(pairing)
+        found = [difference for difference in undone if difference.share >= LEAST_SHARE]
+        told += found or [_bent(pairing)]
+    return tuple(sorted(told, key=lambda difference: -difference.share))
+
+
+def spoken(landmark: str) -> str:
+    """Return a landmark's name as people say it."""
+    return landmark.replace("_", " ")
+
+
+def _exchanged(pairing: Pairing) -> Iterator[Difference]:
+    """Put right what the pose model exchanged, unless it was already."""
+    repaired = with_sides_repaired(pairing.trajectory)
+    same = np.isclose(repaired.xy, pairing.trajectory.xy, equal_nan=True)
+    changed = np.asarray(~same.all(axis=(1, 2)))
+    if not changed.any():
+        return
+    paths = movement(repaired, pairing.landmarks).paths
+    left = pairing.distance(paths, pairing.paths_begun_anywhere())
+    times = pairing.trajectory.time[changed] + pairing.start
+    yield Difference(
+        kind="exchanged_sides",
+        share=pairing.share(left),
+        landmark=None,
+        start=float(times[0]),
+        end=float(times[-1]),
+        words=(
+            f"left and right were taken for each other in {changed.sum()} of {len(changed)} "
+            f"moments between {times[0]:.1f} and {times[-1]:.1f} s"
+        ),
+    )
+
+
+def _turned(pairing: Pairing) -> Iterator[Difference]:
+    """Turn the query round."""
+    backward = not pairing.example.reading.backward
+    left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
+    yield _throughout(pairing, "direction", left, "it goes the other way round")
+
+
+def _on_the_other_side(pairing: Pairing) -> Iterator[Difference]:
+    """Show the query with the other hand, mirrored, or both."""
+    counterparts = [other_side(name) for name in pairing.landmarks]
+    paths, mirror = pairing.query.paths, np.array([-1.0, 1.0])
+    examples = pairing.paths_begun_anywhere()
+    left = pairing.distance(paths * mirror, examples)
+    yield _throughout(pairing, "side", left, "it is shown as its mirror image")
+    if set(counterparts) == set(pairing.landmarks):
+        swapped = paths[:, [pairing.landmarks.index(name) for name in counterparts]]
+        left = pairing.distance(swapped, examples)
+        yield _throughout(pairing, "hand", left, "it is shown with the other hand")
+        left = pairing.distance(swapped * mirror, examples)
+        words = "it is shown with the other hand, as its mirror image"
+        yield _throughout(pairing, "hand", left, words)
+
+
+def _throughout(pairing: Pairing, kind: Kind, left: float, words: str) -> Difference:
+    return Difference(
+        kind=kind,
+        share=pairing.share(left),
+        landmark=_busiest(pairing),
+        start=pairing.seconds(0),
+        end=pairing.seconds(-1),
+        words=words,
+    )
+
+
+def _cut(pairing: Pairing) -> Iterator[Difference]:
+    """Cut either end off the gesture, or off the query."""
+    query, example = pairing.query.paths, pairing.example.movement.paths
+    for at_end in (True, False):
+        steps, left = _best_cut(pairing, query, example, at_end)
+        moment = pairing.seconds(-1 if at_end else 0)
+        ends = pairing.example.time[[-steps, -1] if at_end else [0, steps - 1]]
+        yield Difference(
+            kind="missing",
+            share=pairing.share(left),
+            landmark=_busiest(pairing),
+            start=moment,
+            end=moment,
+            words=(
+                f"the {'last' if at_end else 'first'} {_percent(steps)} of "
+                f"{pairing.example.label!r} ({min(ends):.1f} to {max(ends):.1f} s of its "
+                f"demonstration) is missing {'after' if at_end else 'before'} {moment:.1f} s"
+            ),
+        )
+        steps, left = _best_cut(pairing, example, query, at_end)
+        span = (STEPS - steps, STEPS - 1) if at_end else (0, steps - 1)
+        start, end = (pairing.seconds(step) for step in span)
+        yield Difference(
+            kind="extra",
+            share=pairing.share(left),
+            landmark=_busiest(pairing),
+            start=start,
+            end=end,
+            words=(
+                f"what is shown from {start:.1f} to {end:.1f} s is no part of "
+                f"{pairing.example.label!r}"
+            ),
+        )
+
+
+def _best_cut(
+    pairing: Pairing, whole: FloatArray, cut: FloatArray, at_end: bool
+) -> tuple[int, float]:
+    """Find how many steps to cut off so that the rest is the whole of the other: with what left."""
+    rests = [cut[: STEPS - steps] if at_end else cut[steps:] for steps in CUTS]
+    left = [pairing.distance(whole, [_stretched(rest)]) for rest in rests]
+    first = next(index for index, each in enumerate(left) if each <= AS_GOOD * min(left))
+    return CUTS[first], left[first]
+
+
+def _stretched(paths: FloatArray) -> FloatArray:
+    """Resample ``(n, L, 2)`` equal steps to `STEPS` of them."""
+    at = np.linspace(0, len(paths) - 1, STEPS)
+    before = np.minimum(at.astype(np.intp), len(paths) - 2)
+    share = (at - before)[:, None, None]
+    return np.asarray(paths[before] * (1 - share) + paths[before + 1] * share)
+
+
+def _percent(steps: int) -> str:
+    return f"{100 * steps / STEPS:.0f} %"
+
+
+def _bent(pairing: Pairing) -> Difference:
+    """Tell where the courses part: nothing that was undone explains it."""
+    parted = course(pairing)
+    where = f"where {pairing.example.label!r} {parted.expected}"
+    if parted.shown == parted.expected:
+        where = f"as {pairing.example.label!r} does, but on another course"
+    return Difference(
+        kind="shape",
+        share=parted.share,
+        landmark=parted.landmark,
+        start=parted.start,
+        end=parted.end,
+        words=(
+            f"from {parted.start:.1f} to {parted.end:.1f} s the {spoken(parted.landmark)} "
+            f"{parted.shown} {where}"
+        ),
+    )
+
+
+def _busiest(pairing: Pairing) -> str:
+    """Return the landmark that moves most in the gesture."""
+    moved = (pairing.example.movement.paths**2).sum(axis=(0, 2))
+    return pairing.landmarks[int(moved.argmax())]
+
+
+def _unseen(pairing: Pairing) -> Iterator[Difference]:
+    """Tell of salient joints that were not seen for longer than a gap that is bridged."""
+    trajectory = pairing.trajectory
+    for name in pairing.landmarks:
+        if name not in trajectory.landmarks:
+            continue
+        seen = np.isfinite(trajectory.select([name]).xy).all(axis=(1, 2))
+        known = np.concatenate([[0.0], trajectory.time[seen], trajectory.time[-1:]])
+        gap = int(np.diff(known).argmax())
+        start, end = known[gap] + pairing.start, known[gap + 1] + pairing.start
+        if end - start > MAX_GAP_SECONDS:
+            words = f"the {spoken(name)} was not seen from {start:.1f} to {end:.1f} s"
+            yield _beside("unseen", name, float(start), float(end), words)
+
+
+def _elsewhere(pairing: Pairing) -> Iterator[Difference]:
+    name = _busiest(pairing)
+    units = {pairing.trajectory.unit, pairing.gesture.unit}
+    here, there = (_mean_place(each, name) for each in (pairing.trajectory, pairing.gesture))
+    apart = here - there
+    if units != {"torso_length"} or not np.hypot(*apart) > ELSEWHERE:
+        return
+    words = f"it is shown {np.hypot(*apart):.1f} torso lengths {_where(apart)}"
+    yield _beside("place", name, None, None, words)
+
+
+def _mean_place(trajectory: Trajectory, name: str) -> FloatArray:
+    path = trajectory.select([name]).xy[:, 0]
+    known = path[np.isfinite(path).all(axis=1)]
+    return np.asarray(known.mean(axis=0) if len(known) else np.full(2, np.nan))
+
+
+def _where(apart: FloatArray) -> str:
+    """Name the direction of ``(2,)`` in the image."""
+    x, y = apart
+    if abs(y) >= abs(x):
+        return "lower" if y > 0 else "higher"
+    return "farther to the image's right" if x > 0 else "farther to the image's left"
+
+
+def _otherwise_sized(pairing: Pairing) -> Iterator[Difference]:
+    sizes = [
+        float(np.sqrt((paths**2).sum(axis=(1, 2)).mean()))
+        for paths in (pairing.query.paths, pairing.example.movement.paths)
+    ]
+    units = {pairing.trajectory.unit, pairing.gesture.unit}
+    if units != {"torso_length"} or min(sizes) < MIN_EXTENT:
+        return
+    doublings = float(np.log2(sizes[0] / sizes[1]))
+    if abs(doublings) > CLEARLY_LARGER:
+        how = f"{2 ** abs(doublings):.1f} times {'larger' if doublings > 0 else 'smaller'}"
+        yield _beside("size", None, None, None, f"it is shown {how}")
+
+
+def _paced(pairing: Pairing) -> Iterator[Difference]:
+    shown, expected = pairing.query.duration, pairing.example.movement.duration
+    if min(shown, expected) <= 0:
+        return
+    doublings = float(np.log2(shown / expected))
+    if abs(doublings) > CLEARLY_SLOWER:
+        how = f"{2 ** abs(doublings):.1f} times {'slower' if doublings > 0 else 'quicker'}"
+        yield _beside("tempo", None, None, None, f"it is shown {how} ({shown:.1f} s)")
+
+
+def _beside(
+    kind: Kind, landmark: str | None, start: float | None, end: float | None, words: str
+) -> Difference:
+    return Difference(kind=kind, share=0.0, landmark=landmark, start=start, end=end, words=words)

@@ -1,0 +1,235 @@
+"""Explanations: why a recognition came out as it did, and what would have turned it right."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.recognition.alignment import Alignment, Example, align, nearest_example
+from app.recognition.change import Situation
+from app.recognition.comparison import Comparison
+from app.recognition.counterfactual import NONE_NEEDED, Counterfactuals, answer, counterfactuals
+from app.recognition.difference import Difference, differences
+from app.recognition.errors import RecognitionError
+from app.recognition.gesture import condensed
+from app.recognition.movement import movement
+from app.recognition.pairing import Pairing
+from app.recognition.recognition_result import Recognition
+from app.recognition.sentence import in_words
+from app.recognition.trajectory import Trajectory
+from app.recognition.verdict import Verdict, verdicts
+from app.recognition.voters.motion import Path, Posture
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Explanation:
+    """Why one recognition came out as it did.
+
+    Attributes
+    ----------
+    profile
+        The recogniser's.
+    expected
+        The gesture that should have been recognised.
+    label, nearest, confidence
+        The recogniser's answer.
+    other
+        What the expected gesture is held against: the nearest one, or the runner-up where the
+        expected one is nearest; None in a language of one gesture.
+    score, other_score
+        Of the expected gesture and of the other, see `Comparison.scores`; infinite where not
+        comparable.
+    votes
+        Per label how many voters took it.
+    verdicts
+        What every voter said, those that spoke most against the expected gesture first.
+    turned
+        What is added to `score` minus `other_score` for reading one of the two backwards.
+    alignments
+        Of the query with the expected gesture and with the other: of the paths, and in profile
+        ``full`` of the postures.
+    differences
+        In what ways the query is not the expected gesture, the most telling first; empty where
+        the gesture has no demonstration.
+    counterfactuals
+        What would have turned it right.
+
+    """
+
+    profile: str
+    expected: str
+    label: str | None
+    nearest: str
+    confidence: float
+    other: str | None
+    score: float
+    other_score: float
+    votes: Mapping[str, int]
+    verdicts: tuple[Verdict, ...]
+    turned: float
+    alignments: tuple[Alignment, ...]
+    differences: tuple[Difference, ...]
+    counterfactuals: Counterfactuals
+
+    @property
+    def right(self) -> bool:
+        """Whether the expected gesture was recognised."""
+        return self.label == self.expected
+
+    @property
+    def margin(self) -> float:
+        """How much nearer the expected gesture is than the other; negative: farther."""
+        return self.other_score - self.score
+
+    @property
+    def sentence(self) -> str:
+        """Why, in words."""
+        return in_words(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types; what is infinite becomes None."""
+        return {
+            "profile": self.profile,
+            "expected": self.expected,
+            "label": self.label,
+            "nearest": self.nearest,
+            "right": self.right,
+            "confidence": self.confidence,
+            "other": self.other,
+            "score": _finite(self.score),
+            "other_score": _finite(self.other_score),
+            "margin": _finite(self.margin),
+            "votes": dict(self.votes),
+            "verdicts": [verdict.to_dict() for verdict in self.verdicts],
+            "turned": _finite(self.turned),
+            "alignments": [alignment.to_dict() for alignment in self.alignments],
+            "differences": [difference.to_dict() for difference in self.differences],
+            "counterfactuals": [each.to_dict() for each in self.counterfactuals.found],
+            "tried": self.counterfactuals.tried,
+            "sentence": self.sentence,
+        }
+
+
+def explain(
+    situation: Situation, expected: str, *, with_counterfactuals: bool = True
+) -> Explanation:
+    """Explain one recognition.
+
+    Parameters
+    ----------
+    situation
+        The language, the profile, the stroke, and what the stroke was cut out of.
+    expected
+        The label that should have been recognised.
+    with_counterfactuals
+        Whether to look for what would have turned it right: by far the longest part.
+
+    Raises
+    ------
+    RecognitionError
+        When `expected` is no gesture of the language.
+    PoseError
+        When the recording shows nothing that a gesture needs.
+
+    """
+    if expected not in situation.language.labels:
+        raise RecognitionError(
+            f"no gesture {expected!r} in {situation.language.name!r} to expect; it has "
+            f"{', '.join(situation.language.labels)}"
+        )
+    comparison, result = answer(situation)
+    at = result.gestures.index(expected)
+    other = _held_against(comparison, result, at)
+    pairings = _Pairings(situation, comparison)
+    wanted = with_counterfactuals and result.label != expected
+    return Explanation(
+        profile=result.profile,
+        expected=expected,
+        label=result.label,
+        nearest=result.nearest,
+        confidence=result.confidence,
+        other=None if other is None else result.gestures[other],
+        score=float(comparison.scores[at]),
+        other_score=math.inf if other is None else float(comparison.scores[other]),
+        votes=dict(Counter(result.votes.values()).most_common()),
+        verdicts=verdicts(comparison, result, situation.recognizer.say, at, other),
+        turned=_difference(comparison, at, other),
+        alignments=tuple(
+            alignment
+            for index in (at, other)
+            if index is not None
+            for alignment in pairings.alignments(index)
+        ),
+        differences=pairings.differences(at),
+        counterfactuals=counterfactuals(situation, expected) if wanted else NONE_NEEDED,
+    )
+
+
+def _held_against(comparison: Comparison, result: Recognition, expected: int) -> int | None:
+    """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
+    nearest = result.gestures.index(result.nearest)
+    if nearest != expected:
+        return nearest
+    scores = comparison.scores
+    scores[expected] = np.inf
+    return int(scores.argmin()) if np.isfinite(scores).any() else None
+
+
+def _difference(comparison: Comparison, expected: int, other: int | None) -> float:
+    if other is None or not np.isfinite(comparison.scores[[expected, other]]).all():
+        return 0.0
+    return float(comparison.turned[expected] - comparison.turned[other])
+
+
+class _Pairings:
+    """The query of a situation beside its gestures, as the recogniser compared them."""
+
+    def __init__(self, situation: Situation, comparison: Comparison) -> None:
+        self._gestures = situation.language.gestures
+        self._comparison = comparison
+        self._full = situation.profile == "full"
+        self._start = float(situation.poses.time[0])
+        self._landmarks = situation.recognizer.landmarks
+        condensed_query = condensed(Trajectory.from_poses(situation.poses))
+        self._query = situation.recognizer.as_compared(condensed_query)
+
+    def alignments(self, index: int) -> Iterator[Alignment]:
+        """Align the query with a gesture, where both have a movement."""
+        example = self._example(index)
+        if example is None or len(self._query) < 2:
+            return
+        query = movement(self._query, self._landmarks)
+        for voter in (Path(), Posture()) if self._full else (Path(),):
+            aligned = align(query, example, self._landmarks, start=self._start, voter=voter)
+            if aligned is not None:
+                yield aligned
+
+    def differences(self, index: int) -> tuple[Difference, ...]:
+        """Tell in what ways the query is not a gesture."""
+        example = self._example(index)
+        if example is None:
+            return ()
+        pairing = Pairing.of(
+            self._query,
+            self._gestures[index],
+            example.reading,
+            mirrored=example.mirrored,
+            start=self._start,
+        )
+        return () if pairing is None else differences(pairing, sees_direction=self._full)
+
+    def _example(self, index: int) -> Example | None:
+        gesture, reading = self._gestures[index], self._comparison.readings[index]
+        if reading is None:
+            return nearest_example(self._query, gesture, self._landmarks)
+        mirrored = bool(self._comparison.mirrored[index])
+        return Example.of(gesture, self._landmarks, reading, mirrored=mirrored)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,105 @@
+"""A pairing: a query and one gesture brought together, to find out how they differ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.recognition.alignment import Example
+from app.recognition.gesture import Gesture
+from app.recognition.landmarks import other_side
+from app.recognition.movement import Movement, hands_in, movement
+from app.recognition.poses import FloatArray
+from app.recognition.readings import Reading, readings
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters.motion import Path
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Pairing:
+    """A query and a gesture, on the gesture's own landmarks.
+
+    Attributes
+    ----------
+    landmarks
+        L landmarks: the gesture's salient ones and their counterparts on the other side.
+    trajectory
+        The query as the voters see it, with all of its landmarks.
+    query
+        Its movement.
+    example
+        The gesture as the query was compared with it.
+    gesture
+        The gesture's trajectory, from the same side.
+    starts
+        Readings in the direction shown: where else the figure may begin.
+    start
+        Second of the query's clock at which its movement begins.
+
+    """
+
+    landmarks: tuple[str, ...]
+    trajectory: Trajectory
+    query: Movement
+    example: Example
+    gesture: Trajectory
+    starts: tuple[Reading, ...]
+    start: float
+
+    @classmethod
+    def of(
+        cls,
+        trajectory: Trajectory,
+        gesture: Gesture,
+        reading: Reading,
+        *,
+        mirrored: bool = False,
+        start: float = 0.0,
+    ) -> Pairing | None:
+        """Bring a condensed query and a gesture together; None where one has no movement."""
+        side = gesture.mirrored() if mirrored and gesture.trajectory is not None else gesture
+        if side.trajectory is None or len(side.trajectory) < 2 or len(trajectory) < 2:
+            return None
+        both = {*side.salient, *(other_side(name) for name in side.salient)}
+        landmarks = tuple(sorted(both & {*side.trajectory.landmarks} & {*trajectory.landmarks}))
+        example = Example.of(gesture, landmarks, reading, mirrored=mirrored)
+        if not landmarks or example is None:
+            return None
+        shown = movement(side.trajectory, landmarks)
+        return cls(
+            landmarks=landmarks,
+            trajectory=trajectory,
+            query=movement(trajectory, landmarks),
+            example=example,
+            gesture=side.trajectory,
+            starts=readings(shown, hands=hands_in(side.salient), both_ways=False),
+            start=start,
+        )
+
+    @property
+    def base(self) -> float:
+        """The path distance between the two as they were compared."""
+        return self.distance(self.query.paths, [self.example.movement.paths])
+
+    def distance(self, paths: FloatArray, others: Sequence[FloatArray]) -> float:
+        """Return the least path distance of ``(N, L, 2)`` to any of the others."""
+        voter = Path()
+        described = [voter.describe(replace(self.query, paths=each)) for each in (paths, *others)]
+        return float(voter.distances(described[0], np.stack(described[1:])).min())
+
+    def share(self, undone: float) -> float:
+        """Return what share of the base distance is gone when `undone` of it is left."""
+        return max(0.0, 1.0 - undone / self.base) if self.base > 0 else 0.0
+
+    def paths_begun_anywhere(self, *, backward: bool = False) -> list[FloatArray]:
+        """Return the gesture's paths from each of its starts, as shown or the other way round."""
+        shown = np.empty_like(self.example.movement.paths)
+        shown[self.example.reading.order] = self.example.movement.paths
+        step = -1 if backward else 1
+        return [shown[reading.order[::step]] for reading in self.starts]
+
+    def seconds(self, step: int) -> float:
+        """Return the second of the query's clock at which it reached a step."""
+        return self.start + float(self.query.reached[step])

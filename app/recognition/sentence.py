@@ -1,0 +1,98 @@
+"""The sentence that says why, made of what an explanation has measured."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from app.recognition.difference import Difference
+
+if TYPE_CHECKING:
+    from app.recognition.explanation import Explanation
+
+NUMBERS = (
+    "none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+    "eleven", "twelve",
+)  # fmt: skip
+"""Spelt out in sentences, as far as is usual."""
+
+MOST_VOTERS_NAMED = 3
+"""Voters named in a sentence; the table has all."""
+
+
+def in_words(explanation: Explanation) -> str:
+    """Say why a recognition came out as it did, in one to three sentences."""
+    if explanation.right:
+        return _right(explanation)
+    parts = [_outcome(explanation) + _reason(explanation)]
+    beside = [each.words for each in explanation.differences if each.share == 0]
+    if beside:
+        parts.append(f"Besides, {_listed(beside)}.")
+    parts.append(_remedy(explanation))
+    return " ".join(part for part in parts if part)
+
+
+def _right(explanation: Explanation) -> str:
+    took = _voters(explanation, explanation.expected)
+    start = f"{took} took {explanation.expected!r}, as expected"
+    if explanation.other is None or not math.isfinite(explanation.other_score):
+        return f"{start}; no other gesture could be compared."
+    return (
+        f"{start}; the runner-up is {explanation.other!r}, {_farther(explanation)} "
+        f"(confidence {explanation.confidence:.2f})."
+    )
+
+
+def _farther(explanation: Explanation) -> str:
+    score, other = explanation.score, explanation.other_score
+    return f"at a distance of {other:.2f} against {score:.2f}"
+
+
+def _outcome(explanation: Explanation) -> str:
+    if explanation.label is None:
+        return f"Nothing was recognised, though {explanation.nearest!r} was nearest"
+    wrong = _voters(explanation, explanation.nearest)
+    return f"{wrong} took {explanation.nearest!r} instead of {explanation.expected!r}"
+
+
+def _voters(explanation: Explanation, label: str) -> str:
+    count, total = explanation.votes.get(label, 0), sum(explanation.votes.values())
+    return f"{_number(count)} of {_number(total)} voters".capitalize()
+
+
+def _number(count: int) -> str:
+    return NUMBERS[count] if count < len(NUMBERS) else str(count)
+
+
+def _reason(explanation: Explanation) -> str:
+    if not math.isfinite(explanation.score):
+        return f": a keypoint that {explanation.expected!r} needs is missing or does not move."
+    cause = _cause(explanation)
+    against = [verdict.voter for verdict in explanation.verdicts if verdict.against > 0]
+    named = _listed(against[:MOST_VOTERS_NAMED])
+    if cause is not None:
+        return f" because {cause.words}" + (f", which {named} saw most." if named else ".")
+    if not explanation.differences:
+        return f"; {named} spoke most against it." if named else "."
+    return f"; its path is that of {explanation.expected!r}, but {named} spoke against it."
+
+
+def _cause(explanation: Explanation) -> Difference | None:
+    """Return the difference that explains most, if any does."""
+    loudest = explanation.verdicts[0].voter if explanation.verdicts else ""
+    kinds = {"tempo": "tempo", "posture": "place"}
+    told = [each for each in explanation.differences if each.kind == kinds.get(loudest)]
+    told += [each for each in explanation.differences if each.share > 0]
+    return told[0] if told else None
+
+
+def _remedy(explanation: Explanation) -> str:
+    found = explanation.counterfactuals.found
+    if found:
+        return f"It would have been read as {explanation.expected!r} {found[0].change.words}."
+    tried = explanation.counterfactuals.tried
+    return f"None of {tried} changes tried would have turned it right." if tried else ""
+
+
+def _listed(words: list[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

@@ -1,0 +1,93 @@
+"""Verdicts: what each voter said about the gesture that was expected and another one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from app.recognition.comparison import Comparison
+from app.recognition.recognition_result import Recognition
+from app.recognition.recognizer import PROFILES
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """One voter between two gestures: the expected one and the other.
+
+    Attributes
+    ----------
+    voter, unit
+        Its name, and what a distance of 1 means.
+    say
+        What it has to say in this language, beside the other voters.
+    vote
+        The gesture it takes; None where it has no say or can compare nothing.
+    wrong
+        Whether it takes another gesture than the expected one.
+    distance, other_distance
+        To the expected gesture and to the other, in its unit; infinite where not comparable.
+    against
+        What it adds to the expected gesture's score minus what it adds to the other's: positive
+        where it speaks against the expected one. Over all voters, with `Explanation.turned`,
+        these add up to the difference of the scores.
+
+    """
+
+    voter: str
+    unit: str
+    say: float
+    vote: str | None
+    wrong: bool
+    distance: float
+    other_distance: float
+    against: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types; what is infinite becomes None."""
+        return {
+            name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in vars(self).items()
+        }
+
+
+def verdicts(
+    comparison: Comparison,
+    result: Recognition,
+    say: Mapping[str, float],
+    expected: int,
+    other: int | None,
+) -> tuple[Verdict, ...]:
+    """Gather what every voter said, those that spoke most against the expected gesture first.
+
+    Parameters
+    ----------
+    comparison, result
+        What was compared, and what was decided.
+    say
+        Per voter's name, see `Recognizer.say`.
+    expected, other
+        Indices of the two gestures; without another one nothing speaks against the expected.
+
+    """
+    units = {voter.name: voter.unit for voter in PROFILES[result.profile]}
+    label = result.gestures[expected]
+    given = []
+    for row, voter in enumerate(result.voters):
+        distances, shares = comparison.distances[row], comparison.contributions[row]
+        vote = result.votes.get(voter)
+        against = 0.0 if other is None else float(shares[expected]) - float(shares[other])
+        given.append(
+            Verdict(
+                voter=voter,
+                unit=units[voter],
+                say=say[voter],
+                vote=vote,
+                wrong=vote not in (None, label),
+                distance=float(distances[expected]),
+                other_distance=math.inf if other is None else float(distances[other]),
+                against=0.0 if math.isnan(against) else against,
+            )
+        )
+    return tuple(sorted(given, key=lambda verdict: -verdict.against))

@@ -1,0 +1,134 @@
+"""Explanations: who was wrong, where and by how much, and what would have turned it right."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from app.recognition import Gesture, Language, PoseSequence, RecognitionError
+from app.recognition.change import Situation
+from app.recognition.explanation import Explanation, explain
+from app.recognition.gesture import condensed
+from app.recognition.recognizer import PROFILES
+from app.recognition.trajectory import Trajectory
+from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
+
+LANGUAGE = Language(
+    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
+)
+
+
+def situation(
+    poses: PoseSequence, profile: str = "full", language: Language = LANGUAGE
+) -> Situation:
+    return Situation(language=language, profile=profile, poses=poses, whole=poses)
+
+
+def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanation:
+    return explain(situation(poses, profile), expected, with_counterfactuals=False)
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("expected", ["circle", "line"])
+@settings(max_examples=20)
+@given(recordings())
+def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
+    profile: str, expected: str, query: PoseSequence
+) -> None:
+    explanation = why(query, expected, profile)
+    scores = (
+        situation(query, profile).recognizer.compare(condensed(Trajectory.from_poses(query))).scores
+    )
+    assert explanation.other is not None
+    difference = scores[LANGUAGE.labels.index(expected)]
+    difference -= scores[LANGUAGE.labels.index(explanation.other)]
+    told = sum(verdict.against for verdict in explanation.verdicts) + explanation.turned
+    assert told == pytest.approx(difference, abs=1e-9)
+    assert explanation.margin == pytest.approx(-difference, abs=1e-9)
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_the_alignments_cost_what_the_path_voter_measures(profile: str) -> None:
+    explanation = why(recording(wedge, jitter=0.02), "circle", profile)
+    measured = {verdict.voter: verdict for verdict in explanation.verdicts}
+    for alignment in explanation.alignments:
+        if profile == "full":
+            verdict = measured[alignment.voter]
+            expected = alignment.label == "circle"
+            distance = verdict.distance if expected else verdict.other_distance
+            assert alignment.distance == pytest.approx(distance)
+        assert alignment.costs.min() >= 0.0
+    voters = {"full": 2, "paper": 1}[profile]
+    assert [each.label for each in explanation.alignments] == ["circle"] * voters + [
+        "wedge"
+    ] * voters
+
+
+def test_moments_are_those_of_the_querys_clock() -> None:
+    query = recording(square, frames=60)
+    late = PoseSequence(
+        landmarks=query.landmarks, xy=query.xy, time=query.time + 7, frame_size=query.frame_size
+    )
+    path = why(late, "wedge").alignments[0]
+    assert path.time[0] == pytest.approx(7.0)
+    assert path.time[-1] == pytest.approx(query.time[-1] + 7, abs=1e-3)
+    assert np.ptp(path.gesture_time) == pytest.approx(query.time[-1], abs=1e-3)
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_what_was_right_is_held_against_the_runner_up(profile: str) -> None:
+    explanation = explain(situation(recording(circle, jitter=0.01), profile), "circle")
+    assert explanation.right
+    assert explanation.other != "circle"
+    assert explanation.margin > 0
+    assert explanation.counterfactuals.tried == 0
+    assert "as expected" in explanation.sentence
+    assert repr(explanation.other) in explanation.sentence
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_an_explanation_is_plain_json(profile: str) -> None:
+    explanation = why(recording(wedge, jitter=0.02), "circle", profile)
+    told = json.loads(json.dumps(explanation.to_dict(), allow_nan=False))
+    assert told["sentence"] == explanation.sentence
+    assert told["expected"] == "circle"
+    assert not told["right"]
+    assert len(json.dumps(told)) < 40_000
+
+
+def test_a_language_of_one_gesture_has_nothing_to_hold_against() -> None:
+    language = Language("one", LANGUAGE.gestures[:1])
+    explanation = explain(situation(recording(circle), language=language), "circle")
+    assert explanation.other is None
+    assert explanation.right
+    assert explanation.to_dict()["margin"] is None
+
+
+def test_a_gesture_that_cannot_be_compared_is_told() -> None:
+    left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
+    language = Language("pool", [*LANGUAGE.gestures, left])
+    landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
+    for profile in PROFILES:
+        query = recording(line, landmarks=landmarks)
+        explanation = explain(situation(query, profile, language), "left")
+        assert explanation.margin == -np.inf
+        assert "missing or does not move" in explanation.sentence
+        json.dumps(explanation.to_dict(), allow_nan=False)
+
+
+def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
+    pictures = [replace(gesture, trajectory=None) for gesture in LANGUAGE.gestures]
+    language = Language("pictures", pictures)
+    for profile in PROFILES:
+        query = recording(wedge, jitter=0.02)
+        explanation = explain(situation(query, profile, language), "circle")
+        assert explanation.alignments == ()
+        assert explanation.differences == ()
+        assert explanation.verdicts[0].against > 0
+
+
+def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
+    with pytest.raises(RecognitionError, match=r"no gesture 'spiral'.*circle, wedge"):
+        explain(situation(recording(circle)), "spiral")
