@@ -13,16 +13,15 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import chain
-from math import sqrt
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
+from app.evaluation.share import Share
 from app.recognition import (
     Gesture,
-    GestureError,
     Language,
     PoseError,
     PoseSequence,
@@ -30,55 +29,39 @@ from app.recognition import (
 )
 from app.recognition.recognizer import PROFILES
 from benchmarks.drawn_sets import drawn_sets
-from benchmarks.plain_warping import PlainWarping
+from benchmarks.methods import new_method
+from benchmarks.methods.ours import gesture_of
+from benchmarks.one_shot_draws import draws as drawn
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 
 Answer = Callable[[PoseSequence], str | None]
 
 
-@dataclass(frozen=True)
-class Score:
-    """Correct answers out of all queries."""
-
-    correct: int
-    queries: int
-
-    def __str__(self) -> str:
-        if not self.queries:
-            return "     -          "
-        share, n, z = self.correct / self.queries, self.queries, 1.96
-        middle = (share + z * z / (2 * n)) / (1 + z * z / n)
-        half = z * sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-        return f"{share:6.1%} ({middle - half:.0%}-{middle + half:.0%})"
-
-
 def evaluate(
     recorded: RecordedSet, method: str, draws: int, queries: int, seed: int
-) -> tuple[Score, Score]:
+) -> tuple[Share, Share]:
     """Score a method, user-dependent and user-independent."""
-    generator = np.random.default_rng(seed)
-    correct, asked = [0, 0], [0, 0]
-    for _ in range(draws):
-        person = generator.choice(np.unique(recorded.people))
-        own = recorded.people == person
-        templates = [
-            int(generator.choice(np.flatnonzero(own & (recorded.labels == label))))
-            for label in np.unique(recorded.labels)
-        ]
-        answer = answerer(recorded, templates, method)
-        rest = np.setdiff1d(np.flatnonzero(own), templates)
-        for kind, pool in enumerate((rest, np.flatnonzero(~own))):
-            for query in generator.choice(pool, min(queries, len(pool)), replace=False):
-                asked[kind] += 1
-                correct[kind] += answer(recorded.recordings[query]) == recorded.labels[query]
-    return Score(correct[0], asked[0]), Score(correct[1], asked[1])
+    own, others = Share(0, 0), Share(0, 0)
+    for draw in drawn(recorded, draws, queries, seed):
+        answer = answerer(recorded, draw.templates, method)
+        own += _named(recorded, draw.own, answer)
+        others += _named(recorded, draw.others, answer)
+    return own, others
+
+
+def _named(recorded: RecordedSet, queries: npt.NDArray[np.intp], answer: Answer) -> Share:
+    named = [answer(recorded.recordings[query]) == recorded.labels[query] for query in queries]
+    return Share(sum(named), len(named))
 
 
 def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer:
     """Teach a method one template a class."""
-    if method == "dtw":
-        demonstrations = [recorded.recordings[template] for template in templates]
-        return PlainWarping(demonstrations, recorded.labels[templates].tolist()).answer
+    if method not in PROFILES:
+        taught = new_method(method)
+        for template in templates:
+            taught.add(str(recorded.labels[template]), recorded.recordings[template])
+        taught.prepare()
+        return taught.answer
     recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)), method)
 
     def answer(poses: PoseSequence) -> str | None:
@@ -92,14 +75,10 @@ def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer
 
 def demonstrated(recorded: RecordedSet, templates: list[int]) -> list[Gesture]:
     """Make a gesture of each template."""
-    gestures = []
-    for template in templates:
-        label, poses = str(recorded.labels[template]), recorded.recordings[template]
-        try:
-            gestures.append(Gesture.from_demonstration(label, poses))
-        except GestureError:  # nothing moves enough by itself: follow every landmark
-            gestures.append(Gesture.from_demonstration(label, poses, salient=poses.landmarks))
-    return gestures
+    return [
+        gesture_of(str(recorded.labels[template]), recorded.recordings[template])
+        for template in templates
+    ]
 
 
 def main() -> None:
@@ -121,8 +100,8 @@ def main() -> None:
         for method in given.methods:
             own, others = evaluate(recorded, method, given.draws, given.queries, given.seed)
             print(
-                f"{recorded.name:12} {method:7} {own!s:>18} {own.queries:5} "
-                f"{others!s:>18} {others.queries:5}",
+                f"{recorded.name:12} {method:7} {own!s:>18} {own.asked:5} "
+                f"{others!s:>18} {others.asked:5}",
                 flush=True,
             )
 

@@ -9,20 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from app.evaluation.confusion import ConfusionMatrix
 from app.recognition import Language, PoseError, PoseSequence, RecognitionError, Recognizer
+from app.recognition.gesture import condensed
 from app.recognition.language_schema import MAX_GESTURES
 from app.recognition.trajectory import Trajectory
 from app.recognition.variation import Person, variants
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)``, after every query."""
-
-FRAME = (640, 480)
-PIXELS_PER_UNIT = 120.0
-"""A torso of a quarter of the picture's height: an arm stretched out stays inside."""
 
 
 def recognised_variants(
@@ -72,25 +67,17 @@ def recognised_variants(
         )
         for variant in drawn:
             shown.append(gesture.label)
-            read.append(label_read(recognizer, as_poses(variant)))
+            read.append(label_read(recognizer, variant))
             if progress is not None:
                 progress(len(read), count * len(language.gestures))
     return ConfusionMatrix.of(language.labels, shown, read)
 
 
-def label_read(recognizer: Recognizer, poses: PoseSequence) -> str | None:
+def label_read(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> str | None:
     """Return the label of a recognition, None also where nothing can be compared."""
     try:
-        return recognizer.recognize(poses).label
+        if isinstance(shown, Trajectory):
+            return recognizer.recognize_trajectory(condensed(shown)).label
+        return recognizer.recognize(shown).label
     except PoseError:
         return None
-
-
-def as_poses(trajectory: Trajectory) -> PoseSequence:
-    """Put a trajectory into a picture, as a camera would have seen it."""
-    return PoseSequence(
-        landmarks=trajectory.landmarks,
-        xy=trajectory.xy * PIXELS_PER_UNIT + np.array(FRAME) / 2,
-        time=trajectory.time,
-        frame_size=FRAME,
-    )

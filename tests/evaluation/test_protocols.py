@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from app.evaluation.protocols import as_poses, recognised_variants
+from app.evaluation.protocols import recognised_variants
 from app.recognition import Language, RecognitionError
 from app.recognition.osg_reference import from_reference, to_reference
-from app.recognition.trajectory import Trajectory
 from tests.conftest import ROOT
 
 
@@ -38,11 +37,3 @@ def test_a_gesture_without_demonstration_is_told_by_name(table_1: Language) -> N
     images_only = from_reference(to_reference(table_1), "images")
     with pytest.raises(RecognitionError, match=r"circle.*define it again"):
         recognised_variants(images_only, 1, profile="paper")
-
-
-def test_a_trajectory_seen_by_a_camera_is_the_same_trajectory(table_1: Language) -> None:
-    for gesture in table_1.gestures:
-        assert gesture.trajectory is not None
-        seen = Trajectory.from_poses(as_poses(gesture.trajectory))
-        assert seen.unit == gesture.trajectory.unit
-        np.testing.assert_allclose(seen.xy, gesture.trajectory.xy, atol=2e-4)

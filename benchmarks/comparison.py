@@ -1,0 +1,162 @@
+"""Every method on the same demonstrations and queries, in one run: accuracy, time and memory.
+
+One template a class; see `one_shot_draws` for who demonstrates and who is asked. Times are
+processor time of all threads, so other programs on the machine do not count, in shares of what
+profile ``full`` takes for the very same work. Memory is the peak of a process that does nothing but
+import a method, teach it one language of ten digits and ask it ten times.
+
+    python -m benchmarks.comparison ../shared/data --draws 20 --queries 15 --seed 1
+
+The trained methods need the extra ``bench``; without it they are left out, with the reason.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import fmean
+from time import process_time
+
+import numpy as np
+import numpy.typing as npt
+
+from app.evaluation.share import Share
+from benchmarks.methods import METHODS, new_method
+from benchmarks.methods.base import Method
+from benchmarks.one_shot_draws import Draw, draws
+from benchmarks.recorded_sets import RecordedSet, recorded_sets
+
+YARDSTICK = "full"
+QUERIES_OF_THE_CHILD = 10
+
+CHILD = """
+import resource, sys
+from pathlib import Path
+from benchmarks.comparison import teach_and_ask_once
+teach_and_ask_once(sys.argv[1], Path(sys.argv[2]))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@dataclass
+class Outcome:
+    """What came of one method.
+
+    Attributes
+    ----------
+    own, others
+        Per set: queries by the person who demonstrated, and by everybody else.
+    adding, asking
+        Seconds of processor time: of adding the last gesture of each language, with whatever has
+        to be done anew for it, and of each query.
+
+    """
+
+    own: dict[str, Share] = field(default_factory=dict)
+    others: dict[str, Share] = field(default_factory=dict)
+    adding: list[float] = field(default_factory=list)
+    asking: list[float] = field(default_factory=list)
+
+
+def measure(name: str, sets: Iterable[tuple[RecordedSet, list[Draw]]]) -> Outcome:
+    """Teach a method every drawn language and ask it every query."""
+    outcome = Outcome()
+    new_method(name)  # what is imported on first use is no time of the first gesture
+    for recorded, drawn in sets:
+        own, others = Share(0, 0), Share(0, 0)
+        for draw in drawn:
+            method = new_method(name)
+            outcome.adding.append(_teach(method, recorded, draw.templates))
+            own += _ask(method, recorded, draw.own, outcome.asking)
+            others += _ask(method, recorded, draw.others, outcome.asking)
+        outcome.own[recorded.name], outcome.others[recorded.name] = own, others
+    return outcome
+
+
+def _teach(method: Method, recorded: RecordedSet, templates: list[int]) -> float:
+    """Return the seconds that the last gesture took."""
+    start = process_time()
+    for template in templates:
+        start = process_time()
+        method.add(str(recorded.labels[template]), recorded.recordings[template])
+    method.prepare()
+    return process_time() - start
+
+
+def _ask(
+    method: Method, recorded: RecordedSet, queries: npt.NDArray[np.intp], times: list[float]
+) -> Share:
+    correct = 0
+    for query in queries:
+        start = process_time()
+        answer = method.answer(recorded.recordings[query])
+        times.append(process_time() - start)
+        correct += answer == recorded.labels[query]
+    return Share(correct, len(queries))
+
+
+def teach_and_ask_once(name: str, data: Path) -> None:
+    """Do what the memory is measured of."""
+    recorded = next(iter(recorded_sets(data / "trajectories")))
+    (draw,) = draws(recorded, 1, QUERIES_OF_THE_CHILD, seed=1)
+    method = new_method(name)
+    _teach(method, recorded, draw.templates)
+    _ask(method, recorded, draw.own, [])
+
+
+def peak_memory(name: str, data: Path) -> float:
+    """Return the peak resident memory of a process that uses the method, in the system's unit."""
+    child = subprocess.run(
+        [sys.executable, "-c", CHILD, name, str(data)], check=True, capture_output=True, text=True
+    )
+    return float(child.stdout)
+
+
+def main() -> None:
+    """Print one Markdown table, one row a method."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
+    parser.add_argument("--sets", nargs="+", help="names of sets; default: all")
+    parser.add_argument("--draws", type=int, default=20, help="languages per set")
+    parser.add_argument("--queries", type=int, default=15, help="queries per language, UD and UI")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    sets = [
+        (recorded, list(draws(recorded, given.draws, given.queries, given.seed)))
+        for recorded in recorded_sets(given.data / "trajectories")
+        if not given.sets or recorded.name in given.sets
+    ]
+    names = [recorded.name for recorded, _ in sets]
+    yardstick = measure(YARDSTICK, sets)
+    used = peak_memory(YARDSTICK, given.data)
+    print(f"{given.draws} languages a set, {given.queries} queries a language and kind")
+    print("| method | " + " | ".join(names) + " | adding | query | memory |")
+    print("| --- " * (len(names) + 4) + "|")
+    for name in given.methods:
+        try:
+            outcome = yardstick if name == YARDSTICK else measure(name, sets)
+        except ModuleNotFoundError as error:
+            print(f"| {name} | left out: {error.name} is not installed (extra `bench`) |")
+            continue
+        cells = [_accuracy(outcome, each) for each in names]
+        ratios = (
+            fmean(outcome.adding) / fmean(yardstick.adding),
+            fmean(outcome.asking) / fmean(yardstick.asking),
+            peak_memory(name, given.data) / used,
+        )
+        cells += [f"{ratio:.2g}" for ratio in ratios]
+        print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
+
+
+def _accuracy(outcome: Outcome, name: str) -> str:
+    own, others = outcome.own[name], outcome.others[name]
+    return f"{own} / {others}" if others.asked else str(own)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""A matcher in the manner of Jackknife (Taranta et al. 2017), written from the paper.
+
+Sixteen points, fifteen directions between them, dynamic time warping with one less the inner
+product as its cost and a band of two, and two correction factors: how far each coordinate travels,
+and how far it reaches. Without the rejection threshold.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition import PoseSequence
+from app.recognition.elastic import elastic_distances
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory
+from benchmarks.methods.base import Method
+from benchmarks.methods.steps import even_positions
+
+POINTS = 16
+BAND = 2
+
+
+class Jackknife(Method):
+    """Answers the reference with the least corrected distance."""
+
+    def __init__(self) -> None:
+        self._labels: list[str] = []
+        self._directions: list[FloatArray] = []
+        self._corrections: list[FloatArray] = []
+
+    def add(self, label: str, demonstration: PoseSequence) -> None:
+        """Describe the demonstration."""
+        self._labels.append(label)
+        directions, corrections = _described(demonstration)
+        self._directions.append(directions)
+        self._corrections.append(corrections)
+
+    def answer(self, query: PoseSequence) -> str:
+        """Return the label of the nearest reference."""
+        directions, corrections = _described(query)
+        # Of unit vectors, the squared distance is twice one less the inner product.
+        warped = elastic_distances(directions, np.array(self._directions), BAND) / 2
+        alike = np.einsum("gcd,cd->gc", np.array(self._corrections), corrections)
+        factors = 1 / np.maximum(alike, 1e-9)
+        return self._labels[int((warped * factors.prod(axis=1)).argmin())]
+
+
+def _described(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:
+    """Return ``(15, D)`` unit directions, and ``(2, D)`` unit vectors: travelled, and reached."""
+    points = even_positions(Trajectory.from_poses(poses), POINTS).reshape(POINTS, -1)
+    steps = np.diff(points, axis=0)
+    corrections = np.stack([np.abs(steps).sum(axis=0), np.ptp(points, axis=0)])
+    return _unit(steps), _unit(corrections)
+
+
+def _unit(rows: FloatArray) -> FloatArray:
+    return np.asarray(rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-9))

@@ -1,0 +1,181 @@
+"""The published implementation's steps, for comparison (Joshi and Sattar 2025).
+
+Written anew from its behaviour, defects included, since they are what is compared with: x and y
+are divided by the frame's width and height and neither centred on the torso nor scaled; reference
+and query are prepared differently; the moment vectors are standardised within themselves; the
+Fourier descriptors keep position, size and starting point; the first contour is taken, whichever
+it is. The query is drawn, described and compared once for each gesture of the language.
+
+Not taken over: the picture written to the working directory for every gesture, and the crash of the
+whole language when one drawing is empty. Such a gesture is here the farthest for every voter.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import cv2
+import mahotas  # type: ignore[import-untyped]
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition import PoseSequence
+from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.movement import part_of
+from app.recognition.poses import FloatArray
+from benchmarks.methods.base import Method
+
+SIZE = 224
+MIN_MOVEMENT = 0.1
+"""Least sum of the ranges of x and y, in shares of the frame, of a salient keypoint."""
+
+MAX_SALIENT = 3
+CORNER_TOLERANCE = 5.0
+REFERENCE_EDGES = (50.0, 150.0)
+QUERY_EDGES = (100.0, 200.0)
+"""Thresholds of the edge detector that draws the outlines anew."""
+
+FOURIER_COUNT = 12
+ZERNIKE_RADIUS = 21
+ZERNIKE_DEGREE = 8
+NOT_HANDS = ("shoulder", "elbow", "hip", "knee", "ankle", "heel", "foot_index")
+
+Image = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class _Reference:
+    label: str
+    salient: tuple[str, ...]
+    features: tuple[FloatArray, ...]
+
+
+class PublishedCode(Method):
+    """Majority vote of the seven shape voters, as the published implementation casts it."""
+
+    def __init__(self) -> None:
+        self._references: list[_Reference] = []
+
+    def add(self, label: str, demonstration: PoseSequence) -> None:
+        """Draw and describe the demonstration."""
+        salient = salient_keypoints(demonstration)
+        image = picture(demonstration, salient, REFERENCE_EDGES)
+        self._references.append(_Reference(label, salient, features(image)))
+
+    def answer(self, query: PoseSequence) -> str | None:
+        """Draw, describe and compare the query once for each gesture, and count the votes."""
+        rows = []
+        for reference in self._references:
+            image = picture(query, reference.salient, QUERY_EDGES)
+            pairs = zip(features(image), reference.features, strict=True)
+            rows.append([_difference(one, other) for one, other in pairs])
+        votes = np.argmin(rows, axis=0)
+        (winner, _), *_ = Counter(votes.tolist()).most_common(1)
+        return self._references[winner].label
+
+
+def salient_keypoints(poses: PoseSequence) -> tuple[str, ...]:
+    """Choose at most one keypoint a group (right hand, left hand, the rest), the widest first."""
+    movement = np.nansum(_range(poses.xy / poses.frame_size), axis=1)
+    best: dict[str, tuple[float, str]] = {}
+    for name, moved in zip(poses.landmarks, movement.tolist(), strict=True):
+        part = part_of(name)
+        if part.endswith(NOT_HANDS) or part in (*SHOULDERS, *HIPS):
+            continue
+        group = next((side for side in ("right", "left") if part.startswith(side)), "face")
+        best[group] = max(best.get(group, (0.0, "")), (moved, name))
+    chosen = sorted((pair for pair in best.values() if pair[0] > MIN_MOVEMENT), reverse=True)
+    return tuple(name for _, name in chosen[:MAX_SALIENT]) or poses.landmarks
+
+
+def picture(poses: PoseSequence, salient: Sequence[str], edges: tuple[float, float]) -> Image:
+    """Draw a gesture, and of the drawing the simplified outer contours of its edges, thickened."""
+    found = cv2.Canny(_blurred(_paths(poses, salient), 5), *edges)
+    contours = cv2.findContours(found, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
+    outlines: Image = np.zeros_like(found, dtype=np.uint8)
+    for contour in contours:
+        corners = cv2.approxPolyDP(contour, CORNER_TOLERANCE, closed=True)
+        cv2.drawContours(outlines, [corners], -1, 255, thickness=1)
+    return cv2.threshold(_blurred(outlines, 7), 0.1, 255, cv2.THRESH_BINARY)[1].astype(np.uint8)
+
+
+def _paths(poses: PoseSequence, salient: Sequence[str]) -> Image:
+    """Draw the keypoints' paths about their common mean, one pixel wide, grey on white."""
+    image: Image = np.full((SIZE, SIZE, 3), 255, dtype=np.uint8)
+    kept = poses.select([name for name in salient if name in poses.landmarks])
+    shares = kept.xy / poses.frame_size
+    if not np.isfinite(shares).any():
+        return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.uint8)
+    pixels = (shares - np.nanmean(shares, axis=(0, 1)) + 0.5) * SIZE
+    for before, after in pairwise(pixels):
+        for start, end in zip(before, after, strict=True):
+            if np.isfinite([start, end]).all():
+                cv2.line(image, start.astype(int).tolist(), end.astype(int).tolist(), (0, 0, 255))
+    return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.uint8)
+
+
+def features(image: Image) -> tuple[FloatArray, ...]:
+    """Describe a picture for the seven voters, Hu, Zernike and Fourier first."""
+    contours = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)[0]
+    complete = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
+    if not contours:
+        return (np.full(1, np.inf),) * 7
+    contour = max(contours, key=cv2.contourArea)
+    area, hull = cv2.contourArea(contour), cv2.contourArea(cv2.convexHull(contour))
+    perimeter = cv2.arcLength(contour, closed=True)
+    width, height = cv2.boundingRect(contour)[2:]
+    open_length = float(np.linalg.norm(np.diff(contour[:, 0], axis=0), axis=1).sum())
+    small = cv2.resize(image, (2 * ZERNIKE_RADIUS, 2 * ZERNIKE_RADIUS))
+    zernike = mahotas.features.zernike_moments(small, ZERNIKE_RADIUS, degree=ZERNIKE_DEGREE)
+    proportions = (
+        4 * np.pi * area / perimeter**2 if perimeter else 0.0,
+        area / hull if hull else 0.0,
+        width / height,
+        open_length / (2 * (width + height)),
+    )
+    return (
+        _standardised(_hu_of_raw_moments(image)),
+        _standardised(np.asarray(zernike)),
+        _fourier(complete[0][:, 0]),
+        *(np.array([value]) for value in proportions),
+    )
+
+
+def _hu_of_raw_moments(image: Image) -> FloatArray:
+    """Hu's seven polynomials, of raw moments as published instead of normalised central ones."""
+    raw = cv2.moments(image)
+    names = ("nu20", "nu11", "nu02", "nu30", "nu21", "nu12", "nu03")
+    # The published library counts rows first.
+    of_raw = {name: raw[f"m{name[3]}{name[2]}"] for name in names}
+    return np.asarray(cv2.HuMoments({**dict.fromkeys(raw, 0.0), **of_raw}).ravel())
+
+
+def _standardised(values: FloatArray) -> FloatArray:
+    return np.asarray((values - values.mean()) / (values.std() + 1e-7))
+
+
+def _fourier(contour: npt.NDArray[Any]) -> FloatArray:
+    """Low-frequency coefficients with position, size and starting point left in them."""
+    spectrum = np.fft.fftshift(np.fft.fft(contour[:, 0] + 1j * contour[:, 1]))
+    middle = len(spectrum) / 2
+    low = spectrum[max(0, int(middle - FOURIER_COUNT / 2)) : int(middle + FOURIER_COUNT / 2)]
+    return np.concatenate([low.real, low.imag])
+
+
+def _difference(one: FloatArray, other: FloatArray) -> float:
+    """Euclidean distance; infinite where the two cannot be compared."""
+    if one.shape != other.shape or not np.isfinite([one, other]).all():
+        return float("inf")
+    return float(np.linalg.norm(one - other))
+
+
+def _range(paths: FloatArray) -> FloatArray:
+    return np.asarray(np.nanmax(paths, axis=0) - np.nanmin(paths, axis=0))
+
+
+def _blurred(image: Image, size: int) -> Image:
+    return cv2.GaussianBlur(image, (size, size), 0).astype(np.uint8)

@@ -1,0 +1,59 @@
+"""A linear-chain conditional random field that names the gesture at every step."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pycrfsuite
+
+from app.recognition.poses import FloatArray
+from benchmarks.methods.trained import TrainedOnVariants
+
+LEVELS = 7
+"""Levels that a coordinate is divided into: the field's weights are linear, and a gesture is no
+linear function of where the hand is."""
+
+REACH = 2.0
+"""Largest coordinate told apart, in sizes."""
+
+PHASES = 8
+"""Parts of the way, each with weights of its own: what is far left at first is not so at last."""
+
+ROUNDS = 40
+"""Of L-BFGS."""
+
+
+class RandomField(TrainedOnVariants):
+    """Each step is described by the level of each coordinate in each phase."""
+
+    def train(self, sequences: list[FloatArray]) -> None:
+        """Fit the field to all variants."""
+        trainer = pycrfsuite.Trainer(verbose=False)
+        trainer.set_params({"c1": 0.0, "c2": 0.1, "max_iterations": ROUNDS})
+        for gesture, variants in enumerate(sequences):
+            for sequence in variants:
+                trainer.append(_attributes(sequence), [str(gesture)] * len(sequence))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "field"
+            trainer.train(str(path))
+            # The tagger reads the model where it lies, and does not keep it alive.
+            self._model = path.read_bytes()
+        self._tagger = pycrfsuite.Tagger()
+        self._tagger.open_inmemory(self._model)
+
+    def likeliest(self, sequence: FloatArray) -> int:
+        """Return the gesture that most steps are named, on the likeliest way through the field."""
+        named = np.array(self._tagger.tag(_attributes(sequence)), dtype=int)
+        return int(np.bincount(named).argmax())
+
+
+def _attributes(sequence: FloatArray) -> list[list[str]]:
+    """Name the level of each coordinate at each step."""
+    shares = (np.clip(sequence, -REACH, REACH) + REACH) / (2 * REACH)
+    levels = np.rint(shares * (LEVELS - 1)).astype(int)
+    return [
+        [f"{PHASES * step // len(levels)}:{place}:{level}" for place, level in enumerate(row)]
+        for step, row in enumerate(levels.tolist())
+    ]

@@ -1,0 +1,33 @@
+"""A support vector machine on whole movements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from sklearn.svm import SVC
+
+from app.recognition.poses import FloatArray
+from benchmarks.methods.trained import TrainedOnVariants
+
+PENALTY = 10.0
+"""Of the margin's violation: variants of one demonstration hardly overlap with another's."""
+
+
+class SupportVectors(TrainedOnVariants):
+    """One vector a movement, with a Gaussian kernel of the customary width.
+
+    Coordinates keep their common unit: standardised one by one, what rests would count as much as
+    what moves.
+    """
+
+    def train(self, sequences: list[FloatArray]) -> None:
+        """Fit one machine for each pair of gestures."""
+        rows = np.concatenate(sequences)
+        owners = np.repeat(np.arange(len(sequences)), [len(each) for each in sequences])
+        self._machine: Any = SVC(C=PENALTY)
+        self._machine.fit(rows.reshape(len(rows), -1), owners)
+
+    def likeliest(self, sequence: FloatArray) -> int:
+        """Let the pairs vote."""
+        return int(self._machine.predict(sequence.reshape(1, -1))[0])

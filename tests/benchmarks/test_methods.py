@@ -1,0 +1,91 @@
+"""The methods that recognition is compared with: each does what its paper says it does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.recognition import PoseSequence
+from benchmarks.methods import METHODS, new_method
+from benchmarks.methods.base import Method
+from benchmarks.methods.jackknife import Jackknife
+from benchmarks.methods.point_cloud import greedy_cloud_distance
+from benchmarks.one_shot_draws import draws
+from benchmarks.recorded_sets import RecordedSet
+
+TRAINED_FOR_LONG = {"hmm", "bi-lstm"}
+
+
+def available(name: str) -> Method:
+    """Make a method, or skip where its packages are not installed."""
+    try:
+        return new_method(name)
+    except ModuleNotFoundError as error:
+        pytest.skip(f'needs {error.name}, which comes with the extra: pip install -e ".[bench]"')
+
+
+def turned_round(poses: PoseSequence) -> PoseSequence:
+    return replace(poses, xy=poses.xy[::-1], confidence=None)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in TRAINED_FOR_LONG else ())
+        for name in METHODS
+    ],
+)
+def test_another_take_by_the_same_person_is_named(drawn: dict[str, RecordedSet], name: str) -> None:
+    figures = drawn["one circle"]
+    (draw,) = draws(figures, 1, 12, seed=2)
+    method = available(name)
+    for template in draw.templates:
+        method.add(str(figures.labels[template]), figures.recordings[template])
+    method.prepare()
+    named = [method.answer(figures.recordings[query]) for query in draw.own]
+    assert np.mean(np.array(named) == figures.labels[draw.own]) >= 0.75
+
+
+def test_jackknife_knows_a_swipe_from_the_same_one_turned_round(
+    drawn: dict[str, RecordedSet],
+) -> None:
+    swipes = drawn["swipes"]
+    method = Jackknife()
+    for label in ("left", "right"):
+        method.add(label, swipes.recordings[np.flatnonzero(swipes.labels == label)[0]])
+    right = swipes.recordings[np.flatnonzero(swipes.labels == "right")[1]]
+    assert method.answer(right) == "right"
+    assert method.answer(turned_round(right)) == "left"
+
+
+def test_a_cloud_matched_with_itself_in_another_order_costs_nothing() -> None:
+    random = np.random.default_rng(5)
+    points = random.normal(size=(32, 2))
+    assert greedy_cloud_distance(points, random.permutation(points)) == 0
+    assert greedy_cloud_distance(points, points + 1) > 0
+
+
+def test_the_published_code_calls_a_gesture_another_one_when_the_camera_stands_back(
+    drawn: dict[str, RecordedSet],
+) -> None:
+    published = pytest.importorskip("benchmarks.methods.published", reason="needs mahotas")
+    near = drawn["one circle"].recordings[0]
+    middle = np.array(near.frame_size) / 2
+    far = replace(near, xy=middle + (near.xy - middle) / 2)
+    salient = published.salient_keypoints(near)
+    assert salient == ("right_wrist",)
+    fourier = [
+        published.features(published.picture(poses, salient, published.QUERY_EDGES))[2]
+        for poses in (near, far)
+    ]
+    assert np.linalg.norm(fourier[0] - fourier[1]) > 0.3 * np.linalg.norm(fourier[0])
+
+
+def test_the_published_code_needs_a_tenth_of_the_frame_to_see_a_movement(
+    drawn: dict[str, RecordedSet],
+) -> None:
+    published = pytest.importorskip("benchmarks.methods.published", reason="needs mahotas")
+    near = drawn["one circle"].recordings[0]
+    middle = np.array(near.frame_size) / 2
+    far = replace(near, xy=middle + (near.xy - middle) / 10)
+    assert published.salient_keypoints(far) == near.landmarks
