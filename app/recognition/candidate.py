@@ -8,10 +8,10 @@ import numpy as np
 
 from app.recognition.change import (
     Change,
+    KeypointRepair,
     NewDemonstration,
     OtherProfile,
     SalientKeypoints,
-    SidesRepair,
     Simplification,
     Situation,
     SwitchName,
@@ -21,8 +21,8 @@ from app.recognition.change import (
 )
 from app.recognition.gesture import Gesture, condensed
 from app.recognition.recognizer import PROFILES
+from app.recognition.repair import repaired
 from app.recognition.salience import salient_landmarks
-from app.recognition.sides import with_sides_repaired
 from app.recognition.switches import Switch
 from app.recognition.trajectory import Trajectory
 
@@ -119,12 +119,10 @@ def _drawings(situation: Situation) -> Iterator[Series]:
 
 
 def _repairs(situation: Situation) -> Iterator[Series]:
-    """Put exchanged sides right, or leave them, where there are any."""
-    trajectory = condensed(Trajectory.from_poses(situation.poses))
-    same = np.isclose(with_sides_repaired(trajectory).xy, trajectory.xy, equal_nan=True)
-    share = 1.0 - float(same.all(axis=(1, 2)).mean())
+    """Repair bad keypoints, or leave them, where there are any."""
+    share = float(repaired(situation.poses).touched.mean())
     if share > 0:
-        yield [SidesRepair(size=share, on=not situation.recognizer.repairs_sides)]
+        yield [KeypointRepair(size=share, on=not situation.recognizer.repairs)]
 
 
 def _gestures(situation: Situation, expected: str, chosen: str) -> Iterator[Series]:

@@ -159,10 +159,10 @@ class Simplification(Change):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SidesRepair(Change):
-    """Exchanged sides put right, or left as they are; its size is the share of such moments."""
+class KeypointRepair(Change):
+    """Bad keypoints repaired, or left as they are; its size is the share of such moments."""
 
-    kind = "sides_repair"
+    kind = "keypoint_repair"
     reach = "language"
     on: bool
 
@@ -170,12 +170,12 @@ class SidesRepair(Change):
     def words(self) -> str:
         """See `Change`."""
         if self.on:
-            return "with left and right put right where they were taken for each other"
-        return "with left and right left as the pose model saw them"
+            return "with exchanged sides put right and jumps left out"
+        return "with the keypoints left as the pose model saw them"
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
-        return replace(situation, tuning=replace(situation.tuning, sides_repaired=self.on))
+        return replace(situation, tuning=replace(situation.tuning, keypoints_repaired=self.on))
 
 
 @dataclass(frozen=True, kw_only=True)

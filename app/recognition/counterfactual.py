@@ -187,8 +187,7 @@ def answer(situation: Situation) -> tuple[Comparison, Recognition]:
         When it shows nothing that a gesture needs.
 
     """
-    trajectory = condensed(Trajectory.from_poses(situation.poses))
-    comparison = situation.recognizer.compare(trajectory)
+    comparison = situation.recognizer.compare(situation.recognizer.query(situation.poses))
     return comparison, situation.recognizer.decided(comparison)
 
 

@@ -8,7 +8,7 @@ share.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -20,7 +20,7 @@ from app.recognition.motion_references import CLEARLY_SLOWER
 from app.recognition.movement import STEPS, movement
 from app.recognition.pairing import Pairing
 from app.recognition.poses import FloatArray
-from app.recognition.sides import with_sides_repaired
+from app.recognition.sides import exchanged_back, mistaken_sides
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
 from app.recognition.trajectory_image import MIN_EXTENT
 
@@ -117,12 +117,12 @@ def spoken(landmark: str) -> str:
 
 def _exchanged(pairing: Pairing) -> Iterator[Difference]:
     """Put right what the pose model exchanged, unless it was already."""
-    repaired = with_sides_repaired(pairing.trajectory)
-    same = np.isclose(repaired.xy, pairing.trajectory.xy, equal_nan=True)
-    changed = np.asarray(~same.all(axis=(1, 2)))
+    seen = pairing.trajectory
+    changed = mistaken_sides(seen).exchanged
     if not changed.any():
         return
-    paths = movement(repaired, pairing.landmarks).paths
+    right = replace(seen, xy=exchanged_back(seen.xy, seen.landmarks, changed))
+    paths = movement(right, pairing.landmarks).paths
     left = pairing.distance(paths, pairing.paths_begun_anywhere())
     times = pairing.trajectory.time[changed] + pairing.start
     yield Difference(

@@ -16,12 +16,10 @@ from app.recognition.comparison import Comparison
 from app.recognition.counterfactual import NONE_NEEDED, Counterfactuals, answer, counterfactuals
 from app.recognition.difference import Difference, differences
 from app.recognition.errors import RecognitionError
-from app.recognition.gesture import condensed
 from app.recognition.movement import movement
 from app.recognition.pairing import Pairing
 from app.recognition.recognition_result import Recognition
 from app.recognition.sentence import in_words
-from app.recognition.trajectory import Trajectory
 from app.recognition.verdict import Verdict, verdicts
 from app.recognition.voters.motion import Path, Posture
 
@@ -195,8 +193,7 @@ class _Pairings:
         self._full = situation.profile == "full"
         self._start = float(situation.poses.time[0])
         self._landmarks = situation.recognizer.landmarks
-        condensed_query = condensed(Trajectory.from_poses(situation.poses))
-        self._query = situation.recognizer.as_compared(condensed_query)
+        self._query = situation.recognizer.query(situation.poses)
 
     def alignments(self, index: int) -> Iterator[Alignment]:
         """Align the query with a gesture, where both have a movement."""

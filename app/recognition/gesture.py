@@ -11,9 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
-from app.recognition.landmarks import HIPS, LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS, other_side
+from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
 from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.repair import repaired
 from app.recognition.salience import (
     MIN_DISPLACEMENT,
     chosen_landmarks,
@@ -82,11 +83,6 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
 )
 """What images and descriptors in a language file were made with; where a file's differ, they are
 made anew."""
-
-_UPPER_BODY = frozenset(
-    {*SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
-    | {*LANDMARK_GROUPS["left_hand"], *LANDMARK_GROUPS["right_hand"]}
-)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -171,7 +167,7 @@ class Gesture:
         label
             What recognition shall answer.
         poses
-            The demonstration, without the salutes around it.
+            The demonstration, without the salutes around it; bad keypoints are repaired first.
         salient
             Landmarks to follow in place of those that `salient_landmarks` would choose.
         description, command
@@ -190,7 +186,7 @@ class Gesture:
                 f"least {MIN_FRAMES}: choose a longer range of the clip"
             )
         try:
-            trajectory = Trajectory.from_poses(poses)
+            trajectory = Trajectory.from_poses(repaired(poses).poses)
         except PoseError as error:
             raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
         if salient is None:
@@ -292,7 +288,7 @@ def condensed(trajectory: Trajectory) -> Trajectory:
 def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
     """Choose the landmarks worth keeping, in the trajectory's order."""
     names = trajectory.landmarks
-    upper = [name for name in names if name in _UPPER_BODY and name not in salient]
+    upper = [name for name in names if name in UPPER_BODY and name not in salient]
     # Of a set with legs and a face only the arms count; names of other sets may all be arms.
     known = frozenset(POSE_LANDMARKS) if upper else frozenset()
     others = [name for name in names if name not in salient and name not in known]

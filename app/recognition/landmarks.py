@@ -93,6 +93,12 @@ The first name of a group is its usual representative: of the hand's four, the w
 the pose model places most steadily; of the head's eleven, the nose.
 """
 
+UPPER_BODY: Final = frozenset(
+    {*SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
+    | {*LANDMARK_GROUPS["left_hand"], *LANDMARK_GROUPS["right_hand"]}
+)
+"""What gestures are made with and measured against, without the details of the face."""
+
 SKELETON: Final = (
     ("left_shoulder", "right_shoulder"),
     ("left_shoulder", "left_elbow"),

@@ -13,8 +13,8 @@ from app.recognition.gesture import condensed
 from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recognition_result import Recognition
+from app.recognition.repair import repaired
 from app.recognition.shape_references import ShapeReferences
-from app.recognition.sides import with_sides_repaired
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.voters import PAPER_VOTERS, Voter
@@ -64,8 +64,8 @@ class Recognizer:
         self._weights = tuning.weights_of([voter.name for voter in PROFILES[profile]])
         self._shapes = ShapeReferences(language.gestures, tuning.simplification)
         self._calibrated = CalibratedVote(language.gestures, tuning) if profile == "full" else None
-        repaired = tuning.sides_repaired
-        self.repairs_sides = profile == "full" if repaired is None else repaired
+        wanted = tuning.keypoints_repaired
+        self.repairs = profile == "full" if wanted is None else wanted
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.
@@ -81,10 +81,22 @@ class Recognizer:
             When the recording shows nothing, or no landmark that a gesture needs moves in it.
 
         """
-        return self.recognize_trajectory(condensed(Trajectory.from_poses(poses)))
+        return self.recognize_trajectory(self.query(poses))
+
+    def query(self, poses: PoseSequence) -> Trajectory:
+        """Return a recording as the voters see it: repaired or not, normalised and condensed.
+
+        Raises
+        ------
+        PoseError
+            When the recording shows nothing.
+
+        """
+        seen = repaired(poses).poses if self.repairs else poses
+        return condensed(Trajectory.from_poses(seen))
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
-        """Recognise the gesture in a recording that is normalised and condensed already.
+        """Recognise the gesture in a `query`.
 
         Raises
         ------
@@ -113,10 +125,6 @@ class Recognizer:
             return self._calibrated.decided(compared)
         return self._counted(compared.distances)
 
-    def as_compared(self, trajectory: Trajectory) -> Trajectory:
-        """Return a condensed query as the voters see it: exchanged sides are put right or not."""
-        return with_sides_repaired(trajectory) if self.repairs_sides else trajectory
-
     @property
     def say(self) -> dict[str, float]:
         """What each voter has to say in this language; 0: it does not count."""
@@ -133,11 +141,10 @@ class Recognizer:
         return self._shapes.needed
 
     def compare(self, trajectory: Trajectory) -> Comparison:
-        """Take the comparison of a condensed query with every gesture apart, voter by voter."""
-        seen = self.as_compared(trajectory)
+        """Take the comparison of a `query` with every gesture apart, voter by voter."""
         if self._calibrated is not None:
-            return self._calibrated.compare(seen)
-        distances = self._shapes.distances(seen)
+            return self._calibrated.compare(trajectory)
+        distances = self._shapes.distances(trajectory)
         count = len(self.language.gestures)
         return Comparison(
             voters=tuple(voter.name for voter in PAPER_VOTERS),

@@ -11,6 +11,7 @@ from app.recognition.estimation.base import PoseEstimator
 from app.recognition.extraction import Progress, record
 from app.recognition.poses import PoseSequence
 from app.recognition.recording import Recording
+from app.recognition.repair import repaired
 from app.recognition.salute import SaluteTrigger
 from app.recognition.transit import Span, find_stroke
 
@@ -267,7 +268,7 @@ def take_from(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Ta
             bracket.first_salute.start,
             bracket.last_salute.end if bracket.last_salute else bracket.end,
         )
-        stroke = find_stroke(around, bracket.first_salute, bracket.last_salute)
+        stroke = find_stroke(repaired(around).poses, bracket.first_salute, bracket.last_salute)
     return Take(
         start=bracket.start,
         end=bracket.end,

@@ -25,9 +25,9 @@ class Tuning:
     simplification
         Tolerance of Ramer-Douglas-Peucker, in pixels of the trajectory image, for references and
         queries alike.
-    sides_repaired
-        Whether frames in which left and right were exchanged are put right (`sides`); None: as
-        the profile does, ``full`` does and ``paper`` does not.
+    keypoints_repaired
+        Whether bad keypoints of a query are repaired (`repair`); None: as the profile does,
+        ``full`` does and ``paper`` does not.
 
     Raises
     ------
@@ -38,7 +38,7 @@ class Tuning:
 
     weights: Mapping[str, float] = field(default_factory=dict)
     simplification: float = SIMPLIFICATION
-    sides_repaired: bool | None = None
+    keypoints_repaired: bool | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers, and freeze the weights."""

@@ -1,71 +1,98 @@
-"""Exchanged sides: found and undone, and left alone where hands really cross."""
+"""Exchanged sides: found, and none found where hands really cross, meet or part."""
 
 import numpy as np
 import pytest
 
-from app.recognition.landmarks import other_side
-from app.recognition.sides import PARTS, with_sides_repaired
+from app.recognition.landmarks import POSE_LANDMARKS, other_side
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.sides import mistaken_sides, sides_of
 from app.recognition.trajectory import Trajectory
 from tests.recognition.strategies import circle, recording
+
+HANDS = ("left_wrist", "right_wrist")
 
 
 def shown() -> Trajectory:
     return Trajectory.from_poses(recording(circle, jitter=0.005))
 
 
-def exchanged(trajectory: Trajectory, frames: list[int]) -> Trajectory:
-    body = [f"{side}_{part}" for side in ("left", "right") for part in PARTS]
+def with_sides_exchanged(trajectory: Trajectory, frames: list[int]) -> Trajectory:
+    left, right = sides_of(trajectory.landmarks)
+    order = np.arange(len(trajectory.landmarks))
+    order[[*left, *right]] = [*right, *left]
     xy = trajectory.xy.copy()
-    for name in [name for name in trajectory.landmarks if name in body]:
-        column = trajectory.landmarks.index(name)
-        other = trajectory.landmarks.index(other_side(name))
-        xy[frames, column] = trajectory.xy[frames, other]
+    xy[frames] = xy[frames][:, order]
     return Trajectory(
         landmarks=trajectory.landmarks, xy=xy, time=trajectory.time, unit=trajectory.unit
     )
 
 
+def hands_at(left: FloatArray, right: FloatArray) -> Trajectory:
+    """Two hands ``(T, 2)`` each without a body, 30 moments a second."""
+    poses = PoseSequence(
+        landmarks=HANDS,
+        xy=320 + 120 * np.stack([left, right], axis=1),
+        time=np.arange(len(left)) / 30,
+        frame_size=(640, 640),
+    )
+    return Trajectory.from_poses(poses)
+
+
+def level(x: FloatArray) -> FloatArray:
+    return np.stack([x, np.zeros_like(x)], axis=1)
+
+
 @pytest.mark.parametrize(
     "frames", [[7], [3, 4, 20, 21, 22, 40], list(range(10, 30)), [0, 1, 2], [57, 58, 59]]
 )
-def test_mistaken_frames_are_undone(frames: list[int]) -> None:
-    seen = exchanged(shown(), frames)
-    np.testing.assert_array_equal(with_sides_repaired(seen).xy, shown().xy)
+@pytest.mark.parametrize("landmarks", [POSE_LANDMARKS, HANDS], ids=["body", "hands"])
+def test_mistaken_frames_are_found(frames: list[int], landmarks: tuple[str, ...]) -> None:
+    seen = with_sides_exchanged(shown().select(landmarks), frames)
+    assert np.flatnonzero(mistaken_sides(seen).exchanged).tolist() == frames
 
 
-def test_a_steady_recording_is_left_alone() -> None:
-    trajectory = shown()
-    assert with_sides_repaired(trajectory) is trajectory
+def test_a_steady_recording_has_none() -> None:
+    sides = mistaken_sides(shown())
+    assert not sides.exchanged.any()
+    assert not sides.blended.any()
 
 
 def test_hands_that_cross_stay_what_they_are() -> None:
-    poses = recording(circle)
-    xy = poses.xy.copy()
-    sweep = np.linspace(-1, 1, len(xy))
-    for hand, way in (("left_wrist", 120 * sweep), ("right_wrist", -120 * sweep)):
-        xy[:, poses.landmarks.index(hand)] = np.stack([320 + way, 200 + 0 * way], axis=1)
-    crossing = Trajectory(
-        landmarks=poses.landmarks, xy=xy / 120, time=poses.time, unit="torso_length"
-    )
-    assert with_sides_repaired(crossing) is crossing
+    sweep = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 20))
+    assert not mistaken_sides(hands_at(level(sweep), level(-sweep))).exchanged.any()
 
 
-def test_frames_between_the_sides_are_not_believed() -> None:
-    seen = exchanged(shown(), list(range(20, 40)))
+def test_hands_that_clap_stay_what_they_are() -> None:
+    apart = 0.05 + np.abs(np.cos(np.linspace(0, 3 * np.pi, 90)))
+    assert not mistaken_sides(hands_at(level(apart), level(-apart))).exchanged.any()
+
+
+def test_a_frame_between_the_sides_is_blended() -> None:
+    seen = with_sides_exchanged(shown(), list(range(20, 40)))
     xy = seen.xy.copy()
     xy[[19, 40]] = (seen.xy[[18, 41]] + seen.xy[[21, 38]]) / 2
-    repaired = with_sides_repaired(
+    sides = mistaken_sides(
         Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
     )
-    blended = np.isnan(repaired.xy).all(axis=(1, 2))
-    assert np.flatnonzero(blended).tolist() == [19, 40]
+    assert np.flatnonzero(sides.blended).tolist() == [19, 40]
+    assert np.flatnonzero(sides.exchanged).tolist() == list(range(20, 40))
 
 
-def test_hands_without_a_body_are_left_alone() -> None:
-    hands = exchanged(shown(), [7, 20, 21]).select(["left_wrist", "right_wrist"])
-    assert with_sides_repaired(hands) is hands
+def test_frames_that_show_nothing_are_passed_over() -> None:
+    seen = with_sides_exchanged(shown(), list(range(20, 30)))
+    xy = seen.xy.copy()
+    xy[17:22] = np.nan
+    sides = mistaken_sides(
+        Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
+    )
+    assert np.flatnonzero(sides.exchanged).tolist() == list(range(22, 30))
 
 
-def test_a_set_with_one_hand_has_no_sides_to_exchange() -> None:
+def test_one_side_cannot_be_exchanged() -> None:
     one = shown().select(["right_wrist", "right_elbow"])
-    assert with_sides_repaired(one) is one
+    assert not mistaken_sides(one).exchanged.any()
+
+
+def test_sides_are_found_by_other_trackers_names() -> None:
+    assert sides_of(("WristRight", "Head", "WristLeft")) == ([2], [0])
+    assert other_side("head") == "head"

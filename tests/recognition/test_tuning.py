@@ -79,11 +79,11 @@ def with_sides_exchanged(poses: PoseSequence, frames: slice) -> PoseSequence:
 def test_profile_paper_puts_sides_right_when_told_to(language: Language) -> None:
     query = recording(circle)
     mistaken = with_sides_exchanged(query, slice(20, 30))
-    told = Recognizer(language, tuning=Tuning(sides_repaired=True))
+    told = Recognizer(language, tuning=Tuning(keypoints_repaired=True))
     np.testing.assert_allclose(told.recognize(mistaken).distances, told.recognize(query).distances)
     as_it_is = Recognizer(language).recognize(mistaken)
     assert (as_it_is.distances != told.recognize(mistaken).distances).any()
-    unrepaired = Recognizer(language, "full", tuning=Tuning(sides_repaired=False))
+    unrepaired = Recognizer(language, "full", tuning=Tuning(keypoints_repaired=False))
     assert Recognizer(language, "full").recognize(mistaken).label == "circle"
     assert unrepaired.recognize(mistaken).label != "circle"
 
