@@ -24,8 +24,8 @@ def test_a_voter_that_is_off_neither_votes_nor_contributes(
 ) -> None:
     query = recording(wedge, jitter=0.02)
     off = Recognizer(language, profile, tuning=Tuning(weights={"zernike": 0.0}))
-    assert "zernike" in Recognizer(language, profile).recognize(query).votes
-    assert "zernike" not in off.recognize(query).votes
+    assert "zernike" in Recognizer(language, profile).recognize(query).counted
+    assert "zernike" not in off.recognize(query).counted
     compared = off.compare(condensed(Trajectory.from_poses(query)))
     assert not compared.contributions[compared.voters.index("zernike")].any()
 
@@ -36,14 +36,15 @@ def test_one_voter_alone_decides(language: Language, profile: str) -> None:
     voters = Recognizer(language, profile).recognize(query).voters
     others = {voter: 0.0 for voter in voters if voter != "circularity"}
     result = Recognizer(language, profile, tuning=Tuning(weights=others)).recognize(query)
-    assert result.votes == {"circularity": result.label}
+    assert result.counted == {"circularity": result.label}
 
 
 def test_weights_count_as_so_many_votes(language: Language) -> None:
     query = recording(square, jitter=0.03)
-    plain = Recognizer(language).recognize(query)
+    plain = Recognizer(language, "paper").recognize(query)
     for voter, vote in plain.votes.items():
-        tuned = Recognizer(language, tuning=Tuning(weights={voter: 100.0})).recognize(query)
+        tuning = Tuning(weights={voter: 100.0})
+        tuned = Recognizer(language, "paper", tuning=tuning).recognize(query)
         assert tuned.label == vote
 
 
@@ -79,9 +80,9 @@ def with_sides_exchanged(poses: PoseSequence, frames: slice) -> PoseSequence:
 def test_profile_paper_puts_sides_right_when_told_to(language: Language) -> None:
     query = recording(circle)
     mistaken = with_sides_exchanged(query, slice(20, 30))
-    told = Recognizer(language, tuning=Tuning(keypoints_repaired=True))
+    told = Recognizer(language, "paper", tuning=Tuning(keypoints_repaired=True))
     np.testing.assert_allclose(told.recognize(mistaken).distances, told.recognize(query).distances)
-    as_it_is = Recognizer(language).recognize(mistaken)
+    as_it_is = Recognizer(language, "paper").recognize(mistaken)
     assert (as_it_is.distances != told.recognize(mistaken).distances).any()
     unrepaired = Recognizer(language, "full", tuning=Tuning(keypoints_repaired=False))
     assert Recognizer(language, "full").recognize(mistaken).label == "circle"
