@@ -151,24 +151,30 @@ def variants(
         When `count` is negative.
 
     """
+    return varied(trajectory, count, SPREADS[person], seed=seed)
+
+
+def varied(
+    trajectory: Trajectory, count: int, spread: Spread, *, seed: int = 0
+) -> tuple[Trajectory, ...]:
+    """Draw variants with a spread of one's own; parameters and errors as for `variants`."""
     if count < 0:
         raise RecognitionError(f"cannot draw {count} variants: ask for none or more")
     if len(trajectory) < 2:
         return (trajectory,) * count
-    spread = SPREADS[person]
     xy = _bridged(trajectory)
     centre = xy.mean(axis=0)
     draws = _Draws(np.random.default_rng(seed), count, len(trajectory.landmarks))
-    varied = _displaced(xy - centre, trajectory.landmarks, draws, spread)
+    paths = _displaced(xy - centre, trajectory.landmarks, draws, spread)
     if trajectory.unit == "extent":
-        varied *= (_extent(xy) / np.maximum(_extent(varied), 1e-12))[:, None, None, None]
-    varied = within_reach(centre + varied, trajectory)
-    varied[:, ~np.isfinite(trajectory.xy).all(axis=2)] = np.nan
+        paths *= (_extent(xy) / np.maximum(_extent(paths), 1e-12))[:, None, None, None]
+    paths = within_reach(centre + paths, trajectory)
+    paths[:, ~np.isfinite(trajectory.xy).all(axis=2)] = np.nan
     lengthened = np.exp2(spread.tempo * draws["tempo"])
     elapsed = trajectory.time - trajectory.time[:1]
     return tuple(
         replace(trajectory, xy=path, time=elapsed * factor)
-        for path, factor in zip(varied, lengthened, strict=True)
+        for path, factor in zip(paths, lengthened, strict=True)
     )
 
 

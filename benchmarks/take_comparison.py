@@ -1,0 +1,96 @@
+"""How takes of a gesture compare with its demonstration: by all voters, and by their looks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition import Gesture, PoseSequence
+from app.recognition.calibrated_vote import VOTERS
+from app.recognition.fusion import fused, says
+from app.recognition.gesture import condensed
+from app.recognition.motion_references import MotionReferences, describe_movement
+from app.recognition.movement import movement
+from app.recognition.poses import FloatArray
+from app.recognition.shape_references import ShapeReferences
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters.motion import MOTION_VOTERS
+
+LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")
+"""How a take looks by itself, see `looks`."""
+
+SCORE = "score"
+"""The voters' distances fused, each over its typical distance between gestures."""
+
+FEATURES = (*VOTERS, SCORE, *LOOKS)
+
+_PATH = [voter.name for voter in MOTION_VOTERS].index("path")
+
+
+class TakeComparison:
+    """Measures takes against one demonstration.
+
+    Parameters
+    ----------
+    gesture
+        With a demonstration.
+
+    """
+
+    def __init__(self, gesture: Gesture) -> None:
+        self.demonstration = demonstration_of(gesture)
+        self._salient = gesture.salient
+        self._shapes = ShapeReferences([gesture])
+        self._motions = MotionReferences.of([gesture])
+        self._looks = looks(self.demonstration, gesture.salient)
+        none = [np.empty(0)] * len(VOTERS)
+        self._say, self._between = says(VOTERS, none, len(self._motions.landmarks))
+
+    def features(self, take: Trajectory) -> FloatArray:
+        """Return ``(F,)`` numbers, named by `FEATURES`.
+
+        Distances in the reading with the nearest path; of the looks, what they differ by.
+        """
+        motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
+        nearest = motion[:, motion[_PATH].argmin()]
+        distances = np.concatenate([self._shapes.distances(take)[:, 0], nearest])
+        score = fused(distances[:, None], self._say, self._between)
+        return np.concatenate([distances, score, looks(take, self._salient) - self._looks])
+
+    def of_recording(self, poses: PoseSequence) -> FloatArray:
+        """Return the features of a recorded take."""
+        take = condensed(Trajectory.from_poses(poses))
+        return self.features(take.select(self.demonstration.landmarks))
+
+
+def demonstration_of(gesture: Gesture) -> Trajectory:
+    """Return what a gesture made of recorded poses always has."""
+    assert gesture.trajectory is not None
+    return gesture.trajectory
+
+
+def looks(take: Trajectory, salient: tuple[str, ...]) -> FloatArray:
+    """Describe a take by itself, each as a logarithm.
+
+    Its duration; the length of its way in sizes; how unevenly it runs through it (the spread of
+    its speed over the mean); how sharply it turns (mean squared angle from step to step); the gap
+    between start and end in sizes; and what smoothing takes away, in sizes.
+    """
+    seen = movement(take, salient)
+    steps = np.diff(seen.paths, axis=0)
+    size = np.sqrt((seen.paths**2).sum(axis=(1, 2)).mean())
+    lengths = np.sqrt((steps**2).sum(axis=(1, 2)))
+    speeds = lengths / np.maximum(np.diff(seen.reached), 1e-3)
+    units = steps / np.maximum(lengths, 1e-9)[:, None, None]
+    turns = 1 - (units[1:] * units[:-1]).sum(axis=(1, 2))
+    opening = np.sqrt(((seen.paths[-1] - seen.paths[0]) ** 2).sum())
+    paths = take.select(salient).resampled_in_time(64).xy
+    rough = paths[1:-1] - (paths[2:] + paths[:-2]) / 2
+    values = [
+        seen.duration,
+        lengths.sum() / size,
+        speeds.std() / speeds.mean(),
+        turns.mean(),
+        0.05 + opening / size,
+        np.sqrt(np.nanmean(rough**2)) / size,
+    ]
+    return np.asarray(np.log(np.maximum(values, 1e-4)), dtype=np.float64)
