@@ -20,6 +20,8 @@ LARGEST_SIDE: Final = 16384
 Side = Literal["left", "right"]
 """The person's own left or right."""
 
+SIDES: Final[tuple[Side, ...]] = ("left", "right")
+
 
 @dataclass(frozen=True, eq=False)
 class Body:

@@ -10,7 +10,12 @@ from app.recognition.errors import EstimatorError
 from app.recognition.estimation.base import FrameLandmarks, Image, check_image
 from app.recognition.estimation.body import POSE_SIGNATURE, BodyTracker
 from app.recognition.estimation.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
-from app.recognition.estimation.hands import HAND_SIGNATURE, HandTracker, PalmProposer
+from app.recognition.estimation.hands import (
+    HAND_SIGNATURE,
+    HandModel,
+    HandSearch,
+    HandTracker,
+)
 from app.recognition.estimation.session import ModelSession, Provider, Signature, check_provider
 from app.recognition.models import ModelName, model_path
 
@@ -34,6 +39,9 @@ class OnnxPoseEstimator:
         same.
     provider
         ``"cpu"``, or ``"cuda"``, ``"tensorrt"``, ``"coreml"`` where ONNX Runtime has them.
+    hands
+        ``"pose"`` looks for hands where the body's arms end, and now and then in the whole frame;
+        ``"palm"`` only in the whole frame, as MediaPipe's hand landmarker does.
 
     Raises
     ------
@@ -50,6 +58,7 @@ class OnnxPoseEstimator:
         *,
         threads: int = DEFAULT_THREADS,
         provider: Provider = "cpu",
+        hands: HandSearch = "pose",
     ) -> None:
         if threads < 1:
             raise EstimatorError(f"threads is {threads}; at least one is needed")
@@ -62,7 +71,8 @@ class OnnxPoseEstimator:
         persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
         palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
         self._body = BodyTracker(persons, load("pose_landmark_full", POSE_SIGNATURE))
-        self._hands = HandTracker(PalmProposer(palms), load("hand_landmark_full", HAND_SIGNATURE))
+        model = HandModel(load("hand_landmark_full", HAND_SIGNATURE))
+        self._hands = HandTracker(palms, model, hands)
         self._helper = ThreadPoolExecutor(1, "hands") if threads > 1 else None
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
@@ -83,10 +93,12 @@ class OnnxPoseEstimator:
         """
         check_image(image)
         if self._helper is None:
-            return FrameLandmarks(self._body.track(image, time), self._hands.track(image))
-        hands = self._helper.submit(self._hands.track, image)
-        body = self._body.track(image, time)
-        return FrameLandmarks(body, hands.result())
+            body, followed = self._body.track(image, time), self._hands.follow(image)
+        else:
+            following = self._helper.submit(self._hands.follow, image)
+            body = self._body.track(image, time)
+            followed = following.result()
+        return FrameLandmarks(body, self._hands.complete(image, followed, body))
 
     def reset(self) -> None:
         """Forget what was tracked and smoothed so far; to be called before another clip."""

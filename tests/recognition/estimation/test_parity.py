@@ -50,7 +50,7 @@ WITHOUT_BODY = "decord_pancake.mkv"
 
 @pytest.fixture(scope="module")
 def ours(installed_models: None) -> Iterator[OnnxPoseEstimator]:
-    estimator = OnnxPoseEstimator()
+    estimator = OnnxPoseEstimator(hands="palm")
     yield estimator
     estimator.close()
 
