@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,18 +14,17 @@ from app.recognition.change import (
     OtherProfile,
     SalientKeypoints,
     Simplification,
-    Situation,
     SwitchName,
     SwitchPosition,
     Trim,
     VoterWeight,
 )
-from app.recognition.gesture import Gesture, condensed
+from app.recognition.gesture import Gesture
 from app.recognition.recognizer import PROFILES
 from app.recognition.repair import repaired
 from app.recognition.salience import salient_landmarks
+from app.recognition.situation import Situation
 from app.recognition.switches import Switch
-from app.recognition.trajectory import Trajectory
 
 TRIM_STEP = 0.1
 """Share of the stroke by which it is trimmed earlier or later, step by step."""
@@ -38,18 +38,22 @@ WEIGHTS = (0.5, 0.0, 2.0, 4.0)
 TOLERANCES = (0.5, 2.0, 4.0)
 """Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
 
+PROMISING = 0.05
+"""Score by which the expected gesture may still miss when a voter's weight is tried: as much as
+another reading of a gesture, which the new weight may bring about, is usually nearer."""
+
 Series = list[Change]
 
 
-def candidates(situation: Situation, expected: str, chosen: str) -> Iterator[Series]:
+def candidates(situation: Situation, expected: str) -> Iterator[Series]:
     """Give all changes worth trying.
 
     Parameters
     ----------
     situation
         In which `expected` was not recognised.
-    expected, chosen
-        Labels of its language: what should have been, and what was nearest.
+    expected
+        A label of its language.
 
     Returns
     -------
@@ -57,10 +61,10 @@ def candidates(situation: Situation, expected: str, chosen: str) -> Iterator[Ser
 
     """
     yield from _trims(situation)
-    yield from _weights(situation)
+    yield from _weights(situation, expected)
     yield from _drawings(situation)
     yield from _repairs(situation)
-    yield from _gestures(situation, expected, chosen)
+    yield from _gestures(situation, expected)
     yield [
         OtherProfile(size=1.0, profile=other) for other in PROFILES if other != situation.profile
     ]
@@ -90,17 +94,36 @@ def _trims(situation: Situation) -> Iterator[Series]:
         ]
 
 
-def _weights(situation: Situation) -> Iterator[Series]:
-    """Weigh each voter that has a say less, and more."""
-    says = situation.recognizer.say
-    total = sum(says.values())
-    for voter, say in says.items():
-        if 0 < say < total:
+def _weights(situation: Situation, expected: str) -> Iterator[Series]:
+    """Weigh each voter that has a say less, and more, where that promises to help."""
+    promises = _promised_by_votes if situation.profile == "paper" else _promised_by_scores
+    for voter, share in situation.result.weights.items():
+        if 0 < share < 1:
             for factors in (WEIGHTS[:2], WEIGHTS[2:]):
                 yield [
-                    VoterWeight(size=_moved(say / total, factor), voter=voter, factor=factor)
+                    VoterWeight(size=_moved(share, factor), voter=voter, factor=factor)
                     for factor in factors
+                    if promises(situation, expected, voter, factor)
                 ]
+
+
+def _promised_by_votes(situation: Situation, expected: str, voter: str, factor: float) -> bool:
+    """Tell whether no gesture has more votes than the expected one."""
+    count: dict[str, float] = defaultdict(float)
+    for name, vote in situation.result.counted.items():
+        weight = situation.result.weights[name]
+        count[vote] += weight * factor if name == voter else weight
+    return count[expected] >= max(count.values())
+
+
+def _promised_by_scores(situation: Situation, expected: str, voter: str, factor: float) -> bool:
+    """Tell whether the expected gesture comes close to the nearest one."""
+    comparison, at = situation.comparison, situation.language.labels.index(expected)
+    comparable = np.isfinite(comparison.scores)
+    contributions = comparison.contributions[comparison.voters.index(voter)]
+    scores = comparison.scores
+    scores[comparable] += (factor - 1) * contributions[comparable]
+    return bool(comparable[at] and scores[at] < scores.min() + PROMISING)
 
 
 def _moved(share: float, factor: float) -> float:
@@ -125,10 +148,10 @@ def _repairs(situation: Situation) -> Iterator[Series]:
         yield [KeypointRepair(size=share, on=not situation.recognizer.repairs)]
 
 
-def _gestures(situation: Situation, expected: str, chosen: str) -> Iterator[Series]:
+def _gestures(situation: Situation, expected: str) -> Iterator[Series]:
     """Change the expected gesture, or the one it was taken for."""
-    moved = salient_landmarks(condensed(Trajectory.from_poses(situation.poses)))
-    for label in dict.fromkeys((expected, chosen)):
+    moved = salient_landmarks(situation.trajectory)
+    for label in dict.fromkeys((expected, situation.result.nearest)):
         gesture = situation.language.gesture(label)
         if gesture.trajectory is None:
             continue

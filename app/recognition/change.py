@@ -7,55 +7,16 @@ take. Whoever shows it can also apply it.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
-from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 from app.recognition.gesture import Gesture
-from app.recognition.language import Language
-from app.recognition.poses import PoseSequence
-from app.recognition.recognizer import Recognizer
+from app.recognition.situation import Situation
 from app.recognition.switches import Switch
-from app.recognition.tuning import AS_THE_PROFILE, Tuning
 
 SwitchName = Literal["direction", "tempo", "mirror"]
 
 Reach = Literal["take", "gesture", "language"]
 """What a change touches: this take alone, one gesture, or how the whole language is recognised."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Situation:
-    """All that a recognition depends on.
-
-    Attributes
-    ----------
-    language, profile, tuning
-        The recogniser's.
-    poses
-        The stroke that is recognised.
-    whole
-        What the stroke was cut out of, so that it may be cut otherwise.
-
-    """
-
-    language: Language
-    profile: str
-    poses: PoseSequence
-    whole: PoseSequence
-    tuning: Tuning = AS_THE_PROFILE
-
-    @cached_property
-    def recognizer(self) -> Recognizer:
-        """A recogniser for this situation."""
-        return Recognizer(self.language, self.profile, tuning=self.tuning)
-
-    def with_gesture(self, changed: Gesture) -> Situation:
-        """Put a gesture in the place of the one with its label."""
-        gestures = [
-            changed if gesture.label == changed.label else gesture
-            for gesture in self.language.gestures
-        ]
-        return replace(self, language=replace(self.language, gestures=gestures))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +97,7 @@ class VoterWeight(Change):
         """See `Change`."""
         weights = {**situation.tuning.weights}
         weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
-        return replace(situation, tuning=replace(situation.tuning, weights=weights))
+        return situation.with_tuning(replace(situation.tuning, weights=weights))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,8 +115,7 @@ class Simplification(Change):
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
-        tuning = replace(situation.tuning, simplification=self.tolerance)
-        return replace(situation, tuning=tuning)
+        return situation.with_tuning(replace(situation.tuning, simplification=self.tolerance))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,7 +135,7 @@ class KeypointRepair(Change):
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
-        return replace(situation, tuning=replace(situation.tuning, keypoints_repaired=self.on))
+        return situation.with_tuning(replace(situation.tuning, keypoints_repaired=self.on))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,9 +152,8 @@ class OtherProfile(Change):
         return f"with the profile {self.profile}"
 
     def applied(self, situation: Situation) -> Situation:
-        """See `Change`; weights of voters that this profile lacks are dropped."""
-        tuning = replace(situation.tuning, weights={})
-        return replace(situation, profile=self.profile, tuning=tuning)
+        """See `Change`."""
+        return situation.with_profile(self.profile)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from app.recognition.candidate import candidates
-from app.recognition.change import Change, Situation
-from app.recognition.comparison import Comparison
+from app.recognition.change import Change
 from app.recognition.errors import RecognitionError
 from app.recognition.gesture import condensed
-from app.recognition.recognition_result import Recognition
+from app.recognition.situation import Situation
 from app.recognition.trajectory import Trajectory
 from app.recognition.variation import variants
 
@@ -135,21 +134,29 @@ def counterfactuals(situation: Situation, expected: str) -> Counterfactuals:
         A label of the language.
 
     """
-    _, result = answer(situation)
-    rest = _Rest(situation)
-    found: list[Counterfactual] = []
+    found: list[_Found] = []
     tried = 0
-    for series in candidates(situation, expected, result.nearest):
+    for series in candidates(situation, expected):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
             if (helps := _verified(situation, change, expected)) is not None:
                 found.append(helps)
                 break
-    kept = tuple(_with_effect(each, situation, rest) for each in _smallest(found))
-    return Counterfactuals(found=kept, tried=tried)
+    rest = _Rest(situation)
+    told = tuple(_told(each, expected, rest) for each in _smallest(found))
+    return Counterfactuals(found=told, tried=tried)
 
 
-def _smallest(found: Iterable[Counterfactual]) -> list[Counterfactual]:
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """A change that helps, and the situation that it makes."""
+
+    change: Change
+    after: Situation
+    margin: float
+
+
+def _smallest(found: Iterable[_Found]) -> list[_Found]:
     """Choose the smallest changes, not too many of a kind."""
     by_kind = sorted(found, key=lambda each: (each.change.kind, each.change.size, -each.margin))
     chosen = [
@@ -160,53 +167,36 @@ def _smallest(found: Iterable[Counterfactual]) -> list[Counterfactual]:
     return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
 
 
-def _verified(situation: Situation, change: Change, expected: str) -> Counterfactual | None:
+def _verified(situation: Situation, change: Change, expected: str) -> _Found | None:
     """Run the recogniser with a change: None where it does not help or cannot be made."""
     try:
-        changed = change.applied(situation)
-        comparison, result = answer(changed)
+        after = change.applied(situation)
+        if after.result.label != expected:
+            return None
     except RecognitionError:
         return None
-    if result.label != expected:
-        return None
+    at = after.result.gestures.index(expected)
+    return _Found(change, after, margin(after.comparison.scores.tolist(), at))
+
+
+def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
+    effect = None
+    if found.change.reach != "take":
+        now = rest.recognised(found.after)
+        lost = {label for label in rest.labels if now.count(label) < rest.before.count(label)}
+        effect = LanguageEffect(
+            takes=len(rest.labels),
+            right_before=len(rest.before),
+            right_after=len(now),
+            lost=tuple(sorted(lost)),
+        )
     return Counterfactual(
-        change=change,
+        change=found.change,
         label=expected,
-        confidence=result.confidence,
-        margin=margin(comparison.scores.tolist(), result.gestures.index(expected)),
-        effect=None,
+        confidence=found.after.result.confidence,
+        margin=found.margin,
+        effect=effect,
     )
-
-
-def answer(situation: Situation) -> tuple[Comparison, Recognition]:
-    """Recognise a situation's stroke, and keep what decided.
-
-    Raises
-    ------
-    PoseError
-        When it shows nothing that a gesture needs.
-
-    """
-    comparison = situation.recognizer.compare(situation.recognizer.query(situation.poses))
-    return comparison, situation.recognizer.decided(comparison)
-
-
-def _with_effect(found: Counterfactual, situation: Situation, rest: _Rest) -> Counterfactual:
-    if found.change.reach == "take":
-        return found
-    after = rest.recognised(found.change.applied(situation))
-    lost = {
-        label
-        for label, before, now in zip(rest.labels, rest.before, after, strict=True)
-        if before and not now
-    }
-    effect = LanguageEffect(
-        takes=len(after),
-        right_before=sum(rest.before),
-        right_after=sum(after),
-        lost=tuple(sorted(lost)),
-    )
-    return Counterfactual(**vars(found) | {"effect": effect})
 
 
 class _Rest:
@@ -232,13 +222,13 @@ class _Rest:
         return [label for label, _ in self._takes]
 
     @cached_property
-    def before(self) -> list[bool]:
-        """Whether each take is recognised as things are."""
+    def before(self) -> list[str]:
+        """Labels of the takes that are recognised as things are."""
         return self.recognised(self._situation)
 
-    def recognised(self, situation: Situation) -> list[bool]:
-        """Tell whether each take is recognised in another situation."""
-        return [_is_recognised(situation, label, take) for label, take in self._takes]
+    def recognised(self, situation: Situation) -> list[str]:
+        """Return the labels of the takes that are recognised in another situation."""
+        return [label for label, take in self._takes if _is_recognised(situation, label, take)]
 
 
 def _is_recognised(situation: Situation, label: str, take: Trajectory) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.recognition.alignment import Alignment, align
+from app.recognition.movement import STEPS
 from app.recognition.pairing import Pairing
 from app.recognition.poses import FloatArray
 
@@ -25,6 +26,10 @@ DIRECTIONS = (
 STANDS = 0.15
 """Net way, as a share of the gesture's extent, below which a joint goes nowhere: a hand that turns
 or rests; the shortest side of a figure is larger."""
+
+
+LEAST_STRETCH = STEPS // 8
+"""Steps, at least, of a stretch that is told: what is shorter is no stroke of its own."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +84,8 @@ def course_of(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> C
 def costliest_stretch(costs: FloatArray) -> tuple[int, int]:
     """Return the first and last step of the stretch that costs most above the average.
 
-    The contiguous run with the largest sum of what exceeds the mean (Bentley 1984).
+    The contiguous run with the largest sum of what exceeds the mean (Bentley 1984), widened to
+    `LEAST_STRETCH` where there are so many.
     """
     excess = costs - costs.mean()
     best, span = -np.inf, (0, len(costs) - 1)
@@ -90,7 +96,8 @@ def costliest_stretch(costs: FloatArray) -> tuple[int, int]:
         total += value
         if total > best:
             best, span = total, (first, step)
-    return span
+    first = min(span[0], max(0, len(costs) - LEAST_STRETCH))
+    return first, min(max(span[1], first + LEAST_STRETCH - 1), len(costs) - 1)
 
 
 def _way(path: FloatArray, first: int, last: int) -> str:

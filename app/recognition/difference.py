@@ -100,14 +100,19 @@ def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, 
         are the same.
 
     """
-    told = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing), *_paced(pairing)]
+    found: list[Difference] = []
     if pairing.base > CLEARLY_ALIKE:
         undone = [*_exchanged(pairing), *_on_the_other_side(pairing), *_cut(pairing)]
         if sees_direction:
             undone += _turned(pairing)
         found = [difference for difference in undone if difference.share >= LEAST_SHARE]
-        told += found or [_bent(pairing)]
-    return tuple(sorted(told, key=lambda difference: -difference.share))
+        found = sorted(found, key=lambda difference: -difference.share) or [_bent(pairing)]
+    if found and found[0].kind == "exchanged_sides":
+        return tuple(found)  # where and how large such a path is, says nothing of the gesture
+    beside = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing)]
+    if sees_direction:
+        beside += _read_backwards(pairing)
+    return (*found, *beside, *_paced(pairing))
 
 
 def spoken(landmark: str) -> str:
@@ -143,6 +148,13 @@ def _turned(pairing: Pairing) -> Iterator[Difference]:
     backward = not pairing.example.reading.backward
     left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
     yield _throughout(pairing, "direction", left, "it goes the other way round")
+
+
+def _read_backwards(pairing: Pairing) -> Iterator[Difference]:
+    """Tell that the gesture fits only when read backwards."""
+    if pairing.example.reading.backward:
+        words = "it goes the other way round, which costs half as much again"
+        yield _beside("direction", _busiest(pairing), None, None, words)
 
 
 def _on_the_other_side(pairing: Pairing) -> Iterator[Difference]:

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from app.recognition.alignment import Alignment, Example, align, nearest_example
-from app.recognition.change import Situation
 from app.recognition.comparison import Comparison
-from app.recognition.counterfactual import NONE_NEEDED, Counterfactuals, answer, counterfactuals
+from app.recognition.counterfactual import NONE_NEEDED, Counterfactuals, counterfactuals
 from app.recognition.difference import Difference, differences
 from app.recognition.errors import RecognitionError
 from app.recognition.movement import movement
 from app.recognition.pairing import Pairing
 from app.recognition.recognition_result import Recognition
 from app.recognition.sentence import in_words
+from app.recognition.situation import Situation
 from app.recognition.verdict import Verdict, verdicts
 from app.recognition.voters.motion import Path, Posture
 
@@ -43,7 +43,7 @@ class Explanation:
         Of the expected gesture and of the other, see `Comparison.scores`; infinite where not
         comparable.
     votes
-        Per label how many voters took it.
+        Per label how many voters with weight took it.
     verdicts
         What every voter said, those that spoke most against the expected gesture first.
     turned
@@ -140,10 +140,10 @@ def explain(
             f"no gesture {expected!r} in {situation.language.name!r} to expect; it has "
             f"{', '.join(situation.language.labels)}"
         )
-    comparison, result = answer(situation)
+    comparison, result = situation.comparison, situation.result
     at = result.gestures.index(expected)
     other = _held_against(comparison, result, at)
-    pairings = _Pairings(situation, comparison)
+    pairings = _Pairings(situation)
     wanted = with_counterfactuals and result.label != expected
     return Explanation(
         profile=result.profile,
@@ -154,8 +154,8 @@ def explain(
         other=None if other is None else result.gestures[other],
         score=float(comparison.scores[at]),
         other_score=math.inf if other is None else float(comparison.scores[other]),
-        votes=dict(Counter(result.votes.values()).most_common()),
-        verdicts=verdicts(comparison, result, situation.recognizer.say, at, other),
+        votes=dict(Counter(result.counted.values()).most_common()),
+        verdicts=verdicts(comparison, result, at, other),
         turned=_difference(comparison, at, other),
         alignments=tuple(
             alignment
@@ -187,13 +187,13 @@ def _difference(comparison: Comparison, expected: int, other: int | None) -> flo
 class _Pairings:
     """The query of a situation beside its gestures, as the recogniser compared them."""
 
-    def __init__(self, situation: Situation, comparison: Comparison) -> None:
+    def __init__(self, situation: Situation) -> None:
         self._gestures = situation.language.gestures
-        self._comparison = comparison
+        self._comparison = situation.comparison
         self._full = situation.profile == "full"
         self._start = float(situation.poses.time[0])
         self._landmarks = situation.recognizer.landmarks
-        self._query = situation.recognizer.query(situation.poses)
+        self._query = situation.trajectory
 
     def alignments(self, index: int) -> Iterator[Alignment]:
         """Align the query with a gesture, where both have a movement."""

@@ -126,14 +126,6 @@ class Recognizer:
         return self._counted(compared.distances)
 
     @property
-    def say(self) -> dict[str, float]:
-        """What each voter has to say in this language; 0: it does not count."""
-        if self._calibrated is not None:
-            return self._calibrated.say
-        names = [voter.name for voter in PAPER_VOTERS]
-        return dict(zip(names, self._weights.tolist(), strict=True))
-
-    @property
     def landmarks(self) -> tuple[str, ...]:
         """The landmarks that any gesture of the language follows, in alphabetical order."""
         if self._calibrated is not None:
@@ -160,12 +152,14 @@ class Recognizer:
         gestures = tuple(gesture.label for gesture in self.language.gestures)
         votes = {
             voter.name: int(row.argmin())
-            for voter, row, weight in zip(PAPER_VOTERS, distances, self._weights, strict=True)
-            if np.isfinite(row).any() and weight > 0
+            for voter, row in zip(PAPER_VOTERS, distances, strict=True)
+            if np.isfinite(row).any()
         }
+        voters = tuple(voter.name for voter in PAPER_VOTERS)
+        weights = dict(zip(voters, (self._weights / self._weights.sum()).tolist(), strict=True))
         count: dict[int, float] = defaultdict(float)
         for voter, index in votes.items():
-            count[index] += self.tuning.weights.get(voter, 1.0)
+            count[index] += weights[voter]
         relative = relative_contributions(distances, self._weights).sum(axis=0)
         winner = min(count, key=lambda index: (-count[index], relative[index], index))
         return Recognition(
@@ -173,10 +167,11 @@ class Recognizer:
             nearest=gestures[winner],
             confidence=(count[winner] / sum(count.values()) + _margin(relative, winner)) / 2,
             profile=self.profile,
-            voters=tuple(voter.name for voter in PAPER_VOTERS),
+            voters=voters,
             gestures=gestures,
             distances=distances,
             votes={voter: gestures[index] for voter, index in votes.items()},
+            weights=weights,
         )
 
 

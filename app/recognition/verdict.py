@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,12 +19,12 @@ class Verdict:
     ----------
     voter, unit
         Its name, and what a distance of 1 means.
-    say
-        What it has to say in this language, beside the other voters.
+    weight
+        Its share in the decision, see `Recognition.weights`.
     vote
-        The gesture it takes; None where it has no say or can compare nothing.
+        The gesture it takes; None where it can compare nothing.
     wrong
-        Whether it takes another gesture than the expected one.
+        Whether it takes another gesture than the expected one, and has weight.
     distance, other_distance
         To the expected gesture and to the other, in its unit; infinite where not comparable.
     against
@@ -37,7 +36,7 @@ class Verdict:
 
     voter: str
     unit: str
-    say: float
+    weight: float
     vote: str | None
     wrong: bool
     distance: float
@@ -53,11 +52,7 @@ class Verdict:
 
 
 def verdicts(
-    comparison: Comparison,
-    result: Recognition,
-    say: Mapping[str, float],
-    expected: int,
-    other: int | None,
+    comparison: Comparison, result: Recognition, expected: int, other: int | None
 ) -> tuple[Verdict, ...]:
     """Gather what every voter said, those that spoke most against the expected gesture first.
 
@@ -65,8 +60,6 @@ def verdicts(
     ----------
     comparison, result
         What was compared, and what was decided.
-    say
-        Per voter's name, see `Recognizer.say`.
     expected, other
         Indices of the two gestures; without another one nothing speaks against the expected.
 
@@ -82,9 +75,9 @@ def verdicts(
             Verdict(
                 voter=voter,
                 unit=units[voter],
-                say=say[voter],
+                weight=result.weights[voter],
                 vote=vote,
-                wrong=vote not in (None, label),
+                wrong=voter in result.counted and vote != label,
                 distance=float(distances[expected]),
                 other_distance=math.inf if other is None else float(distances[other]),
                 against=0.0 if math.isnan(against) else against,

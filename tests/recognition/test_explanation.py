@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from app.recognition import Gesture, Language, PoseSequence, RecognitionError
-from app.recognition.change import Situation
+from app.recognition import Gesture, Language, PoseSequence, RecognitionError, Recognizer
 from app.recognition.explanation import Explanation, explain
-from app.recognition.gesture import condensed
 from app.recognition.recognizer import PROFILES
-from app.recognition.trajectory import Trajectory
+from app.recognition.situation import Situation
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
 
 LANGUAGE = Language(
@@ -20,14 +18,15 @@ LANGUAGE = Language(
 )
 
 
-def situation(
-    poses: PoseSequence, profile: str = "full", language: Language = LANGUAGE
-) -> Situation:
-    return Situation(language=language, profile=profile, poses=poses, whole=poses)
+RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
+
+
+def situation(poses: PoseSequence, recognizer: Recognizer) -> Situation:
+    return Situation(recognizer=recognizer, poses=poses, whole=poses)
 
 
 def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanation:
-    return explain(situation(poses, profile), expected, with_counterfactuals=False)
+    return explain(situation(poses, RECOGNIZERS[profile]), expected, with_counterfactuals=False)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
@@ -38,9 +37,7 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
     profile: str, expected: str, query: PoseSequence
 ) -> None:
     explanation = why(query, expected, profile)
-    scores = (
-        situation(query, profile).recognizer.compare(condensed(Trajectory.from_poses(query))).scores
-    )
+    scores = situation(query, RECOGNIZERS[profile]).comparison.scores
     assert explanation.other is not None
     difference = scores[LANGUAGE.labels.index(expected)]
     difference -= scores[LANGUAGE.labels.index(explanation.other)]
@@ -79,7 +76,7 @@ def test_moments_are_those_of_the_querys_clock() -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_what_was_right_is_held_against_the_runner_up(profile: str) -> None:
-    explanation = explain(situation(recording(circle, jitter=0.01), profile), "circle")
+    explanation = explain(situation(recording(circle, jitter=0.01), RECOGNIZERS[profile]), "circle")
     assert explanation.right
     assert explanation.other != "circle"
     assert explanation.margin > 0
@@ -100,7 +97,7 @@ def test_an_explanation_is_plain_json(profile: str) -> None:
 
 def test_a_language_of_one_gesture_has_nothing_to_hold_against() -> None:
     language = Language("one", LANGUAGE.gestures[:1])
-    explanation = explain(situation(recording(circle), language=language), "circle")
+    explanation = explain(situation(recording(circle), Recognizer(language, "full")), "circle")
     assert explanation.other is None
     assert explanation.right
     assert explanation.to_dict()["margin"] is None
@@ -112,7 +109,7 @@ def test_a_gesture_that_cannot_be_compared_is_told() -> None:
     landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
     for profile in PROFILES:
         query = recording(line, landmarks=landmarks)
-        explanation = explain(situation(query, profile, language), "left")
+        explanation = explain(situation(query, Recognizer(language, profile)), "left")
         assert explanation.margin == -np.inf
         assert "missing or does not move" in explanation.sentence
         json.dumps(explanation.to_dict(), allow_nan=False)
@@ -123,7 +120,7 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
     language = Language("pictures", pictures)
     for profile in PROFILES:
         query = recording(wedge, jitter=0.02)
-        explanation = explain(situation(query, profile, language), "circle")
+        explanation = explain(situation(query, Recognizer(language, profile)), "circle")
         assert explanation.alignments == ()
         assert explanation.differences == ()
         assert explanation.verdicts[0].against > 0
@@ -131,4 +128,4 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
 
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
     with pytest.raises(RecognitionError, match=r"no gesture 'spiral'.*circle, wedge"):
-        explain(situation(recording(circle)), "spiral")
+        explain(situation(recording(circle), RECOGNIZERS["full"]), "spiral")

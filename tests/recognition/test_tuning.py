@@ -57,11 +57,11 @@ def test_equal_weights_change_nothing(language: Language) -> None:
 
 
 def test_references_and_queries_are_drawn_alike(language: Language) -> None:
-    coarse = Recognizer(language, tuning=Tuning(simplification=30.0))
+    coarse = Recognizer(language, "paper", tuning=Tuning(simplification=30.0))
     for name, shape in SHAPES.items():
         result = coarse.recognize(recording(shape))
         assert result.distances[:, result.gestures.index(name)].max() == 0.0
-    fine = Recognizer(language).recognize(recording(circle, jitter=0.03))
+    fine = Recognizer(language, "paper").recognize(recording(circle, jitter=0.03))
     assert (coarse.recognize(recording(circle, jitter=0.03)).distances != fine.distances).any()
 
 
@@ -91,10 +91,10 @@ def test_profile_paper_puts_sides_right_when_told_to(language: Language) -> None
 
 def test_a_tuning_that_fits_nothing_is_refused(language: Language) -> None:
     with pytest.raises(RecognitionError, match="no voter 'psychic'"):
-        Recognizer(language, tuning=Tuning(weights={"psychic": 2.0}))
-    voters = Recognizer(language).recognize(recording(circle)).voters
+        Recognizer(language, "paper", tuning=Tuning(weights={"psychic": 2.0}))
+    voters = Recognizer(language, "paper").recognize(recording(circle)).voters
     with pytest.raises(RecognitionError, match="all voters are off"):
-        Recognizer(language, tuning=Tuning(weights=dict.fromkeys(voters, 0.0)))
+        Recognizer(language, "paper", tuning=Tuning(weights=dict.fromkeys(voters, 0.0)))
     with pytest.raises(RecognitionError, match="number from 0 up"):
         Tuning(weights={"hu": -1.0})
     with pytest.raises(RecognitionError, match="number from 0 up"):

@@ -1,0 +1,104 @@
+"""A situation: all that a recognition depends on, so that it can be repeated with a change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from app.recognition.comparison import Comparison
+from app.recognition.gesture import Gesture
+from app.recognition.language import Language
+from app.recognition.poses import PoseSequence
+from app.recognition.recognition_result import Recognition
+from app.recognition.recognizer import Recognizer
+from app.recognition.takes import Take
+from app.recognition.trajectory import Trajectory
+from app.recognition.tuning import Tuning
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Situation:
+    """A recogniser and a stroke.
+
+    Attributes
+    ----------
+    recognizer
+        For a language, with a profile and a tuning.
+    poses
+        The stroke that is recognised.
+    whole
+        What the stroke was cut out of, so that it may be cut otherwise.
+
+    """
+
+    recognizer: Recognizer
+    poses: PoseSequence
+    whole: PoseSequence
+
+    @classmethod
+    def of_take(cls, recognizer: Recognizer, take: Take) -> Situation:
+        """Return the situation in which a take is recognised."""
+        return cls(recognizer=recognizer, poses=take.poses, whole=take.untrimmed)
+
+    @property
+    def language(self) -> Language:
+        """The recogniser's language."""
+        return self.recognizer.language
+
+    @property
+    def profile(self) -> str:
+        """The recogniser's profile."""
+        return self.recognizer.profile
+
+    @property
+    def tuning(self) -> Tuning:
+        """The recogniser's tuning."""
+        return self.recognizer.tuning
+
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """The stroke as the recogniser's voters see it.
+
+        Raises
+        ------
+        PoseError
+            When it shows nothing.
+
+        """
+        return self.recognizer.query(self.poses)
+
+    @cached_property
+    def comparison(self) -> Comparison:
+        """The stroke beside every gesture."""
+        return self.recognizer.compare(self.trajectory)
+
+    @cached_property
+    def result(self) -> Recognition:
+        """What is recognised.
+
+        Raises
+        ------
+        PoseError
+            When the stroke shows nothing that a gesture needs.
+
+        """
+        return self.recognizer.decided(self.comparison)
+
+    def with_tuning(self, tuning: Tuning) -> Situation:
+        """Tune the recogniser otherwise."""
+        return replace(self, recognizer=Recognizer(self.language, self.profile, tuning=tuning))
+
+    def with_profile(self, profile: str) -> Situation:
+        """Use other voters; weights, which are for voters of a profile, are dropped."""
+        tuning = replace(self.tuning, weights={})
+        return replace(self, recognizer=Recognizer(self.language, profile, tuning=tuning))
+
+    def with_gesture(self, changed: Gesture) -> Situation:
+        """Put a gesture in the place of the one with its label."""
+        gestures = [
+            changed if gesture.label == changed.label else gesture
+            for gesture in self.language.gestures
+        ]
+        language = replace(self.language, gestures=gestures)
+        recognizer = Recognizer(language, self.profile, tuning=self.tuning)
+        return replace(self, recognizer=recognizer)
