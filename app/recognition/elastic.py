@@ -7,6 +7,9 @@ diagonals is one array operation over all references.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -34,26 +37,59 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     """
     costs = squared_distances(query, references)
     steps = len(query)
-    offsets = np.arange(-band, band + 1)
+    cells = costs.reshape(steps * steps, len(references))
     # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
     total = np.full((2 * band + 3, len(references)), np.inf)
-    total[band + 1] = costs[0, 0]
+    total[band + 1] = cells[0]
+    for diagonal in _diagonals(steps, band):
+        # A row was last written two diagonals ago (both ran on), its neighbours one ago.
+        best = np.minimum(total[diagonal.one], total[diagonal.other])
+        np.minimum(best, total[diagonal.both], out=best)
+        np.add(best, cells[diagonal.cells], out=total[diagonal.both])
+    return np.asarray(total[band + 1] / steps, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class _Diagonal:
+    """Where the cells of an anti-diagonal within the band lie.
+
+    Attributes
+    ----------
+    both, one, other
+        Rows of the totals: its own, and those of the neighbours on the diagonal before.
+    cells
+        Of the costs, one row a pair of steps.
+
+    """
+
+    both: slice
+    one: slice
+    other: slice
+    cells: slice
+
+
+@lru_cache(maxsize=64)
+def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
+    """Return the anti-diagonals after the first that have a cell within the band."""
+    found = []
     for diagonal in range(1, 2 * steps - 1):
         reach = min(band, diagonal, 2 * steps - 2 - diagonal)
-        offset = offsets[band - reach : band + reach + 1]
-        offset = offset[(offset + diagonal) % 2 == 0]
-        if not len(offset):
+        reach -= (reach + diagonal) % 2  # offset and diagonal are both even or both odd
+        if reach < 0:
             continue
-        # A row was last written two diagonals ago (both ran on), its neighbours one ago.
-        first, last = band + 1 + offset[0], band + 1 + offset[-1]
-        both = total[first : last + 1 : 2]
-        one = total[first - 1 : last : 2]
-        other = total[first + 1 : last + 2 : 2]
-        best = np.minimum(both, np.minimum(one, other))
-        total[first : last + 1 : 2] = (
-            best + costs[(diagonal + offset) // 2, (diagonal - offset) // 2]
+        first, last = band + 1 - reach, band + 2 + reach
+        start = (diagonal - reach) // 2 * steps + (diagonal + reach) // 2
+        # Along an anti-diagonal i grows and j falls by one.
+        stop = start + reach * (steps - 1) + 1
+        found.append(
+            _Diagonal(
+                both=slice(first, last, 2),
+                one=slice(first - 1, last - 1, 2),
+                other=slice(first + 1, last + 1, 2),
+                cells=slice(start, stop, max(steps - 1, 1)),
+            )
         )
-    return np.asarray(total[band + 1] / steps, dtype=np.float64)
+    return tuple(found)
 
 
 def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -45,6 +46,9 @@ MAX_GESTURES_READ_OTHERWISE = 64
 differ by nothing but direction are to be expected, and the comparison of all with all in all
 readings would take seconds."""
 
+MOST_COMPARED = 2
+"""Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
+576 air-drawn digits, letters and commands none was named otherwise with 1, 2, 3, 4 or all."""
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
@@ -103,7 +107,7 @@ class MotionReferences:
         """Count the rows."""
         return len(self.gestures)
 
-    @property
+    @cached_property
     def as_shown(self) -> npt.NDArray[np.intp]:
         """Rows of the gestures as they were demonstrated."""
         return np.flatnonzero([self._is_first(row) for row in range(len(self))])
@@ -121,10 +125,53 @@ class MotionReferences:
         )
 
     def distances(self, query: dict[str, FloatArray]) -> FloatArray:
-        """Compare a query, described per voter, with all rows: ``(V, R)``."""
+        """Compare a query, described per voter, with the rows that are `promising`.
+
+        Returns
+        -------
+        ``(V, R)``; infinite for the other rows.
+
+        """
+        rows = self.promising(query["path"])
+        distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
+        distances[:, rows] = self._distances(query, rows)
+        return distances
+
+    def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
+        """Choose the readings that are worth an elastic comparison with a query.
+
+        Of each gesture the one as shown, and of each kind of reading (forwards, backwards, with
+        exchanged sides) the `MOST_COMPARED` whose paths lie nearest, step by step.
+
+        Parameters
+        ----------
+        path
+            The query, as voter ``path`` describes it.
+
+        Returns
+        -------
+        Indices of rows, in order.
+
+        """
+        apart = ((self.descriptors["path"] - path) ** 2).sum(axis=(1, 2))
+        order = np.lexsort((apart, self._kinds))
+        kinds = self._kinds[order]
+        rank = np.arange(len(kinds)) - np.searchsorted(kinds, kinds)
+        return np.union1d(order[rank < MOST_COMPARED], self.as_shown)
+
+    @cached_property
+    def _kinds(self) -> npt.NDArray[np.intp]:
+        """``(R,)``: a number for each row's gesture and kind of reading."""
+        kinds = [2 * reading.exchanged + reading.backward for reading in self.readings]
+        return 4 * self.gestures + np.array(kinds, dtype=np.intp)
+
+    def _distances(
+        self, query: dict[str, FloatArray], rows: npt.NDArray[np.intp] | slice
+    ) -> FloatArray:
+        """Compare a query with some of the rows: ``(V, len(rows))``."""
         return np.stack(
             [
-                voter.distances(query[voter.name], self.descriptors[voter.name])
+                voter.distances(query[voter.name], self.descriptors[voter.name][rows])
                 for voter in MOTION_VOTERS
             ]
         )
@@ -133,8 +180,8 @@ class MotionReferences:
         """Compare some of the rows with all: ``(V, len(rows), R)``."""
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for index, row in enumerate(rows):
-            own[:, index] = self.distances(
-                {name: values[row] for name, values in self.descriptors.items()}
+            own[:, index] = self._distances(
+                {name: values[row] for name, values in self.descriptors.items()}, slice(None)
             )
         return own
 

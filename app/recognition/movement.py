@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -120,6 +121,7 @@ def _index_across(names: Sequence[str], name: str) -> int:
     return names.index(other if other in names else name)
 
 
+@lru_cache(maxsize=1024)
 def part_of(landmark: str) -> str:
     """Name the part of the body as MediaPipe does: ``WristRight`` is ``right_wrist``."""
     words = re.findall(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])", landmark)
@@ -151,22 +153,22 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
         To follow, see `followed_landmarks`; those that were never seen stay still.
 
     """
-    smooth = _smoothed(trajectory)
-    seen = [name for name in landmarks if _is_seen(smooth, name)]
     bones = limbs_of(landmarks)
+    joints = {joint for bone in bones for joint in bone}
+    needed = [name for name in trajectory.landmarks if name in landmarks or part_of(name) in joints]
+    smooth = _smoothed(trajectory.select(needed))
+    seen = [name for name in landmarks if _is_seen(smooth, name)]
     even = smooth.select(seen).resampled_in_arc_length(STEPS) if seen else None
     reached = smooth.time[[0] * STEPS] if even is None else even.time
     paths = np.zeros((STEPS, len(landmarks), 2))
     if even is not None:
         paths[:, [landmarks.index(name) for name in seen]] = even.xy - even.xy.mean(axis=0)
     limbs = np.full((STEPS, len(bones), 2), np.nan)
-    named = {part_of(name): name for name in smooth.landmarks if _is_seen(smooth, name)}
+    places = smooth.at(reached).xy
+    column = {part_of(name): index for index, name in enumerate(smooth.landmarks)}
     for index, (inner, outer) in enumerate(bones):
-        if inner in named and outer in named:
-            ends = smooth.select([named[inner], named[outer]]).xy
-            bone = ends[:, 1] - ends[:, 0]
-            for axis in range(2):
-                limbs[:, index, axis] = np.interp(reached, smooth.time, bone[:, axis])
+        if inner in column and outer in column:
+            limbs[:, index] = places[:, column[outer]] - places[:, column[inner]]
     return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
 
 
@@ -181,12 +183,12 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
     weights = np.exp(-0.5 * ((time[:, None] - time[None]) / max(width, 1e-9)) ** 2)
-    xy = np.full_like(trajectory.xy, np.nan)
-    for index in range(xy.shape[1]):
-        known = np.isfinite(trajectory.xy[:, index]).all(axis=1)
-        if known.any():
-            path = np.stack(
-                [np.interp(time, time[known], trajectory.xy[known, index, a]) for a in range(2)], 1
-            )
-            xy[:, index] = weights @ path / weights.sum(axis=1, keepdims=True)
+    weights /= weights.sum(axis=1, keepdims=True)
+    bridged = trajectory.xy.copy()
+    known = np.asarray(np.isfinite(bridged).all(axis=2))
+    for index in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
+        seen = known[:, index]
+        for axis in range(2):
+            bridged[:, index, axis] = np.interp(time, time[seen], bridged[seen, index, axis])
+    xy = (weights @ bridged.reshape(len(time), -1)).reshape(bridged.shape)
     return replace(trajectory, xy=xy)

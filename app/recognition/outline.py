@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.closing import closed
 from app.recognition.poses import FloatArray
 
 CLOSING_DIAMETER = 28
@@ -21,12 +22,9 @@ of figures drawn freely in the air. On air-drawn digits (`benchmarks/shared_sets
 user-independent) closing gains 12 points.
 """
 
+
 BinaryImage = npt.NDArray[np.uint8]
 """``(height, width)``, 255 on a stroke, 0 elsewhere; x to the right, y down."""
-
-_CLOSING = cv2.getStructuringElement(
-    cv2.MORPH_ELLIPSE, (CLOSING_DIAMETER + 1, CLOSING_DIAMETER + 1)
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +44,10 @@ class Outline:
     @classmethod
     def of(cls, image: BinaryImage) -> Outline:
         """Close gaps and follow the outer contours (Suzuki and Abe 1985)."""
-        # OpenCV counts what lies outside the image as stroke where it erodes.
         padded = np.pad(image, CLOSING_DIAMETER)
-        closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, _CLOSING)
-        found, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        found, _ = cv2.findContours(
+            closed(padded, CLOSING_DIAMETER), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
+        )
         contours = [contour[:, 0].astype(np.float64) - CLOSING_DIAMETER for contour in found]
         return cls(tuple(sorted(contours, key=lambda contour: tuple(contour.mean(axis=0)))))
 

@@ -123,8 +123,9 @@ class Trajectory:
         and after the last of them there is nothing to bridge to.
         """
         xy = self.xy.copy()
-        for path in np.moveaxis(xy, 1, 0):
-            known = np.flatnonzero(np.isfinite(path).all(axis=1))
+        seen = np.asarray(np.isfinite(xy).all(axis=2))
+        for index in np.flatnonzero(~seen.all(axis=0)):
+            path, known = xy[:, index], np.flatnonzero(seen[:, index])
             for gap in np.flatnonzero(np.diff(known) > 1):
                 before, after = known[gap], known[gap + 1]
                 span = self.time[after] - self.time[before]
@@ -146,7 +147,7 @@ class Trajectory:
 
         """
         self._require_two(count)
-        return self._at(np.linspace(self.time[0], self.time[-1], count))
+        return self.at(np.linspace(self.time[0], self.time[-1], count))
 
     def resampled_in_arc_length(self, count: int) -> Trajectory:
         """Resample to `count` moments at equal steps along the joint path of all landmarks.
@@ -168,14 +169,17 @@ class Trajectory:
             return self.resampled_in_time(count)
         # A rest makes `travelled` flat; the tiny share of time keeps it strictly increasing.
         travelled += 1e-9 * travelled[-1] * (self.time / self.time[-1])
-        return self._at(np.interp(np.linspace(0, travelled[-1], count), travelled, self.time))
+        return self.at(np.interp(np.linspace(0, travelled[-1], count), travelled, self.time))
 
     def _require_two(self, count: int) -> None:
         if count < 2 or len(self) < 2:
             raise PoseError(f"cannot resample {len(self)} moments to {count}; both must be >= 2")
 
-    def _at(self, moments: FloatArray) -> Trajectory:
-        """Interpolate linearly at strictly increasing `moments` inside the time range."""
+    def at(self, moments: FloatArray) -> Trajectory:
+        """Interpolate linearly at `moments`, ``(N,)`` seconds inside the time range, in order.
+
+        A moment between two samples of which one is NaN becomes NaN.
+        """
         after = np.clip(np.searchsorted(self.time, moments), 1, len(self) - 1)
         before = after - 1
         share = (moments - self.time[before]) / (self.time[after] - self.time[before])

@@ -1,8 +1,9 @@
 """Voter: magnitudes of Zernike moments."""
 
-from math import factorial
+from math import comb, factorial
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import Drawing
@@ -43,31 +44,38 @@ class ZernikeMoments:
 
 
 def zernike_magnitudes(points: FloatArray) -> FloatArray:
-    """Return ``|Z|``, ``(25,)``, of equally weighted points ``(N, 2)`` in the unit disc."""
-    disc = points[:, 0] + 1j * points[:, 1]
-    radius = np.abs(disc)
-    # Pixels lie exactly on the centroid only by chance; there the angle does not matter.
-    angle = np.divide(disc, radius, out=np.ones_like(disc), where=radius > 0)
-    radius_powers = radius ** np.arange(DEGREE + 1)[:, None]
-    angle_powers = angle.conj() ** np.arange(DEGREE + 1)[:, None]
-    radial = _RADIAL_COEFFICIENTS @ radius_powers
-    repetitions = [m for _, m in ORDERS]
-    means = (radial * angle_powers[repetitions]).mean(axis=1)
+    """Return ``|Z|``, ``(25,)``, of equally weighted points ``(N, 2)`` in the unit disc.
+
+    Zernike's polynomials are sums of products of powers of x and y, so that their means follow
+    from the means of those: one matrix product over the points.
+    """
+    powers = np.ones((DEGREE + 1, 2, len(points)))
+    for exponent in range(1, DEGREE + 1):
+        powers[exponent] = powers[exponent - 1] * points.T
+    means = powers[:, 0] @ powers[:, 1].T / len(points)
     degrees = np.array([n for n, _ in ORDERS])
-    return np.asarray((degrees + 1) / np.pi * np.abs(means), dtype=np.float64)
+    return np.asarray((degrees + 1) / np.pi * np.abs(_OF_POWERS @ means.ravel()), dtype=np.float64)
 
 
-def _radial_coefficients() -> FloatArray:
-    """Return ``(25, DEGREE + 1)``: the factor of each power of rho in the radial polynomials."""
-    table = np.zeros((len(ORDERS), DEGREE + 1))
+def _coefficients_of_powers() -> npt.NDArray[np.complex128]:
+    """Return ``(25, (DEGREE + 1)^2)``: the factor of each ``x^p y^q`` in each ``V*``.
+
+    ``V* = sum over s of c_s rho^(n - 2s - m) (x - jy)^m``, and ``rho^2 = x^2 + y^2``.
+    """
+    table = np.zeros((len(ORDERS), DEGREE + 1, DEGREE + 1), dtype=np.complex128)
     for row, (n, m) in enumerate(ORDERS):
         for s in range((n - m) // 2 + 1):
-            table[row, n - 2 * s] = (
+            radial = (
                 (-1) ** s
                 * factorial(n - s)
                 / (factorial(s) * factorial((n + m) // 2 - s) * factorial((n - m) // 2 - s))
             )
-    return table
+            half = (n - m) // 2 - s
+            for a in range(half + 1):
+                for b in range(m + 1):
+                    factor = radial * comb(half, a) * comb(m, b) * (-1j) ** b
+                    table[row, 2 * (half - a) + m - b, 2 * a + b] += factor
+    return table.reshape(len(ORDERS), -1)
 
 
-_RADIAL_COEFFICIENTS = _radial_coefficients()
+_OF_POWERS = _coefficients_of_powers()
