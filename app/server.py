@@ -25,10 +25,13 @@ from app.api import (
     gestures,
     health,
     jobs,
+    language_files,
     languages,
     problems,
     recognitions,
+    revisions,
     sample_clips,
+    sample_languages,
     viser_relay,
     workspaces,
 )
@@ -90,9 +93,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         clips.router,
         jobs.router,
         languages.router,
+        language_files.router,
+        revisions.router,
         gestures.router,
         recognitions.router,
         sample_clips.router,
+        sample_languages.router,
         events.router,
     ):
         api.include_router(router)

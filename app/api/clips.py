@@ -8,9 +8,11 @@ from typing import Annotated
 import numpy as np
 from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
+from pydantic import TypeAdapter
 from starlette.concurrency import run_in_threadpool
 
 from app.api.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
 from app.api.problems import ProblemError, documented
 from app.api.ranges import keep_single_range
 from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView
@@ -18,7 +20,7 @@ from app.api.studio import CurrentStudio
 from app.api.uploads import receive_file
 from app.recognition.poses import PoseSequence
 from app.recognition.takes import takes_in
-from app.store import ClipWithJob, JobStatus
+from app.store import ClipStore, ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -80,10 +82,10 @@ async def upload_clip(
         partial.unlink(missing_ok=True)
 
 
-@router.get("", responses=documented())
-def list_clips(studio: CurrentStudio) -> list[ClipView]:
+@router.get("", response_model=list[ClipView], responses={**documented(), **NOT_SENT_AGAIN})
+def list_clips(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the clips, newest first."""
-    return [clip_view(found) for found in studio.clips.all()]
+    return _listed(studio.clips, known)
 
 
 @router.get("/{clip_id}", responses=documented(404))
@@ -199,6 +201,13 @@ def clip_view(found: ClipWithJob) -> ClipView:
         warnings=json.loads(job.warnings),
         job_id=job.id,
     )
+
+
+def _views(clips: ClipStore) -> list[ClipView]:
+    return [clip_view(found) for found in clips.all()]
+
+
+_listed = listing(_views, TypeAdapter(list[ClipView]))
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

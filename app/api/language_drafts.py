@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import replace
+from itertools import chain, count
 
 from app.recognition import Language
+from app.recognition.language import MAX_NAME_LENGTH
 from app.store import Draft, LanguageRevision
 
 LONGEST_NAME = 200
@@ -31,6 +33,7 @@ def draft_of(language: Language, change: str) -> Draft:
         labels=[gesture.label for gesture in language.gestures],
         change=change[:LONGEST_CHANGE],
         document=language.to_json(),
+        author=language.author,
     )
 
 
@@ -44,3 +47,10 @@ def editing(
         return draft_of(replace(language, revision=number), change)
 
     return draft
+
+
+def name_of_copy(name: str, taken: Container[str]) -> str:
+    """Return a name for a copy of a language that none of those `taken` is called by."""
+    endings = chain([" (copy)"], (f" (copy {number})" for number in count(2)))
+    names = (name[: MAX_NAME_LENGTH - len(ending)] + ending for ending in endings)
+    return next(proposed for proposed in names if proposed not in taken)

@@ -1,45 +1,32 @@
-"""Languages: make, list, change, go back, import and export."""
+"""Languages: make, list, duplicate, change, delete and restore."""
 
 from __future__ import annotations
 
 import json
 import re
 from dataclasses import replace
-from enum import StrEnum
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Depends, Header, Query, Request, Response
-from starlette.concurrency import run_in_threadpool
+from fastapi import APIRouter, Depends, Header, Query, Response
+from pydantic import TypeAdapter
 
-from app.api.language_drafts import draft_of, editing
+from app.api.language_drafts import draft_of, editing, name_of_copy
+from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
 from app.api.problems import ProblemError, documented
 from app.api.schemas import (
     GestureView,
     LanguageChange,
     LanguageDraft,
-    LanguageRevert,
     LanguageSummary,
     LanguageView,
-    Name,
-    RevisionView,
 )
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
-from app.recognition.osg_reference import from_reference, is_reference, to_reference
-from app.store import LanguageRevision, LanguageState
+from app.store import LanguageState, LanguageStore
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)
-
-
-class FileFormat(StrEnum):
-    """The language files."""
-
-    OSG_STUDIO = "osg-studio"
-    """Ours: everything."""
-    OSG_REFERENCE = "osg-reference"
-    """The published implementation's: images and salient keypoints only."""
 
 
 def _expected_revision(
@@ -73,32 +60,10 @@ def create_language(
     return announced(studio, state, response)
 
 
-@router.get("", responses=documented())
-def list_languages(studio: CurrentStudio) -> list[LanguageSummary]:
+@router.get("", response_model=list[LanguageSummary], responses={**documented(), **NOT_SENT_AGAIN})
+def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the languages, oldest first."""
-    return [_summary(state) for state in studio.languages.all()]
-
-
-@router.post(
-    "/import",
-    status_code=201,
-    responses=documented(),
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {"application/json": {"schema": {"type": "object"}}},
-        }
-    },
-)
-async def import_language(
-    request: Request,
-    studio: CurrentStudio,
-    response: Response,
-    name: Annotated[Name, Query()] = "imported",
-) -> LanguageView:
-    """Add the language of a file: ours, or the published implementation's (then under `name`)."""
-    content = await request.body()
-    return await run_in_threadpool(_imported, studio, content, name, response)
+    return _listed(studio.languages, known)
 
 
 @router.get("/{language_id}", responses=documented(404))
@@ -121,8 +86,24 @@ def change_language(
     fields = change.model_dump(exclude_none=True)
     if not fields:
         return answered(studio, studio.languages.get(language_id), response)
-    edit = editing(f"Change {' and '.join(fields)}", lambda language: replace(language, **fields))
+    words = {"name": f"Rename to {change.name}", "author": f"Name {change.author} as author"}
+    told = ", ".join(words[field] for field in fields)
+    edit = editing(told, lambda language: replace(language, **fields))
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+
+
+@router.post("/{language_id}/duplicate", status_code=201, responses=documented(404))
+def duplicate_language(
+    language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
+) -> LanguageView:
+    """Make another language of a language's newest or an older revision."""
+    state = studio.languages.get(language_id, revision)
+    taken = {each.revision.name for each in studio.languages.all()}
+    original = studio.language(state)
+    name = name_of_copy(original.name, taken)
+    copy = replace(original, name=name, created=None, revision=1)
+    change = f"Copy of {original.name}, revision {state.revision.revision}"
+    return announced(studio, studio.languages.create(draft_of(copy, change)), response)
 
 
 @router.delete("/{language_id}", status_code=204, responses=documented(404, 412))
@@ -141,53 +122,6 @@ def restore_language(language_id: str, studio: CurrentStudio, response: Response
     return announced(studio, studio.languages.restore(language_id), response)
 
 
-@router.get("/{language_id}/revisions", responses=documented(404))
-def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView]:
-    """List what was done to a language, newest first."""
-    return [_revision_view(row) for row in studio.languages.revisions(language_id)]
-
-
-@router.post("/{language_id}/revert", responses=documented(404, 412))
-def revert_language(
-    language_id: str,
-    to: LanguageRevert,
-    studio: CurrentStudio,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
-    """Make a new revision that says what an older one said."""
-    older = studio.language(studio.languages.get(language_id, to.revision))
-    edit = editing(f"Go back to revision {to.revision}", lambda _newest: older)
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
-
-
-@router.get(
-    "/{language_id}/export",
-    response_class=Response,
-    responses={
-        **documented(404),
-        200: {"description": "The language file", "content": {"application/json": {}}},
-    },
-)
-def export_language(
-    language_id: str,
-    studio: CurrentStudio,
-    format: FileFormat = FileFormat.OSG_STUDIO,
-    revision: Revision = None,
-) -> Response:
-    """Send the language as the file that robots load."""
-    state = studio.languages.get(language_id, revision)
-    document = state.revision.document
-    if format is FileFormat.OSG_REFERENCE:
-        document = to_reference(studio.language(state))
-    name = quote(f"{state.revision.name}.json", safe="")
-    headers = {
-        "Content-Disposition": f"attachment; filename=\"language.json\"; filename*=utf-8''{name}",
-        "ETag": _tag(state),
-    }
-    return Response(document, media_type="application/json", headers=headers)
-
-
 def announced(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
     """Tell the open pages that a language changed, and answer with it."""
     studio.broadcast.publish("languages", id=state.record.id)
@@ -196,34 +130,34 @@ def announced(studio: Studio, state: LanguageState, response: Response) -> Langu
 
 def answered(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
     """Answer with a language, its ETag in the head."""
-    response.headers["ETag"] = _tag(state)
+    response.headers["ETag"] = tag_of(state)
     language = studio.language(state)
     return LanguageView(
-        **_summary(state).model_dump(),
-        author=language.author,
-        gestures=[_gesture_view(state, gesture) for gesture in language.gestures],
+        **_summary_of(state).model_dump(),
+        gestures=[gesture_view(state, gesture) for gesture in language.gestures],
     )
 
 
-def _imported(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
-    if is_reference(content):
-        language, change = from_reference(content, name), "Import of an osg-reference file"
-    else:
-        language, change = Language.from_json(content), "Import"
-    state = studio.languages.create(draft_of(language, change), language.revision)
-    return announced(studio, state, response)
-
-
-def _tag(state: LanguageState) -> str:
+def tag_of(state: LanguageState) -> str:
+    """Return the ETag of a revision."""
     return f'"{state.revision.revision}"'
 
 
-def _summary(state: LanguageState) -> LanguageSummary:
+def _summaries(languages: LanguageStore) -> list[LanguageSummary]:
+    return [_summary_of(state) for state in languages.all()]
+
+
+_listed = listing(_summaries, TypeAdapter(list[LanguageSummary]))
+
+
+def _summary_of(state: LanguageState) -> LanguageSummary:
     record, row = state.record, state.revision
     return LanguageSummary(
         id=record.id,
         name=row.name,
         revision=row.revision,
+        author=row.author,
+        change=row.change,
         labels=json.loads(row.labels),
         sample=record.sample,
         created=record.created,
@@ -231,14 +165,8 @@ def _summary(state: LanguageState) -> LanguageSummary:
     )
 
 
-def _revision_view(row: LanguageRevision) -> RevisionView:
-    return RevisionView(
-        **row.model_dump(include={"revision", "name", "change", "created"}),
-        labels=json.loads(row.labels),
-    )
-
-
-def _gesture_view(state: LanguageState, gesture: Gesture) -> GestureView:
+def gesture_view(state: LanguageState, gesture: Gesture) -> GestureView:
+    """Return what to tell about a gesture of a revision."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
     place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
     return GestureView(

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.api.language_drafts import draft_of
 from app.recognition import Language
 from app.recognition.errors import LanguageError
-from app.store import LanguageStore
+from app.store import LanguageState, LanguageStore
 
 CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 
@@ -58,17 +58,25 @@ class Samples:
             if path.suffix in CLIP_ENDINGS
         }
 
-    def seed(self, languages: LanguageStore) -> None:
-        """Add the sample languages that were never added before; those deleted stay deleted."""
-        seeded = languages.seeded()
+    def languages(self) -> dict[str, Language]:
+        """Return the languages by name, in order; one that cannot be read is left out."""
+        found = {}
         for path in sorted(self._folder.glob("*.json")):
-            if path.stem in seeded:
-                continue
             try:
-                language = Language.from_json(path.read_bytes())
+                found[path.stem] = Language.from_json(path.read_bytes())
             except (LanguageError, OSError):
                 # A server without one of its samples is still of use.
                 logger.exception("the sample language %s cannot be read", path.name)
-                continue
-            draft = draft_of(language, "Sample language")
-            languages.create(draft, language.revision, sample=path.stem)
+        return found
+
+    def add(self, name: str, language: Language, languages: LanguageStore) -> LanguageState:
+        """Add the sample language of that name."""
+        draft = draft_of(language, "Sample language")
+        return languages.create(draft, language.revision, sample=name)
+
+    def seed(self, languages: LanguageStore) -> None:
+        """Add the sample languages that were never added before; those deleted stay deleted."""
+        seeded = languages.seeded()
+        for name, language in self.languages().items():
+            if name not in seeded:
+                self.add(name, language, languages)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -163,7 +163,9 @@ class LanguageSummary(BaseModel):
 
     id: str
     name: str
+    author: str
     revision: int
+    change: str = Field(description="What the newest revision did")
     labels: list[str]
     sample: bool = Field(description="Whether it came with the program")
     created: datetime
@@ -173,7 +175,6 @@ class LanguageSummary(BaseModel):
 class LanguageView(LanguageSummary):
     """A language with its gestures."""
 
-    author: str
     gestures: list[GestureView]
 
 
@@ -182,9 +183,30 @@ class RevisionView(BaseModel):
 
     revision: int
     name: str
+    author: str
     labels: list[str]
     change: str
     created: datetime
+
+
+class GestureComparison(BaseModel):
+    """A gesture in two revisions of its language."""
+
+    kind: Literal["added", "removed", "changed", "same"]
+    before: GestureView | None = Field(description="Null: the older revision does not have it")
+    after: GestureView | None = Field(description="Null: the newer revision does not have it")
+    words: list[str] = Field(description="What changed about it, a sentence each")
+
+
+class RevisionComparison(BaseModel):
+    """Two revisions of a language, side by side."""
+
+    older: RevisionView | None = Field(description="Null: compared with nothing")
+    newer: RevisionView
+    words: list[str] = Field(description="What changed about the language itself")
+    gestures: list[GestureComparison] = Field(
+        description="In the newer revision's order, then those it does not have any more"
+    )
 
 
 class RecognitionRequest(Body):
@@ -233,8 +255,16 @@ class SampleView(BaseModel):
     size: int = Field(description="Bytes")
 
 
+class SampleLanguageView(BaseModel):
+    """A language that comes with the program."""
+
+    name: str = Field(description="By which it is asked for")
+    title: str = Field(description="The language's own name")
+    labels: list[str]
+
+
 class SampleChoice(Body):
-    """Which sample clip to add."""
+    """Which sample to add."""
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
 

@@ -74,6 +74,11 @@ class ClipStore:
             return earlier
         return ClipWithJob(clip, job)
 
+    @property
+    def changes(self) -> int:
+        """Grows with every change of the database, see `Database`."""
+        return self._database.changes
+
     def get(self, clip_id: str) -> ClipWithJob:
         """Return a clip that is not deleted.
 

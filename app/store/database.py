@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sqlite3
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Lock
 
 from alembic import command
 from alembic.config import Config
@@ -31,10 +33,18 @@ class Database:
     url
         SQLAlchemy URL. For SQLite the folder of the file is made.
 
+    Attributes
+    ----------
+    changes
+        Grows with every committed change: what was read while it said the same is still true. It
+        starts at the present moment, in nanoseconds, so that no later run repeats a number.
+
     """
 
     def __init__(self, url: str) -> None:
         parsed = make_url(url)
+        self.changes = time.time_ns()
+        self._counting = Lock()
         self._sqlite = parsed.get_backend_name() == "sqlite"
         if self._sqlite and parsed.database:
             Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
@@ -93,6 +103,8 @@ class Database:
         ):
             yield session
             session.flush()
+        with self._counting:
+            self.changes += 1
 
     def close(self) -> None:
         """Close every connection."""

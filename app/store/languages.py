@@ -7,11 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from sqlalchemy.orm import defer
 from sqlmodel import Session, col, select
 
 from app.store.database import Database
 from app.store.errors import Conflict, NotFound
 from app.store.models import LanguageRecord, LanguageRevision, SeededSample, now
+
+_WITHOUT_DOCUMENT = defer(LanguageRevision.document, raiseload=True)  # type: ignore[arg-type]
+"""Hundreds of kilobytes each, which no list shows."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +26,7 @@ class Draft:
     labels: Sequence[str]
     change: str
     document: str
+    author: str = ""
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,11 @@ class LanguageStore:
     def __init__(self, database: Database) -> None:
         self._database = database
 
+    @property
+    def changes(self) -> int:
+        """Grows with every change of the database, see `Database`."""
+        return self._database.changes
+
     def create(
         self, draft: Draft, revision: int = 1, *, sample: str | None = None
     ) -> LanguageState:
@@ -50,7 +60,7 @@ class LanguageStore:
         revision
             The number its document carries.
         sample
-            Name under which we brought it, so that it is brought only once.
+            Name under which we brought it, so that it is brought only once unasked.
 
         """
         with self._database.writing() as session:
@@ -60,7 +70,7 @@ class LanguageStore:
             row = _row(record.id, revision, draft)
             session.add(row)
             if sample is not None:
-                session.add(SeededSample(name=sample))
+                session.merge(SeededSample(name=sample))
         return LanguageState(record, row)
 
     def seeded(self) -> set[str]:
@@ -81,11 +91,15 @@ class LanguageStore:
             return _load(session, language_id, revision)
 
     def all(self) -> list[LanguageState]:
-        """Return the languages that are not deleted in their newest revisions, oldest first."""
+        """Return the languages that are not deleted in their newest revisions, oldest first.
+
+        Their documents are left where they are: ask `get` for one.
+        """
         with self._database.reading() as session:
             query = (
                 select(LanguageRecord, LanguageRevision)
                 .join(LanguageRevision)
+                .options(_WITHOUT_DOCUMENT)
                 .where(
                     col(LanguageRecord.deleted).is_(None),
                     LanguageRevision.revision == LanguageRecord.head,
@@ -95,7 +109,7 @@ class LanguageStore:
             return [LanguageState(record, row) for record, row in session.exec(query)]
 
     def revisions(self, language_id: str) -> list[LanguageRevision]:
-        """Return every revision, newest first.
+        """Return every revision, newest first, without the documents: ask `get` for one.
 
         Raises
         ------
@@ -105,8 +119,15 @@ class LanguageStore:
         """
         with self._database.reading() as session:
             _load(session, language_id, None)
-            query = select(LanguageRevision).where(LanguageRevision.language_id == language_id)
-            return list(session.exec(query.order_by(col(LanguageRevision.revision).desc())))
+            query = (
+                select(LanguageRevision)
+                .where(LanguageRevision.language_id == language_id)
+                .options(_WITHOUT_DOCUMENT)
+                .order_by(col(LanguageRevision.revision).desc())
+            )
+            # What the check above read whole would come back whole.
+            session.expunge_all()
+            return list(session.exec(query))
 
     def edit(
         self,
@@ -208,6 +229,7 @@ def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
         labels=json.dumps(list(draft.labels), ensure_ascii=False),
         change=draft.change,
         document=draft.document,
+        author=draft.author,
     )
 
 

@@ -131,6 +131,8 @@ class LanguageRevision(SQLModel, table=True):
     """The gestures' labels as a JSON array, for lists."""
     change: str = Field(max_length=300)
     """What this revision did, for the history."""
+    author: str = Field(default="", max_length=200, sa_column_kwargs={"server_default": ""})
+    """Who made the language, as this revision says."""
     document: str = Field(sa_column=Column(Text, nullable=False))
     """The whole language file."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)

@@ -7,9 +7,9 @@ import pytest
 
 from app.api.studio import Studio
 from app.recognition.png import decode_png
+from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
-from tests.api.test_languages import LANGUAGES, add_gesture
 
 
 def place(language_id: str, label: str = "") -> str:

@@ -1,22 +1,9 @@
 """Languages over HTTP: revisions, lost races, import and export."""
 
-import json
-
 import httpx
-import pytest
 
-from app.recognition import Language
+from tests.api.languages import LANGUAGES
 from tests.api.running import assert_problem
-
-LANGUAGES = "/api/v1/languages"
-
-
-def add_gesture(
-    client: httpx.Client, language_id: str, clip_id: str, label: str = "circle"
-) -> httpx.Response:
-    return client.post(
-        f"{LANGUAGES}/{language_id}/gestures", json={"label": label, "clip_id": clip_id}
-    )
 
 
 def test_a_new_language_is_empty_and_listed(client: httpx.Client) -> None:
@@ -27,34 +14,6 @@ def test_a_new_language_is_empty_and_listed(client: httpx.Client) -> None:
     assert made.json()["author"] == "Ada"
     (listed,) = client.get(LANGUAGES).json()
     assert (listed["name"], listed["revision"], listed["labels"]) == ("pool", 1, [])
-
-
-def test_every_change_is_a_revision_with_its_story(
-    client: httpx.Client, language_id: str, circle_clip: str
-) -> None:
-    add_gesture(client, language_id, circle_clip)
-    client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"})
-    history = client.get(f"{LANGUAGES}/{language_id}/revisions").json()
-    assert [(row["revision"], row["change"]) for row in history] == [
-        (3, "Change name"),
-        (2, "Add circle"),
-        (1, "New language"),
-    ]
-    older = client.get(f"{LANGUAGES}/{language_id}", params={"revision": 2})
-    assert older.json()["name"] == "pool"
-
-
-def test_going_back_is_a_new_revision_and_keeps_what_was_undone(
-    client: httpx.Client, language_id: str, circle_clip: str
-) -> None:
-    add_gesture(client, language_id, circle_clip)
-    reverted = client.post(f"{LANGUAGES}/{language_id}/revert", json={"revision": 1})
-    assert reverted.json()["revision"] == 3
-    assert reverted.json()["labels"] == []
-    again = client.post(f"{LANGUAGES}/{language_id}/revert", json={"revision": 2})
-    assert again.json()["labels"] == ["circle"]
-    exported = client.get(f"{LANGUAGES}/{language_id}/export").content
-    assert Language.from_json(exported).revision == 4
 
 
 def test_a_lost_race_is_412_with_the_newer_revision(client: httpx.Client, language_id: str) -> None:
@@ -81,59 +40,6 @@ def test_a_deleted_language_can_be_restored(client: httpx.Client, language_id: s
     assert client.get(place).status_code == 200
 
 
-def test_an_exported_file_loads_and_imports_to_the_same_bytes(
-    client: httpx.Client, language_id: str, circle_clip: str
-) -> None:
-    add_gesture(client, language_id, circle_clip)
-    exported = client.get(f"{LANGUAGES}/{language_id}/export")
-    assert exported.headers["content-disposition"].startswith("attachment;")
-    assert "pool.json" in exported.headers["content-disposition"]
-    assert Language.from_json(exported.content).labels == ("circle",)
-    imported = client.post(f"{LANGUAGES}/import", content=exported.content)
-    assert imported.status_code == 201
-    assert imported.json()["revision"] == 2
-    again = client.get(f"{LANGUAGES}/{imported.json()['id']}/export")
-    assert again.content == exported.content
-
-
-def test_the_published_file_goes_out_and_comes_in_without_trajectories(
-    client: httpx.Client, language_id: str, circle_clip: str
-) -> None:
-    add_gesture(client, language_id, circle_clip)
-    exported = client.get(f"{LANGUAGES}/{language_id}/export", params={"format": "osg-reference"})
-    entry = json.loads(exported.content)["circle"]
-    assert entry["salient_keypoints"] == ["RIGHT_WRIST"]
-    imported = client.post(
-        f"{LANGUAGES}/import", params={"name": "published"}, content=exported.content
-    )
-    assert imported.json()["name"] == "published"
-    assert imported.json()["gestures"][0]["has_trajectory"] is False
-
-
-@pytest.mark.parametrize(
-    ("content", "pointer"),
-    [
-        (b"", ""),
-        (b"no json", ""),
-        (b"[" * 10_000, ""),
-        (b'{"format": "osg-studio/gesture-language", "version": 99}', "/version"),
-        (b'{"format": "osg-studio/gesture-language", "version": NaN}', "/version"),
-        (b'{"circle": {"image": 3, "salient_keypoints": []}}', "/circle/image"),
-        (b"\xff\xfe", ""),
-    ],
-    ids=["empty", "text", "deep", "newer", "nan", "reference", "utf16"],
-)
-def test_a_file_that_is_no_language_is_422_and_names_the_place(
-    client: httpx.Client, content: bytes, pointer: str
-) -> None:
-    answer = client.post(f"{LANGUAGES}/import", content=content)
-    problem = assert_problem(answer, 422, "language_invalid")
-    errors = problem["errors"]
-    assert isinstance(errors, list)
-    assert errors[0]["pointer"] == pointer
-    assert client.get(LANGUAGES).json() == []
-
-
 def test_a_body_that_breaks_the_rules_names_each_fault(client: httpx.Client) -> None:
     body = {"name": "", "author": 3, "colour": "red"}
     problem = assert_problem(client.post(LANGUAGES, json=body), 422, "request_invalid")
@@ -149,3 +55,37 @@ def test_markup_in_a_name_stays_text(client: httpx.Client) -> None:
     assert answer.json()["name"] == name
     assert answer.headers["content-type"] == "application/json"
     assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+def test_a_duplicate_is_a_language_of_its_own(client: httpx.Client, language_id: str) -> None:
+    place = f"{LANGUAGES}/{language_id}"
+    client.patch(place, json={"author": "Ada"})
+    copy = client.post(f"{place}/duplicate").json()
+    assert (copy["name"], copy["author"], copy["revision"]) == ("pool (copy)", "Ada", 1)
+    assert copy["change"] == "Copy of pool, revision 2"
+    assert client.post(f"{place}/duplicate").json()["name"] == "pool (copy 2)"
+    earlier = client.post(f"{place}/duplicate", params={"revision": 1}).json()
+    assert earlier["author"] == ""
+    client.patch(f"{LANGUAGES}/{copy['id']}", json={"name": "sea"})
+    assert client.get(place).json()["name"] == "pool"
+
+
+def test_the_copy_of_a_long_name_is_short_enough(client: httpx.Client) -> None:
+    made = client.post(LANGUAGES, json={"name": "x" * 80}).json()
+    copy = client.post(f"{LANGUAGES}/{made['id']}/duplicate").json()
+    assert copy["name"] == "x" * 73 + " (copy)"
+
+
+def test_a_list_is_sent_again_only_when_something_changed(
+    client: httpx.Client, language_id: str
+) -> None:
+    for place in (LANGUAGES, "/api/v1/clips"):
+        first = client.get(place)
+        known = {"If-None-Match": first.headers["etag"]}
+        again = client.get(place, headers=known)
+        assert (again.status_code, again.content) == (304, b"")
+    client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"})
+    changed = client.get(LANGUAGES, headers=known)
+    assert changed.status_code == 200
+    assert [listed["name"] for listed in changed.json()] == ["sea"]
+    assert changed.json()[0]["change"] == "Rename to sea"

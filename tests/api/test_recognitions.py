@@ -4,9 +4,9 @@ import httpx
 import pytest
 
 from app.api.studio import Studio
+from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
-from tests.api.test_languages import LANGUAGES, add_gesture
 
 RECOGNITIONS = "/api/v1/recognitions"
 

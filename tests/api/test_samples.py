@@ -60,3 +60,18 @@ def test_a_sample_clip_is_added_like_an_upload(settings: Settings) -> None:
 
 def test_without_samples_the_app_starts(client: httpx.Client) -> None:
     assert client.get("/api/v1/samples").json() == []
+
+
+@pytest.mark.usefixtures("samples")
+def test_a_deleted_sample_language_can_be_added_again(settings: Settings) -> None:
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (language,) = client.get(LANGUAGES).json()
+        client.delete(f"{LANGUAGES}/{language['id']}")
+        (sample,) = client.get("/api/v1/samples/languages").json()
+        assert sample == {"name": "table-1", "title": "Table 1", "labels": ["circle"]}
+        added = client.post("/api/v1/samples/languages", json={"name": "table-1"})
+        assert added.status_code == 201
+        (listed,) = client.get(LANGUAGES).json()
+        assert (listed["id"], listed["sample"]) == (added.json()["id"], True)
+        refused = client.post("/api/v1/samples/languages", json={"name": "broken"})
+        assert_problem(refused, 404, "not_found")

@@ -9,8 +9,8 @@ from app.api.studio import Studio
 from app.api.workspace_views import view_of
 from app.api.workspaces import ViewRequest
 from app.store import Clip, NotFound
+from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.running import assert_problem
-from tests.api.test_languages import LANGUAGES, add_gesture
 
 
 @pytest.fixture

@@ -21,10 +21,17 @@ def test_every_edit_is_a_revision_and_the_older_ones_stay(languages: LanguageSto
     language_id = languages.create(draft("a")).record.id
     languages.edit(language_id, appending("b"))
     languages.edit(language_id, appending("c"))
-    documents = [row.document for row in languages.revisions(language_id)]
-    assert documents == ["abc", "ab", "a"]
+    assert [row.revision for row in languages.revisions(language_id)] == [3, 2, 1]
     assert languages.get(language_id).revision.document == "abc"
     assert languages.get(language_id, 2).revision.document == "ab"
+    assert languages.get(language_id, 1).revision.document == "a"
+
+
+def test_lists_leave_the_documents_where_they_are(languages: LanguageStore) -> None:
+    language_id = languages.create(draft("a")).record.id
+    (listed,) = languages.all()
+    for row in (listed.revision, *languages.revisions(language_id)):
+        assert "document" not in vars(row)
 
 
 def test_numbering_goes_on_from_the_files_own(languages: LanguageStore) -> None:

@@ -10,7 +10,7 @@ from alembic.migration import MigrationContext
 from sqlalchemy import inspect
 from sqlmodel import SQLModel
 
-from app.store import Database
+from app.store import Database, LanguageStore
 from app.store.database import MIGRATIONS
 
 
@@ -52,3 +52,21 @@ def test_a_migration_that_breaks_off_leaves_the_database_as_it_was(
     monkeypatch.undo()
     database.migrate()
     assert "clip" in inspect(database.engine).get_table_names()
+
+
+def test_the_author_of_older_revisions_comes_from_their_documents(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    with database.engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, "0001")
+        connection.exec_driver_sql(
+            "INSERT INTO language VALUES ('a', 1, 0, '2026-01-01 00:00:00', NULL)"
+        )
+        connection.exec_driver_sql(
+            "INSERT INTO language_revision VALUES "
+            "('a', 1, 'pool', '[]', 'made', '{\"author\": \"Ada\"}', '2026-01-01 00:00:00')"
+        )
+    database.migrate()
+    assert LanguageStore(database).get("a").revision.author == "Ada"

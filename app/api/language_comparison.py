@@ -1,0 +1,151 @@
+"""What differs between two revisions of a language, gesture by gesture and in words."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from app.recognition import Language
+from app.recognition.gesture import Gesture
+
+Kind = Literal["added", "removed", "changed", "same"]
+
+LONGEST_QUOTE = 60
+"""Characters of a text quoted: a line beside a picture; the texts themselves are on the cards."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A gesture before and after.
+
+    Attributes
+    ----------
+    before, after
+        None where the revision does not have it.
+    words
+        What is different, a sentence each; empty when nothing is, or it is there only once.
+
+    """
+
+    before: Gesture | None
+    after: Gesture | None
+    words: tuple[str, ...] = ()
+
+    @property
+    def kind(self) -> Kind:
+        """What happened to it."""
+        if self.before is None:
+            return "added"
+        if self.after is None:
+            return "removed"
+        return "changed" if self.words else "same"
+
+
+def compared(older: Language | None, newer: Language) -> list[Change]:
+    """Pair the gestures of two revisions.
+
+    One that goes while another with the same demonstration comes was renamed.
+
+    Returns
+    -------
+    The gestures in the newer revision's order, then those that only the older one has.
+
+    """
+    gone = {} if older is None else {gesture.label: gesture for gesture in older.gestures}
+    paired = {label: gone.pop(label, None) for label in newer.labels}
+    changes = []
+    for gesture in newer.gestures:
+        before = paired[gesture.label]
+        if before is None and (renamed := _same_demonstration(gesture, gone)):
+            before = gone.pop(renamed)
+        words = () if before is None else _gesture_words(before, gesture)
+        changes.append(Change(before, gesture, words))
+    return changes + [Change(gesture, None) for gesture in gone.values()]
+
+
+def language_words(older: Language, newer: Language) -> list[str]:
+    """Say what changed about a language apart from its gestures."""
+    words = [
+        f"{what} was {_quoted(old)}, is {_quoted(new)}"
+        for what, old, new in (
+            ("name", older.name, newer.name),
+            ("author", older.author, newer.author),
+        )
+        if old != new
+    ]
+    shared = [label for label in newer.labels if label in older.labels]
+    if shared != [label for label in older.labels if label in newer.labels]:
+        words.append("the gestures are in another order")
+    return words
+
+
+def _same_demonstration(gesture: Gesture, candidates: dict[str, Gesture]) -> str | None:
+    return next((name for name, each in candidates.items() if not _shown_anew(each, gesture)), None)
+
+
+def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
+    words = [
+        f"{what} was {_quoted(old)}, is {_quoted(new)}"
+        for what, old, new in (
+            ("label", before.label, after.label),
+            ("description", before.description, after.description),
+            ("command", _command_text(before), _command_text(after)),
+            *(
+                (f"switch for {name}", value, getattr(after.switches, name))
+                for name, value in vars(before.switches).items()
+            ),
+        )
+        if old != new
+    ]
+    words += _salient_words(before, after)
+    if _shown_anew(before, after):
+        words.append(f"another demonstration{_seconds(before, after)}")
+    elif not (words or np.array_equal(before.image, after.image)):
+        words.append("drawn anew from the same demonstration")
+    if before.thresholds != after.thresholds:
+        words.append("other thresholds of rejection")
+    return tuple(words)
+
+
+def _salient_words(before: Gesture, after: Gesture) -> list[str]:
+    new = [name for name in after.salient if name not in before.salient]
+    gone = [name for name in before.salient if name not in after.salient]
+    return [
+        f"{', '.join(name.replace('_', ' ') for name in names)} {verb}"
+        for names, verb in ((new, "is followed now"), (gone, "is not followed any more"))
+        if names
+    ]
+
+
+def _shown_anew(before: Gesture, after: Gesture) -> bool:
+    """Whether they come from different demonstrations, or, without any, have different images."""
+    old, new = before.trajectory, after.trajectory
+    if old is None or new is None:
+        return old is not new or not np.array_equal(before.image, after.image)
+    return not (
+        old.landmarks == new.landmarks
+        and np.array_equal(old.time, new.time)
+        and np.array_equal(old.xy, new.xy, equal_nan=True)
+    )
+
+
+def _seconds(before: Gesture, after: Gesture) -> str:
+    if before.trajectory is None or after.trajectory is None:
+        return ""
+    old, new = before.trajectory.time[-1], after.trajectory.time[-1]
+    return f": {new:.1f} s instead of {old:.1f} s" if f"{old:.1f}" != f"{new:.1f}" else ""
+
+
+def _command_text(gesture: Gesture) -> str:
+    command = gesture.command
+    return command if isinstance(command, str) else json.dumps(command) if command else ""
+
+
+def _quoted(text: str) -> str:
+    if not text:
+        return "empty"
+    short = text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 1]}\u2026"
+    return f"\u201c{short}\u201d"

@@ -1,0 +1,87 @@
+"""Language files: import and export."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.language_drafts import draft_of
+from app.api.languages import Revision, announced, tag_of
+from app.api.problems import documented
+from app.api.schemas import LanguageView, Name
+from app.api.studio import CurrentStudio, Studio
+from app.recognition import Language
+from app.recognition.osg_reference import from_reference, is_reference, to_reference
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+class FileFormat(StrEnum):
+    """The language files."""
+
+    OSG_STUDIO = "osg-studio"
+    """Ours: everything."""
+    OSG_REFERENCE = "osg-reference"
+    """The published implementation's: images and salient keypoints only."""
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    responses=documented(),
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {"application/json": {"schema": {"type": "object"}}},
+        }
+    },
+)
+async def import_language(
+    request: Request,
+    studio: CurrentStudio,
+    response: Response,
+    name: Annotated[Name, Query()] = "imported",
+) -> LanguageView:
+    """Add the language of a file: ours, or the published implementation's (then under `name`)."""
+    content = await request.body()
+    return await run_in_threadpool(_imported, studio, content, name, response)
+
+
+@router.get(
+    "/{language_id}/export",
+    response_class=Response,
+    responses={
+        **documented(404),
+        200: {"description": "The language file", "content": {"application/json": {}}},
+    },
+)
+def export_language(
+    language_id: str,
+    studio: CurrentStudio,
+    format: FileFormat = FileFormat.OSG_STUDIO,
+    revision: Revision = None,
+) -> Response:
+    """Send the language as the file that robots load."""
+    state = studio.languages.get(language_id, revision)
+    document = state.revision.document
+    if format is FileFormat.OSG_REFERENCE:
+        document = to_reference(studio.language(state))
+    name = quote(f"{state.revision.name}.json", safe="")
+    headers = {
+        "Content-Disposition": f"attachment; filename=\"language.json\"; filename*=utf-8''{name}",
+        "ETag": tag_of(state),
+    }
+    return Response(document, media_type="application/json", headers=headers)
+
+
+def _imported(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
+    if is_reference(content):
+        language, change = from_reference(content, name), "Import of an osg-reference file"
+    else:
+        language, change = Language.from_json(content), "Import"
+    state = studio.languages.create(draft_of(language, change), language.revision)
+    return announced(studio, state, response)

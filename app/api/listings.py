@@ -1,0 +1,71 @@
+"""Lists of everything: written once after a change, and not sent to who has them already."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from functools import lru_cache
+from typing import Annotated, Any, Protocol, TypeVar
+
+from fastapi import Depends, Header, Response
+from pydantic import TypeAdapter
+
+NOT_SENT_AGAIN: dict[int | str, dict[str, Any]] = {
+    304: {"description": "The list that the caller has is still the newest"}
+}
+"""OpenAPI ``responses`` of a list."""
+
+
+class Counted(Hashable, Protocol):
+    """A store that counts its changes."""
+
+    @property
+    def changes(self) -> int:
+        """Grows with every change."""
+
+
+Store = TypeVar("Store", bound=Counted)
+View = TypeVar("View")
+
+
+def _tags(
+    if_none_match: Annotated[
+        str | None, Header(description="The ETag of the list that the caller has")
+    ] = None,
+) -> frozenset[str]:
+    return frozenset(tag.strip() for tag in (if_none_match or "").split(","))
+
+
+KnownTags = Annotated[frozenset[str], Depends(_tags)]
+"""The ETags of what the caller has."""
+
+
+def listing(
+    views: Callable[[Store], list[View]], adapter: TypeAdapter[list[View]]
+) -> Callable[[Store, frozenset[str]], Response]:
+    """Return a function that answers with the list of what is in a store.
+
+    A library of a thousand clips is listed by every page at every start, and changes rarely: its
+    list is read and written after a change only, and a browser that has it is told so.
+
+    Parameters
+    ----------
+    views
+        Reads the list.
+    adapter
+        Writes it.
+
+    """
+
+    @lru_cache(1)
+    def written(store: Store, _changes: int) -> bytes:
+        return adapter.dump_json(views(store))
+
+    def answer(store: Store, known: frozenset[str]) -> Response:
+        # Before reading: what changes meanwhile makes this list old, never a new one taken for old.
+        changes = store.changes
+        headers = {"ETag": f'"{changes}"', "Cache-Control": "private, no-cache"}
+        if headers["ETag"] in known:
+            return Response(status_code=304, headers=headers)
+        return Response(written(store, changes), media_type="application/json", headers=headers)
+
+    return answer

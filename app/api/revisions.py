@@ -1,0 +1,81 @@
+"""A language's revisions: list them, go back to one, compare two."""
+
+from __future__ import annotations
+
+import json
+
+from fastapi import APIRouter, Response
+
+from app.api.language_comparison import compared, language_words
+from app.api.language_drafts import editing
+from app.api.languages import ExpectedRevision, Revision, announced, gesture_view
+from app.api.problems import documented
+from app.api.schemas import (
+    GestureComparison,
+    GestureView,
+    LanguageRevert,
+    LanguageView,
+    RevisionComparison,
+    RevisionView,
+)
+from app.api.studio import CurrentStudio
+from app.recognition.gesture import Gesture
+from app.store import LanguageRevision, LanguageState
+
+router = APIRouter(prefix="/languages/{language_id}", tags=["revisions"])
+
+
+@router.get("/revisions", responses=documented(404))
+def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView]:
+    """List what was done to a language, newest first."""
+    return [_revision_view(row) for row in studio.languages.revisions(language_id)]
+
+
+@router.post("/revert", responses=documented(404, 412))
+def revert_language(
+    language_id: str,
+    to: LanguageRevert,
+    studio: CurrentStudio,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Make a new revision that says what an older one said."""
+    older = studio.language(studio.languages.get(language_id, to.revision))
+    edit = editing(f"Go back to revision {to.revision}", lambda _newest: older)
+    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+
+
+@router.get("/comparison", responses=documented(404))
+def compare_revisions(
+    language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
+) -> RevisionComparison:
+    """Tell two revisions apart: by default the newest from nothing, so that all of it is new."""
+    after = studio.languages.get(language_id, newer)
+    before = None if older is None else studio.languages.get(language_id, older)
+    new = studio.language(after)
+    old = None if before is None else studio.language(before)
+    return RevisionComparison(
+        older=None if before is None else _revision_view(before.revision),
+        newer=_revision_view(after.revision),
+        words=[] if old is None else language_words(old, new),
+        gestures=[
+            GestureComparison(
+                kind=change.kind,
+                before=_view(before, change.before),
+                after=_view(after, change.after),
+                words=list(change.words),
+            )
+            for change in compared(old, new)
+        ],
+    )
+
+
+def _view(state: LanguageState | None, gesture: Gesture | None) -> GestureView | None:
+    return None if state is None or gesture is None else gesture_view(state, gesture)
+
+
+def _revision_view(row: LanguageRevision) -> RevisionView:
+    return RevisionView(
+        **row.model_dump(include={"revision", "name", "author", "change", "created"}),
+        labels=json.loads(row.labels),
+    )

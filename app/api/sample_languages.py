@@ -1,0 +1,32 @@
+"""The languages that come with the program: to begin with, and to bring back one deleted."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Response
+
+from app.api.languages import announced
+from app.api.problems import ProblemError, documented
+from app.api.schemas import LanguageView, SampleChoice, SampleLanguageView
+from app.api.studio import CurrentStudio
+
+router = APIRouter(prefix="/samples/languages", tags=["samples"])
+
+
+@router.get("", responses=documented())
+def list_sample_languages(studio: CurrentStudio) -> list[SampleLanguageView]:
+    """List the sample languages, whether or not they are among the languages."""
+    return [
+        SampleLanguageView(name=name, title=language.name, labels=list(language.labels))
+        for name, language in studio.samples.languages().items()
+    ]
+
+
+@router.post("", status_code=201, responses=documented(404))
+def add_sample_language(
+    chosen: SampleChoice, studio: CurrentStudio, response: Response
+) -> LanguageView:
+    """Add a sample language to the languages, as it was brought at the first start."""
+    language = studio.samples.languages().get(chosen.name)
+    if language is None:
+        raise ProblemError(404, "not_found", f"there is no sample language {chosen.name!r}")
+    return announced(studio, studio.samples.add(chosen.name, language, studio.languages), response)

@@ -1,0 +1,62 @@
+"""What differs between two languages, in words."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.api.language_comparison import compared, language_words
+from app.recognition import Gesture, Language
+from app.recognition.switches import Switches
+from tests.api.recordings import recording_of
+
+
+@pytest.fixture(scope="module")
+def circle() -> Gesture:
+    return Gesture.from_demonstration("circle", recording_of("circle").poses)
+
+
+@pytest.fixture(scope="module")
+def line() -> Gesture:
+    return Gesture.from_demonstration("line", recording_of("line").poses)
+
+
+def words(before: Gesture, after: Gesture) -> tuple[str, ...]:
+    (change,) = compared(Language("pool", [before]), Language("pool", [after]))
+    return change.words
+
+
+def test_a_language_compared_with_itself_has_changed_in_nothing(
+    circle: Gesture, line: Gesture
+) -> None:
+    language = Language("pool", [circle, line])
+    assert {change.kind for change in compared(language, language)} == {"same"}
+    assert language_words(language, language) == []
+
+
+def test_every_edit_of_a_gesture_has_its_words(circle: Gesture, line: Gesture) -> None:
+    assert words(circle, replace(circle, command={"go": 1})) == (
+        'command was empty, is “{"go": 1}”',
+    )
+    assert words(circle, replace(circle, switches=Switches(tempo="on"))) == (
+        "switch for tempo was “auto”, is “on”",
+    )
+    followed = circle.with_salient(["left_wrist", *circle.salient])
+    assert words(circle, followed) == ("left wrist is followed now",)
+    assert words(followed, circle) == ("left wrist is not followed any more",)
+    assert words(circle, replace(line, label="circle"))[-1].startswith("another demonstration")
+    assert words(circle, replace(circle, trajectory=None))[-1] == "another demonstration"
+    assert words(circle, circle.redrawn(simplification=0.2)) == (
+        "drawn anew from the same demonstration",
+    )
+
+
+def test_a_long_text_is_quoted_in_short(circle: Gesture) -> None:
+    (told,) = words(circle, replace(circle, description="wide " * 100))
+    assert len(told) < 120
+    assert told.endswith("…”")
+
+
+def test_another_order_is_said(circle: Gesture, line: Gesture) -> None:
+    older, newer = Language("pool", [circle, line]), Language("pool", [line, circle])
+    assert language_words(older, newer) == ["the gestures are in another order"]
+    assert {change.kind for change in compared(older, newer)} == {"same"}
