@@ -10,6 +10,7 @@ import json
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -27,9 +28,11 @@ from app.clip_argument import (
 from app.evaluate_command import evaluate
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take, takes_in
 from app.recognition.errors import RecognitionError
+from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.recognizer import PROFILES
-from app.terminal import describe, people, progress_bar, show_recognition
+from app.recognition.situation import Situation
+from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
 DEFAULT_PROFILE = "full"
 NOTHING_RECOGNISED = 1
@@ -137,26 +140,42 @@ def recognize(
     profile: Annotated[
         str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")
     ] = DEFAULT_PROFILE,
+    expected: Annotated[
+        str | None,
+        typer.Option(metavar="LABEL", help="The gesture that was meant: explain every take by it."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Name the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
     spoken = Language.load(language)
+    if expected is not None:
+        spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
     recording = read_clip(path)
     takes = [take_by_hand(recording, span)] if span else list(takes_in(recording))
     results = [(take, recognizer.recognize(take.poses)) for take in takes]
+    explanations = [
+        explain(Situation.of_take(recognizer, take), expected)
+        for take in takes
+        if expected is not None
+    ]
     if as_json:
         report = {
             "clip": str(path),
             "language": spoken.name,
             "profile": profile,
-            "takes": [take_report(take, result) for take, result in results],
+            "takes": [
+                take_report(take, result, explanation)
+                for (take, result), explanation in zip_longest(results, explanations)
+            ],
         }
         typer.echo(json.dumps(report, allow_nan=False))
     else:
-        for take, result in results:
+        for (take, result), explanation in zip_longest(results, explanations):
             show_recognition(take, result)
+            if explanation is not None:
+                show_explanation(explanation)
     if not takes:
         people.print(
             f"{path}: no salute found in {recording.poses.duration:.1f} s, so no take; hold the "
@@ -243,9 +262,13 @@ def read_language(source: Path) -> Language:
     return Language.from_json(content)
 
 
-def take_report(take: Take, result: Recognition) -> dict[str, Any]:
+def take_report(
+    take: Take, result: Recognition, explanation: Explanation | None = None
+) -> dict[str, Any]:
     """Return the JSON object of one recognised take (contract, ``recognize --json``)."""
-    return {"start": take.start, "end": take.end, "closed": take.closed, **result.to_dict()}
+    span = {"start": take.start, "end": take.end, "closed": take.closed}
+    explained = {} if explanation is None else {"explanation": explanation.to_dict()}
+    return span | result.to_dict() | explained
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:

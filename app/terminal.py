@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.recognition import Recognition, Take
+from app.recognition.explanation import Explanation
 
 people = Console(stderr=True)
 """Where text for people goes; stdout is for data."""
@@ -32,6 +33,33 @@ def show_recognition(take: Take, result: Recognition) -> None:
     unlimited = people.options.update(max_width=10_000)
     needed = Measurement.get(people, unlimited, table).maximum
     Console(stderr=True, width=max(people.width, needed)).print(table)
+
+
+def show_explanation(explanation: Explanation) -> None:
+    """Print for a person, on stderr, why a take was recognised as it was, and what would help."""
+    people.print(Text(explanation.sentence))
+    table = Table(
+        "what to change",
+        "confidence",
+        "margin",
+        "takes of the language recognised",
+        title=f"with which {explanation.expected!r} would be recognised",
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )
+    for found in explanation.counterfactuals.found:
+        effect = found.effect
+        table.add_row(
+            Text(found.change.words),
+            f"{found.confidence:.2f}",
+            f"{found.margin:.2f}",
+            ""
+            if effect is None
+            else f"{effect.right_after} of {effect.takes}, {effect.right_before} before",
+        )
+    if table.row_count:
+        people.print(table)
 
 
 def vote_table(result: Recognition) -> Table:

@@ -40,6 +40,7 @@ def test_version_is_printed_by_the_installed_command() -> None:
         (["recognize", "absent.mp4", "--language", "{language}"], "absent.mp4"),
         (["recognize", "absent.mp4", "--language", "absent.json"], "absent.json"),
         (["recognize", "absent.mp4", "--language", "{language}", "--profile", "no"], "profile"),
+        (["recognize", "absent.mp4", "--language", "{language}", "--expected", "spiral"], "spiral"),
         (["define", "circle", "--name", "pool", "--output", "out.json"], "LABEL=CLIP"),
         (["convert", "absent.json", "out.json"], "absent.json"),
         (["convert", "{language}", "no/such/folder/out.json"], "no/such/folder"),
@@ -118,7 +119,7 @@ def test_a_language_defined_from_clips_recognises_another_take(
     assert defined.code == 0, defined.error
     assert defined.out == ""
     clip = sample_clips / "line-test-1.mp4"
-    ended = osg_studio("recognize", clip, "--language", file, "--json")
+    ended = osg_studio("recognize", clip, "--language", file, "--expected", "circle", "--json")
     assert ended.code == 0
     report = json.loads(ended.out)
     assert list(report) == ["clip", "language", "profile", "takes"]
@@ -129,6 +130,8 @@ def test_a_language_defined_from_clips_recognises_another_take(
     assert take["gestures"] == ["circle", "line"]
     assert set(take["votes"]) <= set(take["voters"]) == set(take["weights"])
     assert np.shape(take["distances"]) == (len(take["voters"]), 2)
+    assert (take["explanation"]["expected"], take["explanation"]["right"]) == ("circle", False)
+    assert "instead of 'circle'" in take["explanation"]["sentence"]
 
 
 @pytest.mark.slow

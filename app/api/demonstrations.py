@@ -72,5 +72,13 @@ def demonstration_in(
     return Demonstration(first, last, inside)
 
 
+def surroundings_in(recording: Recording, start: float, end: float) -> PoseSequence:
+    """Return what a range was cut out of: the take around it between its salutes, or the clip."""
+    for take in takes_in(recording):
+        if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
+            return take.untrimmed
+    return recording.poses
+
+
 def _stroke(take: Take) -> Demonstration:
     return Demonstration(take.stroke_start, take.stroke_end, take.poses)

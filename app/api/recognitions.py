@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Response
 
-from app.api.demonstrations import demonstration_in
-from app.api.problems import documented
-from app.api.schemas import RecognitionRequest, RecognitionView
+from app.api.demonstrations import demonstration_in, surroundings_in
+from app.api.problems import ProblemError, documented
+from app.api.schemas import ExplanationView, Label, RecognitionRequest, RecognitionView
 from app.api.studio import CurrentStudio
 from app.recognition import Recognition
+from app.recognition.explanation import explain
+from app.recognition.situation import Situation
 from app.store import RecognitionRecord
 
 DEFAULT_PROFILE = "full"
@@ -63,6 +65,35 @@ def list_recognitions(
 def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionView:
     """Return a recognition as it was answered."""
     return _view(studio.recognitions.get(recognition_id))
+
+
+@router.get("/{recognition_id}/explanation", responses=documented(404, 409))
+def explain_recognition(
+    recognition_id: str,
+    studio: CurrentStudio,
+    response: Response,
+    expected: Annotated[Label | None, Query()] = None,
+) -> ExplanationView:
+    """Explain why a recognition came out as it did, and what would have turned it right.
+
+    By the language as it was then. `expected` is the gesture that was meant, by default the one
+    that the recognition was asked for with.
+    """
+    record = studio.recognitions.get(recognition_id)
+    meant = expected or record.expected
+    if meant is None:
+        detail = "say which gesture was meant: add ?expected=LABEL"
+        raise ProblemError(422, "expected_missing", detail)
+    state = studio.languages.get(record.language_id, record.revision)
+    recording = studio.recording(record.clip_id)
+    situation = Situation(
+        recognizer=studio.recognizer(state, record.profile),
+        poses=demonstration_in(recording, record.start, record.end).poses,
+        whole=surroundings_in(recording, record.start, record.end),
+    )
+    # A recognition never changes, nor does the revision that it was made with.
+    response.headers["Cache-Control"] = "private, max-age=86400"
+    return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
 
 
 def kept_recognition(record: RecognitionRecord) -> Recognition:

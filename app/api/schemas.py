@@ -248,6 +248,29 @@ class RecognitionView(BaseModel):
     )
 
 
+class ExplanationView(BaseModel):
+    """Why a recognition came out as it did."""
+
+    model_config = ConfigDict(extra="allow")
+
+    id: str = Field(description="The recognition's")
+    profile: str
+    expected: str
+    label: str | None
+    nearest: str
+    right: bool
+    confidence: float
+    other: str | None = Field(description="The gesture that the expected one is held against")
+    margin: float | None = Field(description="Score of the other minus that of the expected")
+    sentence: str
+    votes: dict[str, int]
+    verdicts: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
+    alignments: list[dict[str, Any]]
+    differences: list[dict[str, Any]]
+    counterfactuals: list[dict[str, Any]] = Field(description="Verified, the smallest first")
+    tried: int
+
+
 class SampleView(BaseModel):
     """A clip that comes with the program."""
 

@@ -69,3 +69,47 @@ def test_what_cannot_be_recognised_says_why(
     assert "paper" in str(problem["detail"])
     for missing in ({"clip_id": "x", "language_id": spoken}, body | {"language_id": "x"}):
         assert_problem(client.post(RECOGNITIONS, json=missing), 404, "not_found")
+
+
+def test_a_recognition_is_explained_by_what_was_meant(
+    client: httpx.Client, studio: Studio, spoken: str
+) -> None:
+    clip_id = add_recorded_clip(studio, recording_of("line"))
+    body = {"clip_id": clip_id, "language_id": spoken, "expected": "circle"}
+    kept = client.post(RECOGNITIONS, json=body).json()
+    answer = client.get(f"{RECOGNITIONS}/{kept['id']}/explanation")
+    assert answer.status_code == 200
+    why = answer.json()
+    assert (why["id"], why["expected"], why["label"]) == (kept["id"], "circle", "line")
+    assert (why["right"], why["other"]) == (False, "line")
+    assert {verdict["voter"] for verdict in why["verdicts"]} == set(kept["voters"])
+    assert why["counterfactuals"][0]["label"] == "circle"
+    assert "instead of 'circle'" in why["sentence"]
+    start, end = kept["start"], kept["end"]
+    assert all(start <= moment <= end for moment in why["alignments"][0]["time"])
+    as_it_was = client.get(
+        f"{RECOGNITIONS}/{kept['id']}/explanation", params={"expected": "line"}
+    ).json()
+    assert as_it_was["right"]
+    assert as_it_was["counterfactuals"] == []
+
+
+def test_an_explanation_is_by_the_language_as_it_was(
+    client: httpx.Client, spoken: str, line_clip: str
+) -> None:
+    body = {"clip_id": line_clip, "language_id": spoken, "expected": "line"}
+    kept = client.post(RECOGNITIONS, json=body).json()
+    client.delete(f"{LANGUAGES}/{spoken}/gestures/line")
+    why = client.get(f"{RECOGNITIONS}/{kept['id']}/explanation").json()
+    assert (why["label"], why["right"]) == ("line", True)
+
+
+def test_what_was_not_meant_to_be_anything_cannot_be_explained(
+    client: httpx.Client, spoken: str, line_clip: str
+) -> None:
+    body = {"clip_id": line_clip, "language_id": spoken}
+    url = f"{RECOGNITIONS}/{client.post(RECOGNITIONS, json=body).json()['id']}/explanation"
+    assert_problem(client.get(url), 422, "expected_missing")
+    problem = assert_problem(client.get(url, params={"expected": "spiral"}), 422, "recognition")
+    assert "circle, line" in str(problem["detail"])
+    assert_problem(client.get(f"{RECOGNITIONS}/x/explanation"), 404, "not_found")
