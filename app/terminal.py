@@ -28,6 +28,10 @@ def show_recognition(take: Take, result: Recognition) -> None:
             f"the take from {take.start:.2f} s was not closed by a second salute: it is taken to "
             f"last until {take.end:.2f} s"
         )
+    for finding in result.findings:
+        people.print(f"the take from {take.start:.2f} s: {finding}")
+    if result.fault:
+        people.print(f"the take from {take.start:.2f} s is too poor to judge: {result.fault}")
     table = vote_table(result)
     # A terminal that is too narrow wraps the lines; cropping would lose distances.
     unlimited = people.options.update(max_width=10_000)

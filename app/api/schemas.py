@@ -246,6 +246,8 @@ class RecognitionView(BaseModel):
     weights: dict[str, float] = Field(
         default_factory=dict, description="Each voter's share in the decision; 0: has no say"
     )
+    findings: list[str] = Field(default_factory=list, description="What was repaired, in sentences")
+    fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
 
 
 class ExplanationView(BaseModel):

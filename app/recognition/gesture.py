@@ -14,6 +14,7 @@ from app.recognition.errors import GestureError, PoseError
 from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
 from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.quality import fault
 from app.recognition.repair import repaired
 from app.recognition.salience import (
     MIN_DISPLACEMENT,
@@ -186,13 +187,19 @@ class Gesture:
                 f"least {MIN_FRAMES}: choose a longer range of the clip"
             )
         try:
-            trajectory = Trajectory.from_poses(repaired(poses).poses)
+            seen = repaired(poses).poses
+            trajectory = Trajectory.from_poses(seen)
         except PoseError as error:
             raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
         if salient is None:
             names = salient_landmarks(trajectory)
         else:
             names = chosen_landmarks(trajectory, salient)
+        if poor := fault(seen, names):
+            raise GestureError(
+                f"the demonstration of {label!r} is too poor to learn from: {poor}; show the "
+                f"gesture again in view of the camera, or choose another range of the clip"
+            )
         kept = condensed(trajectory).select(_kept_landmarks(trajectory, names))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:

@@ -20,7 +20,8 @@ class Recognition:
     Attributes
     ----------
     label
-        The recognised gesture, or None when rejected (profile ``paper`` never rejects).
+        The recognised gesture, or None when rejected (profile ``paper`` never rejects), or when the
+        recording is too poor to judge.
     nearest
         The best gesture even when rejected.
     confidence
@@ -43,6 +44,10 @@ class Recognition:
     weights
         Per voter's name its share in the decision, summing to 1; 0 for a voter that cannot tell
         the gestures of this language apart. Every voter of profile ``paper`` weighs the same.
+    findings
+        What was repaired in the recording before it was compared, in sentences with counts.
+    fault
+        What makes the recording too poor to judge, in words; `label` is then None.
 
     """
 
@@ -55,6 +60,8 @@ class Recognition:
     distances: FloatArray
     votes: Mapping[str, str]
     weights: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    findings: tuple[str, ...] = ()
+    fault: str | None = None
 
     def __post_init__(self) -> None:
         """Freeze a private copy of the distances; voters without told weights weigh the same."""
@@ -86,6 +93,8 @@ class Recognition:
             distances=np.array(rows, dtype=np.float64),
             votes=content["votes"],
             weights=content.get("weights", {}),
+            findings=tuple(content.get("findings", ())),
+            fault=content.get("fault"),
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -97,6 +106,8 @@ class Recognition:
             "confidence": self.confidence,
             "votes": dict(self.votes),
             "weights": dict(self.weights),
+            "findings": list(self.findings),
+            "fault": self.fault,
             "voters": list(self.voters),
             "gestures": list(self.gestures),
             "distances": [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,8 +11,10 @@ from app.recognition.calibrated_vote import CalibratedVote
 from app.recognition.comparison import Comparison
 from app.recognition.errors import LanguageError, PoseError, RecognitionError
 from app.recognition.gesture import condensed
+from app.recognition.landmarks import other_side
 from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.quality import fault
 from app.recognition.recognition_result import Recognition
 from app.recognition.repair import repaired
 from app.recognition.shape_references import ShapeReferences
@@ -75,13 +78,34 @@ class Recognizer:
         over its mean distance to all gestures), among those the first in the language.
         Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`.
 
+        Where bad keypoints are repaired, the answer tells what was; a recording that is then still
+        too poor to judge gets no label but the `fault`.
+
         Raises
         ------
         PoseError
             When the recording shows nothing, or no landmark that a gesture needs moves in it.
 
         """
-        return self.recognize_trajectory(self.query(poses))
+        if not self.repairs:
+            return self.recognize_trajectory(self.query(poses))
+        repair = repaired(poses)
+        result = self.recognize_trajectory(condensed(Trajectory.from_poses(repair.poses)))
+        poor = self._fault(repair.poses, result.nearest)
+        return replace(
+            result,
+            label=None if poor else result.label,
+            findings=repair.findings,
+            fault=poor,
+        )
+
+    def _fault(self, poses: PoseSequence, nearest: str) -> str | None:
+        """Tell why a recording is too poor to be the nearest gesture, whichever hand shows it."""
+        gesture = self.language.gesture(nearest)
+        poor = fault(poses, gesture.salient)
+        if poor and gesture.switches.mirror == "on":
+            poor = fault(poses, [other_side(name) for name in gesture.salient])
+        return poor
 
     def query(self, poses: PoseSequence) -> Trajectory:
         """Return a recording as the voters see it: repaired or not, normalised and condensed.

@@ -91,12 +91,12 @@ export async function loadResult() {
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, nearest, expected, votes, weights } = result;
+  const { label, nearest, expected, votes, weights, fault } = result;
   const voters = Object.keys(votes).filter((voter) => weights[voter] !== 0).map((voter) => votes[voter]);
   const count = voters.filter((vote) => vote === nearest).length;
   const wrong = label === null || (expected !== null && expected !== label);
   const parts = label === null
-    ? ["Not recognised; nearest is ", h("b", {}, nearest)]
+    ? [fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ", h("b", {}, nearest)]
     : expected === null || expected === label
       ? ["Recognised as ", h("b", { className: "chosen" }, label), expected === label ? ", as expected" : ""]
       : ["Taken for ", h("b", { className: "chosen" }, label), ", expected ", h("b", { className: "expected" }, expected)];

@@ -120,7 +120,8 @@ def test_a_tie_does_not_go_to_whichever_gesture_comes_first() -> None:
     distances[:3, 0], distances[3:6, 1] = 0.9, 0.1
     distances[6] = np.inf  # one voter abstains, so that three votes stand against three
     for gestures in (("circle", "wedge"), ("wedge", "circle")):
-        two = Recognizer(Language("two", [LANGUAGE.gesture(label) for label in gestures]))
+        language = Language("two", [LANGUAGE.gesture(label) for label in gestures])
+        two = Recognizer(language, "paper")
         assert two._counted(distances).label == gestures[1]
 
 

@@ -1,0 +1,73 @@
+"""Quality: whether a recording shows enough of a gesture to be judged by.
+
+Repair (`repair`) puts right what can be known. What is left may still be too little: then saying so
+is the right answer, and the nearest gesture would be a guess.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.recognition.jumps import body_unit
+from app.recognition.poses import PoseSequence
+from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
+
+FEWEST_FRAMES = 5
+"""Frames of a recording, at least: a corner takes three, and the simplest gestures have two strokes
+of three frames, with the corner in both."""
+
+LEAST_FOLLOWED = 0.5
+"""Share of the time that a landmark must be followed. With gaps of up to half a second bridged,
+losing 60 % of the frames costs a few per cent of the answers (`docs/results.md`); what lies in
+longer gaps is not there at all."""
+
+LEAP = 1.0
+"""Torso lengths from one frame to the next, within `LEAP_SECONDS`, that no hand goes: of quick
+swipes the fastest 0.1 s span half of that."""
+
+LEAP_SECONDS = 0.1
+"""Longest time between two frames in which a leap can be told from a stroke."""
+
+MOST_LEAPS = 0.2
+"""Share of the steps that may be leaps. Repair leaves them only where more than a quarter of a
+landmark's places were misplaced."""
+
+
+def fault(poses: PoseSequence, landmarks: Sequence[str]) -> str | None:
+    """Tell what makes a recording too poor to judge.
+
+    Parameters
+    ----------
+    poses
+        The recording, repaired.
+    landmarks
+        What the gesture in question is shown with; those that the recording lacks are passed over.
+
+    Returns
+    -------
+    A clause with the values seen, for people; None where nothing is too poor.
+
+    """
+    if len(poses) < FEWEST_FRAMES:
+        return f"it has {len(poses)} frames, and at least {FEWEST_FRAMES} are needed"
+    if not poses.seen.any():
+        return f"none of its {len(poses)} frames shows a landmark"
+    trajectory = Trajectory.from_poses(poses)
+    unit = body_unit(trajectory)
+    for name in landmarks:
+        if name not in poses.landmarks:
+            continue
+        spoken = name.replace("_", " ")
+        path = trajectory.select([name]).xy[:, 0] / unit
+        seen = np.flatnonzero(np.isfinite(path).all(axis=1))
+        lasts = np.diff(trajectory.time[seen])
+        followed = lasts[(lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)].sum() / poses.duration
+        if followed < LEAST_FOLLOWED:
+            return f"the {spoken} is followed for only {followed:.0%} of its {poses.duration:.1f} s"
+        steps = np.linalg.norm(np.diff(path[seen], axis=0), axis=1)
+        leaps = float(((steps > LEAP) & (lasts <= LEAP_SECONDS)).mean())
+        if leaps > MOST_LEAPS:
+            return f"the {spoken} leaps over a torso length in {leaps:.0%} of its frames"
+    return None
