@@ -18,6 +18,7 @@ import typer
 from pydantic import ValidationError
 
 from app import __version__
+from app.check_command import check
 from app.clip_argument import (
     Demonstration,
     clip_and_span,
@@ -50,6 +51,7 @@ models_command = typer.Typer(
 )
 command_line.add_typer(models_command, name="models")
 command_line.command()(evaluate)
+command_line.command()(check)
 
 
 class FileFormat(StrEnum):

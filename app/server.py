@@ -20,6 +20,7 @@ from fastapi.staticfiles import StaticFiles
 
 from app import __version__, resources
 from app.api import (
+    checks,
     clips,
     events,
     gestures,
@@ -95,6 +96,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         languages.router,
         language_files.router,
         revisions.router,
+        checks.router,
         gestures.router,
         recognitions.router,
         sample_clips.router,

@@ -1,0 +1,132 @@
+"""Findings: what about a language deserves its author's attention, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.recognition.gesture import MAX_MOMENTS, Gesture
+from app.recognition.remedy import Remedy
+from app.recognition.salience import MIN_DISPLACEMENT, displacements
+from app.recognition.salute import HOLD_SECONDS
+from app.recognition.trajectory import Trajectory
+
+SHORTEST_SECONDS = 0.5
+"""A single reach takes half a second (Flash and Hogan 1985); what is shorter is a twitch of which
+a 25 Hz camera sees a dozen frames."""
+
+LONGEST_SECONDS = MAX_MOMENTS / 10
+"""Beyond it fewer than ten moments a second are kept, and details of a stroke are lost."""
+
+SMALLEST = 1.5 * MIN_DISPLACEMENT
+"""Displacement, in torso lengths, below which sway is a large part of what is seen: idle hands
+stray up to 0.2, and people differ in size by a third of a doubling."""
+
+LEAST_SEEN = 0.8
+"""Share of the moments in which a salient landmark should be seen. Gaps of up to half a second were
+bridged before; what is missing after that are whole strokes."""
+
+HELD_STILL = 0.2
+"""Torso lengths a second, about 10 cm, below which a hand is held: a salute is shown like that."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One warning.
+
+    Attributes
+    ----------
+    code
+        For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
+        ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
+        ``empty``.
+    gestures
+        Labels of the gestures it is about.
+    message
+        What is wrong and why that matters, in one sentence or two.
+    below_bar
+        Whether the language should not go to sea like that.
+    remedies
+        What would help, the most effective first; each was computed to help.
+
+    """
+
+    code: str
+    gestures: tuple[str, ...]
+    message: str
+    below_bar: bool = False
+    remedies: tuple[Remedy, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        remedies = [remedy.to_dict() for remedy in self.remedies]
+        return vars(self) | {"gestures": list(self.gestures), "remedies": remedies}
+
+
+def demonstration_findings(gesture: Gesture) -> Iterator[Finding]:
+    """Judge how a gesture was demonstrated, by itself."""
+    shown, label = gesture.trajectory, (gesture.label,)
+    if shown is None or not gesture.salient:
+        yield Finding(
+            "no_demonstration",
+            label,
+            f"{gesture.label} came without its demonstration: how it will be read cannot be "
+            "predicted; define it again from a clip",
+        )
+        return
+    seconds = float(shown.time[-1] - shown.time[0])
+    if seconds < SHORTEST_SECONDS:
+        text = f"takes {seconds:.1f} s: shorter than one reach of an arm; show it more slowly"
+        yield Finding("too_short", label, f"{gesture.label} {text}")
+    if seconds > LONGEST_SECONDS:
+        text = f"takes {seconds:.0f} s: details are lost beyond {LONGEST_SECONDS:.0f}; shorten it"
+        yield Finding("too_long", label, f"{gesture.label} {text}")
+    size = max(displacements(shown)[name] for name in gesture.salient)
+    if shown.unit == "torso_length" and size < SMALLEST:
+        yield Finding(
+            "too_small",
+            label,
+            f"{gesture.label} spans {size:.2f} torso lengths, and even an idle hand strays up to "
+            "0.2: show it larger",
+        )
+    for name in gesture.salient:
+        if (seen := visible_share(shown, name)) < LEAST_SEEN:
+            yield Finding(
+                "poorly_seen",
+                label,
+                f"{name} of {gesture.label} was seen in {seen:.0%} of its demonstration: film it "
+                "again with the hand in view",
+            )
+    if (held := longest_held_up(shown)) >= HOLD_SECONDS:
+        yield Finding(
+            "salute_like",
+            label,
+            f"{gesture.label} holds a hand up and still for {held:.1f} s: with its fingers spread "
+            "that is a salute, and ends the take; keep the fist closed or the hand moving",
+        )
+
+
+def visible_share(shown: Trajectory, landmark: str) -> float:
+    """Return the share of a demonstration's moments in which a landmark is seen."""
+    return float(np.isfinite(shown.select([landmark]).xy).all(axis=(1, 2)).mean())
+
+
+def longest_held_up(shown: Trajectory) -> float:
+    """Return for how many seconds, at most, an upright hand is held above its elbow."""
+    longest = 0.0
+    for side in ("left", "right"):
+        names = [f"{side}_{part}" for part in ("elbow", "wrist", "index")]
+        if not set(names) <= set(shown.landmarks):
+            continue
+        elbow, wrist, index = np.moveaxis(shown.select(names).xy, 1, 0)
+        upright = (index[1:, 1] < wrist[1:, 1]) & (wrist[1:, 1] < elbow[1:, 1])
+        steps = np.diff(shown.time)
+        still = np.linalg.norm(np.diff(wrist, axis=0), axis=1) < HELD_STILL * steps
+        held = 0.0
+        for seconds in np.where(upright & still, steps, 0.0):
+            held = held + float(seconds) if seconds else 0.0
+            longest = max(longest, held)
+    return longest

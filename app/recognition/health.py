@@ -1,0 +1,267 @@
+"""Health of a language: before the dive, what will be confused, missed or set off by accident."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from app.recognition.alarm import Alarm, alarms
+from app.recognition.finding import Finding, demonstration_findings, visible_share
+from app.recognition.forecast import Forecast
+from app.recognition.gesture import Gesture, condensed
+from app.recognition.health_report import (
+    MOST_CONFUSION,
+    MOST_MISSED,
+    GestureHealth,
+    HealthReport,
+    LandmarkHealth,
+    PairHealth,
+)
+from app.recognition.language import Language
+from app.recognition.language_map import placed
+from app.recognition.poses import FloatArray
+from app.recognition.recognizer import Recognizer
+from app.recognition.rehearsal import Rehearsal
+from app.recognition.remedy import Rehearsing, Remedy, pair_remedies
+from app.recognition.salience import displacements
+from app.recognition.variation import Person
+
+MOST_ALARMS = 0.1
+"""Share of the library of accidental movements from which a warning is given. It is no bar: between
+two salutes people seldom reach for something."""
+
+DUPLICATE = 0.05
+"""Fused distance of two demonstrations, where 1 is two typical gestures: nearer than two takes of
+one gesture by the same careful person."""
+
+TAKES = 16
+"""Takes of each gesture: a rate of 5 % is then forecast to within about 2 and 12 %."""
+
+EXAMPLES = 2
+"""Of each kind of accidental movement."""
+
+MOST_REMEDIED = 3
+"""Findings for which remedies are computed, the worst first: with those mended, the next check sees
+to the others."""
+
+Progress = Callable[[str, int, int], None]
+"""Called with the stage, what is done of it and of how much (0: not known beforehand); what it
+raises ends the check."""
+
+
+def check_health(
+    language: Language,
+    *,
+    person: Person = "another",
+    takes: int = TAKES,
+    seed: int = 0,
+    progress: Progress = lambda _stage, _done, _total: None,
+) -> HealthReport:
+    """Check a language before the dive.
+
+    The same language, seed and number of takes give the same report.
+
+    Parameters
+    ----------
+    language
+        With profile ``full``.
+    person
+        Who will dive: the person who demonstrated, or somebody else.
+    takes
+        Of each gesture, at least 2.
+    seed
+        Of all that is drawn at random.
+    progress
+        Told the stage, how much of it is done and of how much; may raise to cancel.
+
+    """
+    if not language.gestures:
+        nothing = Finding("empty", (), "the language has no gestures yet: add one", True)
+        return HealthReport(
+            language=language.name,
+            revision=language.revision,
+            person=person,
+            takes=takes,
+            gestures=(),
+            pairs=(),
+            findings=(nothing,),
+            places=np.zeros((0, 2)),
+        )
+    recognizer = Recognizer(language, "full")
+    shown = sum(gesture.trajectory is not None for gesture in language.gestures)
+    advance = _counted(progress, "rehearsing", shown * takes)
+    rehearsing = Rehearsing(takes=takes, seed=seed, person=person, advance=advance)
+    rehearsal = rehearsing(recognizer)
+    read = alarms(
+        recognizer, EXAMPLES, seed=seed, advance=_counted(progress, "accidental movements", 0)
+    )
+    distances = _demonstrated_distances(recognizer)
+    gestures = tuple(
+        _gesture_health(gesture, index, rehearsal, read)
+        for index, gesture in enumerate(language.gestures)
+    )
+    pairs = [
+        _pair_health(language, pair, rehearsal, distances)
+        for pair in combinations(range(len(gestures)), 2)
+    ]
+    pairs.sort(key=_confusion_rate, reverse=True)
+    searching = replace(rehearsing, advance=_counted(progress, "remedies", 0))
+    findings = [
+        *_pair_findings(language, pairs, rehearsal, searching),
+    ]
+    explained = {label for finding in findings for label in finding.gestures}
+    findings += _gesture_findings(language, gestures, explained)
+    return HealthReport(
+        language=language.name,
+        revision=language.revision,
+        person=person,
+        takes=takes,
+        gestures=gestures,
+        pairs=tuple(pairs),
+        findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
+        places=placed(distances),
+    )
+
+
+def _counted(progress: Progress, stage: str, total: int) -> Callable[[], None]:
+    """Return what is called after each piece of work; a total of 0 is not known beforehand."""
+    done = 0
+
+    def advance() -> None:
+        nonlocal done
+        done += 1
+        progress(stage, done, total)
+
+    return advance
+
+
+def _demonstrated_distances(recognizer: Recognizer) -> FloatArray:
+    """Compare every demonstration with every gesture: ``(G, G)``; infinite where there is none."""
+    gestures = recognizer.language.gestures
+    distances = np.full((len(gestures), len(gestures)), np.inf)
+    for index, gesture in enumerate(gestures):
+        if gesture.trajectory is not None:
+            distances[index] = recognizer.compare(condensed(gesture.trajectory)).scores
+    return distances
+
+
+def _performer(rehearsal: Rehearsal, gesture: int) -> int | None:
+    rows = np.flatnonzero(rehearsal.gestures == gesture)
+    return int(rows[0]) if len(rows) else None
+
+
+def _gesture_health(
+    gesture: Gesture, index: int, rehearsal: Rehearsal, read: Sequence[Alarm]
+) -> GestureHealth:
+    shown, performer = gesture.trajectory, _performer(rehearsal, index)
+    moved = {} if shown is None else displacements(shown)
+    taken = [alarm for alarm in read if alarm.taken and alarm.nearest == index]
+    comparable = any(alarm.nearest is not None for alarm in read)
+    return GestureHealth(
+        label=gesture.label,
+        seconds=None if shown is None else float(shown.time[-1] - shown.time[0]),
+        landmarks=tuple(
+            LandmarkHealth(name, moved[name], visible_share(shown, name))
+            for name in gesture.salient
+            if shown is not None
+        ),
+        missed=None if performer is None else rehearsal.misread(performer),
+        false_alarms=Forecast.of_count(len(taken), len(read)) if comparable else None,
+        set_off_by=tuple(dict.fromkeys(alarm.kind for alarm in taken)),
+    )
+
+
+def _pair_health(
+    language: Language, pair: tuple[int, int], rehearsal: Rehearsal, distances: FloatArray
+) -> PairHealth:
+    def forecast(one: int, other: int) -> Forecast | None:
+        performer = _performer(rehearsal, one)
+        return None if performer is None else rehearsal.confusion(performer, other)
+
+    first, second = pair
+    between = [each for each in (distances[pair], distances[second, first]) if np.isfinite(each)]
+    return PairHealth(
+        gestures=(language.labels[first], language.labels[second]),
+        first_as_second=forecast(first, second),
+        second_as_first=forecast(second, first),
+        distance=float(np.mean(between)) if between else None,
+    )
+
+
+def _confusion_rate(pair: PairHealth) -> tuple[float, float]:
+    confusion = pair.confusion
+    return (confusion.rate, confusion.high) if confusion else (-1.0, -1.0)
+
+
+def _pair_findings(
+    language: Language, pairs: Sequence[PairHealth], rehearsal: Rehearsal, rehearsing: Rehearsing
+) -> list[Finding]:
+    """Warn of pairs that will be confused; `pairs` are sorted, the worst first."""
+    findings: list[Finding] = []
+    for pair in pairs:
+        confusion = pair.confusion
+        if confusion is None or confusion.rate <= MOST_CONFUSION:
+            break
+        first, second = (language.labels.index(label) for label in pair.gestures)
+        remedies: tuple[Remedy, ...] = ()
+        if (
+            len(findings) < MOST_REMEDIED
+            and pair.first_as_second is not None
+            and pair.second_as_first is not None
+        ):
+            remedies = pair_remedies(language, (first, second), rehearsal, rehearsing)
+        findings.append(
+            Finding(
+                "duplicate" if _is_duplicate(pair) else "confused",
+                pair.gestures,
+                _confusion_message(pair),
+                below_bar=True,
+                remedies=remedies,
+            )
+        )
+    return findings
+
+
+def _is_duplicate(pair: PairHealth) -> bool:
+    return pair.distance is not None and pair.distance < DUPLICATE
+
+
+def _confusion_message(pair: PairHealth) -> str:
+    first, second = pair.gestures
+    if _is_duplicate(pair):
+        return (
+            f"{first} and {second} are the same movement: the robot can only guess which is meant"
+        )
+    confusion = pair.confusion
+    assert confusion is not None  # asked before
+    one, other = (first, second) if confusion is pair.first_as_second else (second, first)
+    return (
+        f"{confusion.rate:.0%} of all takes of {one} ({confusion.low:.0%} to {confusion.high:.0%}) "
+        f"would be nearer to {other}"
+    )
+
+
+def _gesture_findings(
+    language: Language, gestures: Sequence[GestureHealth], explained: Collection[str]
+) -> list[Finding]:
+    """Warn of gestures by themselves; those `explained` by a pair are not told as missed again."""
+    findings: list[Finding] = []
+    for gesture, health in zip(language.gestures, gestures, strict=True):
+        findings += demonstration_findings(gesture)
+        told = health.label in explained
+        if not told and health.missed is not None and health.missed.rate > MOST_MISSED:
+            message = (
+                f"{health.missed.rate:.0%} of all takes of {health.label} "
+                f"({health.missed.low:.0%} to {health.missed.high:.0%}) would not be read as it"
+            )
+            findings.append(Finding("missed", (health.label,), message, below_bar=True))
+        if health.false_alarms is not None and health.false_alarms.rate > MOST_ALARMS:
+            message = (
+                f"{health.label} may be set off by {', '.join(health.set_off_by)}: "
+                f"{health.false_alarms.rate:.0%} of the accidental movements are taken for it"
+            )
+            findings.append(Finding("accidental", (health.label,), message))
+    return findings

@@ -1,0 +1,189 @@
+"""The health report: what is to be expected of a language under water."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.recognition.finding import Finding
+from app.recognition.forecast import DIGITS, Forecast
+from app.recognition.poses import FloatArray
+from app.recognition.remedy import worse
+from app.recognition.variation import Person
+
+MOST_CONFUSION = 0.05
+"""Bar for a pair of gestures: a robot that does the wrong thing once in twenty commands is trusted
+with none."""
+
+MOST_MISSED = 0.1
+"""Bar for a gesture: a refused command costs the diver a repetition, which is cheaper than a wrong
+deed. Rejection aims at refusing one true gesture in twenty; twice as many is its own fault."""
+
+
+@dataclass(frozen=True)
+class LandmarkHealth:
+    """A landmark that a gesture depends on.
+
+    Attributes
+    ----------
+    landmark
+        Its name.
+    displacement
+        How far it moves, peak to peak, in the demonstration's unit.
+    visible
+        Share of the demonstration's moments in which it is seen.
+
+    """
+
+    landmark: str
+    displacement: float
+    visible: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return {
+            "landmark": self.landmark,
+            "displacement": round(self.displacement, DIGITS),
+            "visible": round(self.visible, DIGITS),
+        }
+
+
+@dataclass(frozen=True)
+class GestureHealth:
+    """What is to be expected of one gesture.
+
+    Attributes
+    ----------
+    label
+        Its label.
+    seconds
+        Of its demonstration; None without one.
+    landmarks
+        What it depends on.
+    missed
+        How often a take of it is read as another gesture, or as none; None without demonstration.
+    false_alarms
+        How often an accidental movement is taken for it; None where the library does not show what
+        it depends on.
+    set_off_by
+        The kinds of movements that are, in words.
+
+    """
+
+    label: str
+    seconds: float | None
+    landmarks: tuple[LandmarkHealth, ...]
+    missed: Forecast | None
+    false_alarms: Forecast | None
+    set_off_by: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return {
+            "label": self.label,
+            "seconds": None if self.seconds is None else round(self.seconds, DIGITS),
+            "landmarks": [landmark.to_dict() for landmark in self.landmarks],
+            "missed": self.missed and self.missed.to_dict(),
+            "false_alarms": self.false_alarms and self.false_alarms.to_dict(),
+            "set_off_by": list(self.set_off_by),
+        }
+
+
+@dataclass(frozen=True)
+class PairHealth:
+    """How well two gestures are told apart.
+
+    Attributes
+    ----------
+    gestures
+        The two labels.
+    first_as_second, second_as_first
+        How often a take of the one is nearer to the other; None without its demonstration.
+    distance
+        Fused distance of the two demonstrations, 1 = as different as two typical gestures; None
+        where they cannot be compared.
+
+    """
+
+    gestures: tuple[str, str]
+    first_as_second: Forecast | None
+    second_as_first: Forecast | None
+    distance: float | None
+
+    @property
+    def confusion(self) -> Forecast | None:
+        """The worse of the two directions."""
+        if self.first_as_second is None or self.second_as_first is None:
+            return self.first_as_second or self.second_as_first
+        return worse(self.first_as_second, self.second_as_first)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        confusion, forth, back = self.confusion, self.first_as_second, self.second_as_first
+        return {
+            "gestures": list(self.gestures),
+            "confusion": confusion and confusion.to_dict(),
+            "first_as_second": forth and forth.to_dict(),
+            "second_as_first": back and back.to_dict(),
+            "distance": None if self.distance is None else round(self.distance, DIGITS),
+        }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HealthReport:
+    """The whole report.
+
+    Attributes
+    ----------
+    language, revision
+        What was checked.
+    person
+        For whom: whoever demonstrated the gestures, or somebody else.
+    takes
+        How often each gesture was rehearsed.
+    gestures
+        In the language's order.
+    pairs
+        All of them, the most confused first.
+    findings
+        Those below the bar first.
+    places
+        ``(G, 2)``: the gestures on a map, near ones near each other, see `language_map.placed`.
+
+    """
+
+    language: str
+    revision: int
+    person: Person
+    takes: int
+    gestures: tuple[GestureHealth, ...]
+    pairs: tuple[PairHealth, ...]
+    findings: tuple[Finding, ...]
+    places: FloatArray
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing is below the bar."""
+        return not any(finding.below_bar for finding in self.findings)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        labels = [gesture.label for gesture in self.gestures]
+        places = np.round(self.places, DIGITS).tolist()
+        return {
+            "language": self.language,
+            "revision": self.revision,
+            "person": self.person,
+            "takes": self.takes,
+            "bar": {"confusion": MOST_CONFUSION, "missed": MOST_MISSED},
+            "ok": self.ok,
+            "gestures": [gesture.to_dict() for gesture in self.gestures],
+            "pairs": [pair.to_dict() for pair in self.pairs],
+            "warnings": [finding.to_dict() for finding in self.findings],
+            "map": [
+                {"label": label, "x": x, "y": y}
+                for label, (x, y) in zip(labels, places, strict=True)
+            ],
+        }

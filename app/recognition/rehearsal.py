@@ -1,0 +1,134 @@
+"""A rehearsal: every gesture of a language performed many times before anybody dives.
+
+The performances are variants of the demonstrations (`variation`), read by the recogniser itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.calibrated_vote import SCORE_FLOOR
+from app.recognition.errors import PoseError
+from app.recognition.forecast import Forecast
+from app.recognition.gesture import condensed
+from app.recognition.poses import FloatArray
+from app.recognition.recognizer import Recognizer
+from app.recognition.variation import Person, variants
+
+WIDEST_MARGIN = 4.0
+"""Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
+compared at all needs to be."""
+
+UNFORESEEN: Final[Mapping[Person, float]] = MappingProxyType({"same": 0.15, "another": 0.3})
+"""Scale by which margins of real takes differ from those of variants, by whose takes they are:
+others also draw a letter with other strokes, which no variant of one demonstration can know.
+Measured on other people's recordings (`docs/results.md`, Health)."""
+
+REFUSED = -1
+"""In `Rehearsal.read`: the take was read as no gesture."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rehearsal:
+    """How takes of some gestures were read.
+
+    Attributes
+    ----------
+    gestures
+        ``(P,)`` indices of the gestures that were performed.
+    scores
+        ``(P, N, G)``: of N takes each the score of every gesture, smaller = more alike; infinite
+        where not comparable.
+    read
+        ``(P, N)`` index of the gesture each take was read as, or `REFUSED`.
+    unforeseen
+        Of `UNFORESEEN` the one of whoever performed.
+
+    """
+
+    gestures: npt.NDArray[np.intp]
+    scores: FloatArray
+    read: npt.NDArray[np.intp]
+    unforeseen: float
+
+    @property
+    def margins(self) -> FloatArray:
+        """``(P, N, G)``: how much nearer a take is to its own gesture than to each other one.
+
+        The logarithm of the quotient of the scores; below 0 where the other one is nearer.
+        """
+        logarithms = np.log(np.minimum(self.scores, 1e9) + SCORE_FLOOR)
+        own = np.take_along_axis(logarithms, self.gestures[:, None, None], axis=2)
+        return np.asarray(np.clip(logarithms - own, -WIDEST_MARGIN, WIDEST_MARGIN))
+
+    def confusion(self, performer: int, other: int) -> Forecast:
+        """Forecast how often a gesture is nearer to another one than to itself."""
+        return Forecast.of_margins(self.margins[performer, :, other], self.unforeseen)
+
+    def misread(self, performer: int) -> Forecast:
+        """Forecast how often a gesture is nearer to any other one than to itself."""
+        own = int(self.gestures[performer])
+        rivals = np.delete(self.margins[performer], own, axis=1)
+        return Forecast.of_margins(rivals.min(axis=1, initial=WIDEST_MARGIN), self.unforeseen)
+
+
+def rehearse(
+    recognizer: Recognizer,
+    count: int,
+    *,
+    gestures: Sequence[int] | None = None,
+    seed: int = 0,
+    person: Person = "another",
+    advance: Callable[[], None] = lambda: None,
+) -> Rehearsal:
+    """Perform gestures and read them.
+
+    Parameters
+    ----------
+    recognizer
+        Of the language.
+    count
+        Takes of each gesture, at least 2.
+    gestures
+        Indices of those to perform; all that have a demonstration when not given.
+    seed
+        Of the variants. The n-th take of a gesture varies the same way in every language.
+    person
+        Who performs: whoever demonstrated it, or somebody else.
+    advance
+        Called after each take; what it raises ends the rehearsal.
+
+    """
+    language = recognizer.language
+    performed = [
+        index
+        for index in (range(len(language.gestures)) if gestures is None else gestures)
+        if language.gestures[index].trajectory is not None
+    ]
+    scores = np.full((len(performed), count, len(language.gestures)), np.inf)
+    read = np.full((len(performed), count), REFUSED, dtype=np.intp)
+    for row, index in enumerate(performed):
+        demonstration = language.gestures[index].trajectory
+        assert demonstration is not None  # chosen above
+        for take, variant in enumerate(variants(demonstration, count, seed=seed, person=person)):
+            compared = recognizer.compare(condensed(variant))
+            scores[row, take] = compared.scores
+            try:
+                label = recognizer.decided(compared).label
+            except PoseError:  # nothing that any gesture needs moves in it
+                label = None
+            if label is not None:
+                read[row, take] = language.labels.index(label)
+            advance()
+    return Rehearsal(
+        gestures=np.array(performed, dtype=np.intp),
+        scores=scores,
+        read=read,
+        unforeseen=UNFORESEEN[person],
+    )

@@ -1,0 +1,173 @@
+"""Remedies: what would keep two gestures apart, each with its effect computed.
+
+Every change is first tried on the two gestures by themselves, with few takes; the most promising
+ones are then rehearsed within the whole language, and proposed only where they help there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from app.recognition.alteration import Alteration, alterations_of, switch_alterations
+from app.recognition.forecast import Forecast
+from app.recognition.gesture import Gesture
+from app.recognition.language import Language
+from app.recognition.recognizer import Recognizer
+from app.recognition.rehearsal import Rehearsal, rehearse
+from app.recognition.variation import Person
+
+TRIAL_TAKES = 5
+"""Takes of each of the two gestures with which a change is tried: enough to order changes whose
+effects differ by a spread of the margins or more."""
+
+MOST_PROPOSED = 3
+"""Changes rehearsed within the whole language: a choice that can be surveyed."""
+
+HELPS = 0.5
+"""A remedy is proposed where it at least halves what it is against: smaller effects are within the
+forecasts' intervals."""
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """One thing to do, and what it was computed to achieve.
+
+    Attributes
+    ----------
+    kind
+        For programs, see `Alteration`.
+    gesture
+        Label of the gesture to show or to read otherwise.
+    text
+        What to do, as an imperative.
+    before, after
+        The predicted rate that it is against, without and with it.
+
+    """
+
+    kind: str
+    gesture: str
+    text: str
+    before: Forecast
+    after: Forecast
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        forecasts = {"before": self.before.to_dict(), "after": self.after.to_dict()}
+        return vars(self) | forecasts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rehearsing:
+    """How takes are rehearsed; the same for a language and for its changed versions.
+
+    Attributes
+    ----------
+    takes
+        Of each gesture, at least 2.
+    seed
+        Of their variants.
+    person
+        Who performs.
+    advance
+        Called after each take; what it raises ends everything.
+
+    """
+
+    takes: int
+    seed: int
+    person: Person
+    advance: Callable[[], None] = lambda: None
+
+    def __call__(
+        self, recognizer: Recognizer, gestures: tuple[int, ...] | None = None, takes: int = 0
+    ) -> Rehearsal:
+        """Rehearse gestures by their indices; all when not given."""
+        return rehearse(
+            recognizer,
+            takes or self.takes,
+            gestures=gestures,
+            seed=self.seed,
+            person=self.person,
+            advance=self.advance,
+        )
+
+
+def worse(one: Forecast, other: Forecast) -> Forecast:
+    """Return the forecast with the higher rate."""
+    return max(one, other, key=lambda each: (each.rate, each.high))
+
+
+def pair_remedies(
+    language: Language,
+    pair: tuple[int, int],
+    before: Rehearsal,
+    rehearsing: Rehearsing,
+    strokes: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
+) -> tuple[Remedy, ...]:
+    """Find what keeps two gestures apart, the most effective first.
+
+    Parameters
+    ----------
+    language
+        As it is.
+    pair
+        Indices of two gestures with demonstrations.
+    before
+        The rehearsal of the whole language.
+    rehearsing
+        How it was made.
+    strokes
+        Seconds in which each of the two differs from the other one, where that is known.
+
+    """
+    two = [language.gestures[index] for index in pair]
+    performers = [before.gestures.tolist().index(index) for index in pair]
+    confused = worse(
+        before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
+    )
+    misread = sum(before.misread(performer).rate for performer in performers)
+    tried = sorted(
+        (
+            (_tried(changed, rehearsing), change, changed)
+            for change, changed in _changed(two, strokes)
+        ),
+        key=lambda trial: (trial[0].rate, trial[0].high),
+    )
+    proposed = []
+    for _, change, changed in tried[:MOST_PROPOSED]:
+        rehearsal = rehearsing(Recognizer(_with(language, pair, changed), "full"), pair)
+        after = worse(rehearsal.confusion(0, pair[1]), rehearsal.confusion(1, pair[0]))
+        elsewhere = rehearsal.misread(0).rate + rehearsal.misread(1).rate
+        if after.rate <= HELPS * confused.rate and elsewhere < misread:
+            proposed.append(Remedy(change.kind, change.label, change.text, confused, after))
+    return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
+
+
+def _changed(
+    two: list[Gesture],
+    strokes: tuple[tuple[float, float] | None, tuple[float, float] | None],
+) -> Iterator[tuple[Alteration, list[Gesture]]]:
+    """Apply every change that applies to either of the two."""
+    changes = [(0, change) for change in switch_alterations(*two)]
+    for which, stroke in enumerate(strokes):
+        changes += [(which, change) for change in alterations_of(two[which], stroke=stroke)]
+    for which, change in changes:
+        changed, other = change.apply(two[which]), two[1 - which]
+        if changed is not None:
+            other = (change.both(other) if change.both else other) or other
+            yield change, [changed, other] if which == 0 else [other, changed]
+
+
+def _tried(two: list[Gesture], rehearsing: Rehearsing) -> Forecast:
+    rehearsal = rehearsing(Recognizer(Language("two", two), "full"), takes=TRIAL_TAKES)
+    return worse(rehearsal.confusion(0, 1), rehearsal.confusion(1, 0))
+
+
+def _with(language: Language, indices: tuple[int, ...], changed: list[Gesture]) -> Language:
+    gestures = list(language.gestures)
+    for index, gesture in zip(indices, changed, strict=True):
+        gestures[index] = gesture
+    return replace(language, gestures=gestures)

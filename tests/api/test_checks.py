@@ -1,0 +1,53 @@
+"""The health report over HTTP: once a revision, and not sent twice."""
+
+import httpx
+import pytest
+
+from tests.api.running import assert_problem
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line
+
+LANGUAGES = "/api/v1/languages"
+
+
+@pytest.fixture
+def imported(client: httpx.Client) -> str:
+    document = pool(circle=circle, line=line).to_json()
+    answer = client.post(f"{LANGUAGES}/import", content=document)
+    return str(answer.json()["id"])
+
+
+def test_a_language_is_checked(client: httpx.Client, imported: str) -> None:
+    answer = client.get(f"{LANGUAGES}/{imported}/check")
+    assert answer.status_code == 200
+    report = answer.json()
+    assert report["ok"] is True
+    assert [gesture["label"] for gesture in report["gestures"]] == ["circle", "line"]
+
+
+def test_the_newest_report_is_not_sent_twice(client: httpx.Client, imported: str) -> None:
+    check = f"{LANGUAGES}/{imported}/check"
+    tag = client.get(check).headers["etag"]
+    again = client.get(check, headers={"If-None-Match": tag})
+    assert again.status_code == 304
+    assert again.content == b""
+    client.patch(f"{LANGUAGES}/{imported}", json={"name": "sea"})
+    changed = client.get(check, headers={"If-None-Match": tag})
+    assert changed.status_code == 200
+    assert changed.json()["language"] == "sea"
+
+
+def test_an_older_revision_can_be_checked(client: httpx.Client, imported: str) -> None:
+    client.patch(f"{LANGUAGES}/{imported}", json={"name": "sea"})
+    older = client.get(f"{LANGUAGES}/{imported}/check", params={"revision": 1})
+    assert older.json()["language"] == "pool"
+
+
+def test_an_empty_language_is_not_ready(client: httpx.Client, language_id: str) -> None:
+    report = client.get(f"{LANGUAGES}/{language_id}/check").json()
+    assert report["ok"] is False
+    assert report["warnings"][0]["code"] == "empty"
+
+
+def test_a_language_that_is_not_there_is_404(client: httpx.Client) -> None:
+    assert_problem(client.get(f"{LANGUAGES}/none/check"), 404, "not_found")

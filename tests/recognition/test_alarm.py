@@ -1,0 +1,30 @@
+"""Alarms: a language that asks for a reach is set off by reaching, one of figures is not."""
+
+from app.recognition import Language, Recognizer
+from app.recognition.accidental import MANNERS, accidental_movements
+from app.recognition.alarm import alarms
+from app.recognition.gesture import Gesture
+from app.recognition.poses import PoseSequence
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, infinity
+
+
+def test_figures_drawn_in_the_air_are_not_set_off_by_anything() -> None:
+    read = alarms(Recognizer(pool(circle=circle, infinity=infinity), "full"), 1)
+    assert len(read) == len(MANNERS)
+    assert sum(alarm.taken for alarm in read) <= 1
+
+
+def test_a_gesture_like_an_accidental_movement_is_set_off_by_it() -> None:
+    (waving,) = [
+        each.trajectory for each in accidental_movements(1, seed=9) if each.kind == "waving"
+    ]
+    poses = PoseSequence(
+        landmarks=waving.landmarks,
+        xy=waving.xy * 100 + 300,
+        time=waving.time,
+        frame_size=(640, 480),
+    )
+    language = Language("greeting", [Gesture.from_demonstration("hello", poses)])
+    read = alarms(Recognizer(language, "full"), 1, seed=9)
+    assert [alarm.taken for alarm in read if alarm.kind == "waving"] == [True]

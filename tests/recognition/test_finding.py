@@ -1,0 +1,80 @@
+"""Findings: each fault of a demonstration is seen, and a good one is left alone."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.recognition.accidental import accidental_movements
+from app.recognition.finding import demonstration_findings, longest_held_up, visible_share
+from app.recognition.gesture import Gesture
+from app.recognition.poses import FloatArray
+from tests.recognition.demonstrations import shown
+from tests.recognition.strategies import circle, line
+
+GOOD = shown("circle", circle, frames=60)
+
+
+def tiny(share: FloatArray) -> FloatArray:
+    return np.asarray(0.35 * circle(share))
+
+
+def half_hidden() -> Gesture:
+    assert GOOD.trajectory is not None
+    xy = GOOD.trajectory.xy.copy()
+    xy[: len(xy) // 2, GOOD.trajectory.landmarks.index("right_wrist")] = np.nan
+    return replace(GOOD, trajectory=replace(GOOD.trajectory, xy=xy))
+
+
+def imported() -> Gesture:
+    return Gesture(label="circle", salient=("right_wrist",), image=GOOD.image)
+
+
+def codes(gesture: Gesture) -> list[str]:
+    return [finding.code for finding in demonstration_findings(gesture)]
+
+
+def test_a_good_demonstration_has_no_findings() -> None:
+    assert codes(GOOD) == []
+
+
+@pytest.mark.parametrize(
+    ("code", "make"),
+    [
+        ("too_short", lambda: shown("circle", circle, frames=10)),
+        ("too_long", lambda: shown("circle", circle, frames=400)),
+        ("too_small", lambda: shown("circle", tiny)),
+        ("poorly_seen", half_hidden),
+        ("no_demonstration", imported),
+    ],
+)
+def test_a_fault_is_found_and_told_about_that_gesture(
+    code: str, make: Callable[[], Gesture]
+) -> None:
+    (finding,) = demonstration_findings(make())
+    assert finding.code == code
+    assert finding.gestures == ("circle",)
+    assert "circle" in finding.message
+    assert not finding.below_bar
+
+
+def test_a_hand_held_up_may_be_taken_for_a_salute() -> None:
+    (pointing,) = [
+        each.trajectory
+        for each in accidental_movements(1, seed=3)
+        if each.kind == "venting the vest"
+    ]
+    assert longest_held_up(pointing) > 0.3
+    assert longest_held_up(GOOD.trajectory or pointing) == 0
+
+
+def test_half_hidden_is_half_seen() -> None:
+    hidden = half_hidden().trajectory
+    assert hidden is not None
+    assert visible_share(hidden, "right_wrist") == pytest.approx(0.5, abs=0.02)
+    assert visible_share(hidden, "left_wrist") == 1
+
+
+def test_a_line_that_is_quick_but_possible_is_no_fault() -> None:
+    assert codes(shown("line", line, frames=20)) == []

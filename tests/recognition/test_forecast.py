@@ -1,0 +1,58 @@
+"""Forecasts: calibrated where real takes scatter as foreseen, and wider with fewer rehearsals."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.recognition.forecast import Forecast
+
+MARGINS = st.lists(st.floats(-5, 5), min_size=2, max_size=40).map(np.array)
+SPREADS = st.floats(0.1, 2)
+
+
+@given(MARGINS, SPREADS)
+def test_a_rate_lies_in_its_interval_and_that_in_zero_to_one(
+    margins: np.ndarray, unforeseen: float
+) -> None:
+    forecast = Forecast.of_margins(margins, unforeseen)
+    assert 0 <= forecast.low <= forecast.rate <= forecast.high <= 1
+
+
+@given(st.integers(1, 60).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
+def test_a_count_lies_in_its_interval(counted: tuple[int, int]) -> None:
+    forecast = Forecast.of_count(*counted)
+    assert 0 <= forecast.low <= forecast.rate <= forecast.high <= 1
+
+
+@given(MARGINS, SPREADS, st.floats(0.01, 3))
+def test_greater_margins_are_never_more_often_below_zero(
+    margins: np.ndarray, unforeseen: float, more: float
+) -> None:
+    narrow = Forecast.of_margins(margins, unforeseen)
+    assert Forecast.of_margins(margins + more, unforeseen).rate <= narrow.rate + 1e-12
+
+
+def test_no_margin_at_all_is_a_guess() -> None:
+    assert Forecast.of_margins(np.zeros(8), 0.5).rate == 0.5
+
+
+@pytest.mark.parametrize("mean", [0.0, 0.5, 1.0])
+def test_real_takes_that_scatter_as_foreseen_are_forecast_right(mean: float) -> None:
+    generator = np.random.default_rng(1)
+    rehearsed = generator.normal(mean, 1, (400, 16))
+    true = float((rehearsed + generator.logistic(0, 0.3, rehearsed.shape) < 0).mean())
+    forecasts = [Forecast.of_margins(margins, 0.3) for margins in rehearsed]
+    assert np.mean([each.rate for each in forecasts]) == pytest.approx(true, abs=0.01)
+    assert np.mean([each.low <= true <= each.high for each in forecasts]) > 0.85
+
+
+def test_more_rehearsals_make_the_interval_narrower() -> None:
+    margins = np.random.default_rng(2).normal(1, 1, 200)
+    few, many = Forecast.of_margins(margins[:10], 0.5), Forecast.of_margins(margins, 0.5)
+    assert many.high - many.low < few.high - few.low
+
+
+def test_what_is_unforeseen_makes_rare_things_likelier() -> None:
+    margins = np.random.default_rng(3).normal(2, 0.5, 20)
+    assert Forecast.of_margins(margins, 0.6).rate > Forecast.of_margins(margins, 0.3).rate

@@ -1,0 +1,51 @@
+"""Rehearsals: what is far apart is never confused, what is the same always may be."""
+
+import numpy as np
+import pytest
+
+from app.recognition import Language, Recognizer
+from app.recognition.rehearsal import rehearse
+from tests.recognition.demonstrations import pool, shown
+from tests.recognition.strategies import circle, line, wedge
+
+
+def test_a_line_is_not_taken_for_a_circle() -> None:
+    rehearsal = rehearse(Recognizer(pool(circle=circle, line=line), "full"), 8, person="same")
+    assert rehearsal.scores.shape == (2, 8, 2)
+    assert rehearsal.read.tolist() == [[0] * 8, [1] * 8]
+    assert rehearsal.confusion(0, 1).rate < 0.05
+    assert rehearsal.misread(1).rate < 0.05
+
+
+def test_the_same_demonstration_twice_is_a_guess() -> None:
+    language = pool(circle=circle, ring=circle)
+    rehearsal = rehearse(Recognizer(language, "full"), 4)
+    assert rehearsal.confusion(0, 1).rate == pytest.approx(0.5)
+    assert rehearsal.confusion(1, 0).rate == pytest.approx(0.5)
+
+
+def test_only_the_gestures_asked_for_are_performed() -> None:
+    recognizer = Recognizer(pool(circle=circle, line=line, wedge=wedge), "full")
+    whole = rehearse(recognizer, 3)
+    some = rehearse(recognizer, 3, gestures=[2])
+    assert some.gestures.tolist() == [2]
+    np.testing.assert_array_equal(some.scores[0], whole.scores[2])
+
+
+def test_a_language_of_one_gesture_is_never_misread() -> None:
+    rehearsal = rehearse(Recognizer(Language("one", [shown("circle", circle)]), "full"), 3)
+    assert rehearsal.misread(0).rate < 1e-5
+
+
+def test_every_take_is_announced_and_an_exception_ends_it() -> None:
+    recognizer = Recognizer(pool(circle=circle, line=line), "full")
+    announced = []
+
+    def advance() -> None:
+        announced.append(1)
+        if len(announced) == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rehearse(recognizer, 4, advance=advance)
+    assert len(announced) == 3

@@ -1,0 +1,67 @@
+"""`osg-studio check`: the verdict in words and in the exit code."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.health_text import health_text
+from app.recognition.health import check_health
+from tests.command_line import OsgStudio
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line
+
+
+@pytest.fixture
+def healthy(tmp_path: Path) -> Path:
+    file = tmp_path / "healthy.json"
+    pool(circle=circle, line=line).save(file)
+    return file
+
+
+@pytest.fixture
+def confused(tmp_path: Path) -> Path:
+    file = tmp_path / "confused.json"
+    pool(circle=circle, ring=circle).save(file)
+    return file
+
+
+def test_a_ready_language_ends_with_zero(osg_studio: OsgStudio, healthy: Path) -> None:
+    ended = osg_studio("check", healthy, "--person", "same")
+    assert ended.code == 0
+    assert ended.out.splitlines()[0] == "pool, revision 1: ready"
+
+
+@pytest.mark.slow
+def test_a_language_below_the_bar_ends_with_one_and_says_what_to_do(
+    osg_studio: OsgStudio, confused: Path
+) -> None:
+    ended = osg_studio("check", confused)
+    assert ended.code == 1
+    assert "NOT READY" in ended.out
+    assert "circle and ring are the same movement" in ended.out
+    assert "becomes" in ended.out
+
+
+def test_json_is_one_object_with_the_verdict(osg_studio: OsgStudio, healthy: Path) -> None:
+    ended = osg_studio("check", healthy, "--json", "--person", "same")
+    report = json.loads(ended.out)
+    assert report["ok"] is True
+    assert report["person"] == "same"
+
+
+def test_a_file_that_is_no_language_is_bad_input(osg_studio: OsgStudio, tmp_path: Path) -> None:
+    file = tmp_path / "other.json"
+    file.write_text("{}")
+    ended = osg_studio("check", file)
+    assert ended.code == 2
+    assert len(ended.error.splitlines()) == 1
+
+
+def test_columns_are_aligned_and_fit_a_terminal() -> None:
+    text = health_text(check_health(pool(circle=circle, line=line), takes=3))
+    lines = text.splitlines()
+    head = next(index for index, row in enumerate(lines) if row.startswith("gesture"))
+    starts = {row.index("right_wrist") for row in lines[head + 1 : head + 3]}
+    assert starts == {lines[head].index("depends on")}
+    assert max(map(len, lines[: head + 3])) <= 100
