@@ -20,6 +20,7 @@ from app.recognition.motion_references import (
 )
 from app.recognition.poses import FloatArray
 from app.recognition.recognition_result import Recognition
+from app.recognition.rejection import is_rejected, novelty, thresholds_of
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import AS_THE_PROFILE, Tuning
@@ -78,7 +79,9 @@ class CalibratedVote:
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
         # Last, for what a language needs does not change with what its author makes of it.
-        self._say: FloatArray = self._say * tuning.weights_of(VOTERS)
+        self._weights = tuning.weights_of(VOTERS)
+        self._say: FloatArray = self._say * self._weights
+        self._thresholds = thresholds_of(sides, VOTERS)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Ask the language for each voter's say, and which directions and tempos it needs."""
@@ -150,6 +153,7 @@ class CalibratedVote:
             turned=turned[chosen],
             readings=tuple(readings[side] for side in chosen),
             mirrored=chosen >= len(self._labels),
+            novelty=(factors * novelty(distances, self._thresholds, self._weights))[chosen],
         )
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
@@ -158,7 +162,10 @@ class CalibratedVote:
         return self.decided(compared) if np.isfinite(compared.scores).any() else None
 
     def decided(self, compared: Comparison) -> Recognition:
-        """Decide for the gesture with the smallest score; one of them must be finite."""
+        """Decide for the gesture with the smallest score, or for none where that is too novel.
+
+        One of the scores must be finite.
+        """
         distances, scores = compared.distances, compared.scores
         winner = int(scores.argmin())
         votes = {
@@ -166,9 +173,10 @@ class CalibratedVote:
             for voter, row in zip(VOTERS, distances, strict=True)
             if np.isfinite(row).any()
         }
+        nearest = self._labels[winner]
         return Recognition(
-            label=self._labels[winner],
-            nearest=self._labels[winner],
+            label=None if is_rejected(float(compared.novelty[winner])) else nearest,
+            nearest=nearest,
             confidence=calibrated_confidence(
                 float(scores[winner]), float(np.delete(scores, winner).min(initial=np.inf))
             ),
@@ -178,6 +186,8 @@ class CalibratedVote:
             distances=distances,
             votes={voter: self._labels[index] for voter, index in votes.items()},
             weights=self.weights,
+            scores=scores,
+            novelty=compared.novelty,
         )
 
     def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, npt.NDArray[np.intp]]:

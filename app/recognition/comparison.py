@@ -31,6 +31,9 @@ class Comparison:
         The order in which each gesture's steps fit best; None where only its image is compared.
     mirrored
         ``(G,)``: whether it is the gesture's mirror image that fits best.
+    novelty
+        ``(G,)``: how much farther than its thresholds allow the query lies from each gesture, above
+        1: rejected (`rejection`); NaN for a gesture without thresholds, all of profile ``paper``.
 
     """
 
@@ -40,6 +43,7 @@ class Comparison:
     turned: FloatArray
     readings: tuple[Reading | None, ...]
     mirrored: npt.NDArray[np.bool_]
+    novelty: FloatArray
 
     @property
     def scores(self) -> FloatArray:

@@ -105,8 +105,8 @@ class Gesture:
     descriptors
         Per voter's name its description of the image; empty when the image is.
     thresholds
-        Per voter's name the distance beyond which the gesture is rejected; profile ``paper``
-        has none.
+        Per voter's name the distance at which the gesture is rejected, the others being as far
+        beyond theirs (`rejection`); empty until its language is calibrated.
     description
         What the gesture looks like or means, for people.
     command

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
+from app.recognition.calibration import calibrated
 from app.recognition.errors import LanguageError
 from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
@@ -51,6 +53,8 @@ class Language:
         Counts the edits, from 1.
     skeleton
         Pairs of landmarks joined by a bone, for drawing.
+    thresholds_for
+        The `fingerprint` of the gestures that the thresholds were made for; empty: for none.
 
     Raises
     ------
@@ -65,6 +69,7 @@ class Language:
     created: datetime | None = None
     revision: int = 1
     skeleton: tuple[tuple[str, str], ...] = SKELETON
+    thresholds_for: str = ""
 
     def __post_init__(self) -> None:
         """Validate, and bring the fields to their kept form."""
@@ -108,6 +113,30 @@ class Language:
                 return gesture
         raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {self.labels}")
 
+    @property
+    def fingerprint(self) -> str:
+        """What the thresholds depend on, in eight hexadecimal digits (CRC-32)."""
+        checksum = 0
+        for gesture in self.gestures:
+            said = (gesture.salient, gesture.switches, gesture.image.any())
+            checksum = crc32(repr(said).encode("utf-8", "surrogatepass"), checksum)
+            if gesture.trajectory is not None:
+                shown = gesture.trajectory
+                checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
+                checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+        return f"{checksum:08x}"
+
+    def calibrated(self) -> Language:
+        """Return the same revision with thresholds for exactly these gestures.
+
+        That is the language itself where it has them. It takes about as long as a dozen
+        recognitions.
+        """
+        fingerprint = self.fingerprint
+        if not self.gestures or self.thresholds_for == fingerprint:
+            return self
+        return replace(self, gestures=calibrated(self.gestures), thresholds_for=fingerprint)
+
     def with_gesture(self, gesture: Gesture) -> Language:
         """Return the next revision, with one more gesture at the end.
 
@@ -144,6 +173,7 @@ class Language:
             revision=self.revision,
             skeleton=[list(bone) for bone in self.skeleton],
             settings=dict(SETTINGS),
+            thresholds_for=self.thresholds_for,
             gestures=[entry_of(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -172,6 +202,7 @@ class Language:
             created=_moment(document.created),
             revision=document.revision,
             skeleton=tuple((start, end) for start, end in document.skeleton),
+            thresholds_for=document.thresholds_for,
         )
 
     def save(self, path: str | Path) -> None:

@@ -104,7 +104,10 @@ class GestureEntry(_Model):
     ]
     thresholds: Annotated[
         dict[str, FiniteFloat],
-        Field(description="Per voter the distance beyond which the gesture is rejected."),
+        Field(
+            description="Per voter the distance at which the gesture is rejected, the others being "
+            "as far beyond theirs; empty until calibrated."
+        ),
     ]
     direction: Annotated[
         Switch,
@@ -152,6 +155,14 @@ class LanguageDocument(_Model):
         dict[str, int | FiniteFloat],
         Field(description="What images and descriptors were made with."),
     ]
+    thresholds_for: Annotated[
+        str,
+        Field(
+            pattern="^([0-9a-f]{8})?$",
+            description="Fingerprint of the gestures that the thresholds were made for; where it "
+            "is not theirs, recognition makes them anew. Left out when there are none.",
+        ),
+    ] = ""
     gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
     sha256: Annotated[
         str | None,

@@ -48,6 +48,14 @@ class Recognition:
         What was repaired in the recording before it was compared, in sentences with counts.
     fault
         What makes the recording too poor to judge, in words; `label` is then None.
+    scores
+        ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
+        distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
+        the mean relative distance. Empty where an earlier version did not tell.
+    novelty
+        ``(G,)``: how much farther than its thresholds allow the query lies from each gesture; when
+        that of `nearest` is above 1, `label` is None (`rejection`). NaN for a gesture without
+        thresholds, all of profile ``paper``.
 
     """
 
@@ -62,15 +70,18 @@ class Recognition:
     weights: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     findings: tuple[str, ...] = ()
     fault: str | None = None
+    scores: FloatArray = field(default_factory=lambda: np.empty(0))
+    novelty: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
-        """Freeze a private copy of the distances; voters without told weights weigh the same."""
+        """Freeze private copies of the arrays; voters without told weights weigh the same."""
         if not self.weights:
             equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
             object.__setattr__(self, "weights", MappingProxyType(equal))
-        distances = self.distances.copy()
-        distances.setflags(write=False)
-        object.__setattr__(self, "distances", distances)
+        for name in ("distances", "scores", "novelty"):
+            values = getattr(self, name).copy()
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
 
     @property
     def counted(self) -> dict[str, str]:
@@ -95,10 +106,12 @@ class Recognition:
             weights=content.get("weights", {}),
             findings=tuple(content.get("findings", ())),
             fault=content.get("fault"),
+            scores=np.array(content.get("scores", []), dtype=np.float64),
+            novelty=np.array(content.get("novelty", []), dtype=np.float64),
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; a distance that is infinite becomes None."""
+        """Return plain JSON types; what is infinite or NaN becomes None."""
         return {
             "profile": self.profile,
             "label": self.label,
@@ -110,8 +123,11 @@ class Recognition:
             "fault": self.fault,
             "voters": list(self.voters),
             "gestures": list(self.gestures),
-            "distances": [
-                [distance if math.isfinite(distance) else None for distance in row]
-                for row in self.distances.tolist()
-            ],
+            "distances": [_finite(row) for row in self.distances.tolist()],
+            "scores": _finite(self.scores.tolist()),
+            "novelty": _finite(self.novelty.tolist()),
         }
+
+
+def _finite(values: list[float]) -> list[float | None]:
+    return [value if math.isfinite(value) else None for value in values]

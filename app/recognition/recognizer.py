@@ -37,7 +37,8 @@ class Recognizer:
     Parameters
     ----------
     language
-        At least one gesture.
+        At least one gesture. Profile ``full`` takes its thresholds from it, or makes them where
+        they are missing or were made for other gestures; `language` then has them.
     profile
         One of `PROFILES`.
     tuning
@@ -61,12 +62,13 @@ class Recognizer:
             )
         if not language.gestures:
             raise LanguageError(f"language {language.name!r} has no gestures yet: add one", "")
-        self.language = language
+        self.language = language.calibrated() if profile == "full" else language
         self.profile = profile
         self.tuning = tuning
         self._weights = tuning.weights_of([voter.name for voter in PROFILES[profile]])
-        self._shapes = ShapeReferences(language.gestures, tuning.simplification)
-        self._calibrated = CalibratedVote(language.gestures, tuning) if profile == "full" else None
+        gestures = self.language.gestures
+        self._shapes = ShapeReferences(gestures, tuning.simplification)
+        self._calibrated = CalibratedVote(gestures, tuning) if profile == "full" else None
         wanted = tuning.keypoints_repaired
         self.repairs = profile == "full" if wanted is None else wanted
 
@@ -76,7 +78,8 @@ class Recognizer:
         Profile ``paper``: each voter votes for its nearest gesture. The gesture with most votes
         wins; among equals the one with the smallest mean relative distance (a voter's distance
         over its mean distance to all gestures), among those the first in the language.
-        Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`.
+        Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`, and is
+        rejected where it is beyond its thresholds, see `rejection`.
 
         Where bad keypoints are repaired, the answer tells what was; a recording that is then still
         too poor to judge gets no label but the `fault`.
@@ -169,6 +172,7 @@ class Recognizer:
             turned=np.zeros(count),
             readings=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
+            novelty=np.full(count, np.nan),
         )
 
     def _counted(self, distances: FloatArray) -> Recognition:
@@ -196,6 +200,8 @@ class Recognizer:
             distances=distances,
             votes={voter: gestures[index] for voter, index in votes.items()},
             weights=weights,
+            scores=relative,
+            novelty=np.full(len(gestures), np.nan),
         )
 
 

@@ -38,9 +38,10 @@ FRONTAL = 0.25
 """Torso lengths between the shoulders, from which their width tells the sides apart; of a diver
 seen from the side it means nothing."""
 
-BLENDED = 0.85
+BLENDED = 0.9
 """Share of the median width of the shoulders below which a frame of a mistaken recording is between
-the two: a pose model's own smoothing blends the sides there, and hands lie before the trunk."""
+the two: a pose model's own smoothing blends the sides there, and hands lie before the trunk. From
+0.88 to 0.94 one frame or two decide; below, the last of them draws a stroke that was never made."""
 
 Mask = npt.NDArray[np.bool_]
 

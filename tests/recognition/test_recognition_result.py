@@ -19,6 +19,8 @@ def result(label: str | None = "circle") -> Recognition:
         gestures=("circle", "line"),
         distances=np.array([[0.5, 2.0], [0.1, np.inf]]),
         votes={"hu": "circle", "zernike": "circle"},
+        scores=np.array([0.4, np.inf]),
+        novelty=np.array([0.2, np.nan]),
     )
 
 
@@ -36,6 +38,8 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
         "voters": ["hu", "zernike"],
         "gestures": ["circle", "line"],
         "distances": [[0.5, 2.0], [0.1, None]],
+        "scores": [0.4, None],
+        "novelty": [0.2, None],
     }
 
 
