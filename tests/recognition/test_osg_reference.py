@@ -53,8 +53,8 @@ def test_an_imported_language_decides_as_the_exported_one(language: Language) ->
     imported = from_reference(to_reference(language), "theirs")
     query = recording(wedge, torso=70, frames=45, jitter=0.02)
     np.testing.assert_array_equal(
-        Recognizer(imported).recognize(query).distances,
-        Recognizer(language).recognize(query).distances,
+        Recognizer(imported, "paper").recognize(query).distances,
+        Recognizer(language, "paper").recognize(query).distances,
     )
 
 
