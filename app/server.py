@@ -28,11 +28,13 @@ from app.api import (
     jobs,
     language_files,
     languages,
+    playback,
     problems,
     recognitions,
     revisions,
     sample_clips,
     sample_languages,
+    timelines,
     viser_relay,
     workspaces,
 )
@@ -92,6 +94,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for router in (
         health.router,
         clips.router,
+        timelines.router,
         jobs.router,
         languages.router,
         language_files.router,
@@ -108,6 +111,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
         responses=problems.documented(404),
     )
+    api.include_router(playback.router(registry))
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
     app.include_router(viser_relay.router(registry.port_of))

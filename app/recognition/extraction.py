@@ -21,9 +21,9 @@ Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
 Raising an exception in it cancels the work."""
 
-Observer = Callable[[float, FrameLandmarks], None]
-"""``observer(time, found)``: seconds after the clip's first frame, and what the models found in the
-frame of that time. Raising an exception in it cancels the work."""
+Observer = Callable[[VideoFrame, FrameLandmarks], None]
+"""``observer(frame, found)``: a frame of the clip, and what the models found in it. Raising an
+exception in it cancels the work."""
 
 
 def record(
@@ -150,7 +150,7 @@ def _record(
         found = estimator.estimate(frame.image, frame.time)
         collector.add(frame.time, found)
         if observer is not None:
-            observer(frame.time, found)
+            observer(frame, found)
         done = frame.index + 1
         if progress is not None:
             progress(done, _expected_frames(reader.info, frame))

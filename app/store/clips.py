@@ -16,7 +16,12 @@ from app.store.errors import NotFound
 from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.models import Clip, Job, new_id, now
 
-VIDEO, RECORDING, POSTER = _KEPT = ("video", "recording.npz", "poster.jpg")
+VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
+    "video",
+    "recording.npz",
+    "poster.jpg",
+    "filmstrip.jpg",
+)
 """The files of a clip."""
 
 
@@ -36,7 +41,7 @@ class ClipStore:
     database
         Where the rows are.
     folder
-        Where the files are: ``<folder>/<clip id>/video``, ``recording.npz`` and ``poster.jpg``,
+        Where the files are: ``<folder>/<clip id>/video``, ``recording.npz`` and pictures,
         and uploads under way as ``<folder>/<id>.part``.
 
     """
@@ -176,6 +181,10 @@ class ClipStore:
     def poster(self, clip_id: str) -> Path:
         """Return where the clip's still picture is, once its job is done."""
         return self._home(clip_id) / POSTER
+
+    def filmstrip(self, clip_id: str) -> Path:
+        """Return where the thumbnails along the clip are, once its job is done."""
+        return self._home(clip_id) / FILMSTRIP
 
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from app.recognition import Recognition
 from app.recognition.poses import FloatArray
 
-MAX_ROWS = 60
+MAX_COLUMNS = 40
 """Gestures shown in the vote table; the farthest of a larger language say nothing about why."""
 
 MAX_CHART_POINTS = 400
@@ -73,9 +73,9 @@ def vote_sentence(votes: Mapping[str, str | None]) -> str:
 def vote_table(recognition: Recognition, expected: str | None) -> str:
     """Tabulate every voter's distance to every gesture; each voter's choice is marked.
 
-    One row per gesture, most votes first, one column per voter, the weightiest first; voters that
-    have no say in this language come last, faintly. Each voter has its own unit, so shades
-    compare within a column only: the stronger, the nearer. The choice carries a dot and a
+    One row per voter, the weightiest first, with its share in the decision; those that have none
+    come last, faintly. One column per gesture, most votes first. Each voter has its own unit, so
+    shades compare within a row only: the stronger, the nearer. The choice carries a dot and a
     frame, the expected and the chosen gesture carry their name as a tag: nothing is told by
     colour alone.
     """
@@ -84,76 +84,73 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
         if label in counts:
             counts[label] += 1
     nearness = _nearness(recognition.distances)
-    order = sorted(
+    weights = np.array([recognition.weights[voter] for voter in recognition.voters])
+    near = weights @ nearness if len(nearness) else np.zeros(len(recognition.gestures))
+    columns = sorted(
         range(len(recognition.gestures)),
-        key=lambda row: (
-            -counts[recognition.gestures[row]],
-            -float(nearness[:, row].mean()) if len(nearness) else 0.0,
-        ),
+        key=lambda column: (-counts[recognition.gestures[column]], -float(near[column])),
     )
-    columns = np.argsort(
-        [-recognition.weights[voter] for voter in recognition.voters], kind="stable"
-    )
-    head = "".join(_voter_head(recognition, recognition.voters[column]) for column in columns)
+    hidden = len(columns) - MAX_COLUMNS
+    columns = columns[:MAX_COLUMNS]
+    heads = "".join(_gesture_head(recognition, column, expected) for column in columns)
     rows = "".join(
-        _vote_row(recognition, row, expected, nearness[:, row], counts, columns)
-        for row in order[:MAX_ROWS]
+        _vote_row(recognition, int(row), columns, nearness[row])
+        for row in np.argsort(-weights, kind="stable")
     )
-    hidden = len(order) - MAX_ROWS
+    totals = "".join(
+        f"<td class='votes'>{counts[recognition.gestures[column]]}</td>" for column in columns
+    )
     rest = f"<p class='dim'>{hidden} farther gestures are not shown.</p>" if hidden > 0 else ""
     return _block(
         "<h3>Distance to every gesture, as each voter measures it</h3><div class='scroll'>"
-        f"<table aria-label='Votes'><thead><tr><th></th>{head}"
-        f"<th scope='col'><span>votes</span></th></tr></thead><tbody>{rows}</tbody></table></div>"
+        f"<table aria-label='Votes'><thead><tr><th scope='col'>voter</th>"
+        f"<th scope='col'>share</th>{heads}</tr></thead><tbody>{rows}</tbody>"
+        f"<tfoot><tr><th scope='row' colspan='2'>votes</th>{totals}</tr></tfoot></table></div>"
         "<p class='dim'>\N{BLACK CIRCLE} a voter\N{RIGHT SINGLE QUOTATION MARK}s choice. "
-        "The stronger the shade, the nearer, within a column. Under each voter its share in the "
-        "decision; the faint ones cannot tell these gestures apart and have none.</p>" + rest
+        "The stronger the shade, the nearer, within a row. Voters without a share cannot tell "
+        "these gestures apart.</p>" + rest
     )
 
 
-def _voter_head(recognition: Recognition, voter: str) -> str:
-    weight = recognition.weights[voter]
-    mute = "" if weight > 0 else " class='mute'"
-    share = f"{weight:.0%}" if weight >= 0.005 or weight == 0 else "<1%"
-    return (
-        f"<th scope='col'{mute}><span>{escape(readable(voter))}</span>"
-        f"<small>{escape(share)}</small></th>"
-    )
-
-
-def _vote_row(
-    recognition: Recognition,
-    row: int,
-    expected: str | None,
-    nearness: FloatArray,
-    counts: Mapping[str, int],
-    columns: npt.NDArray[np.intp],
-) -> str:
-    gesture = recognition.gestures[row]
+def _gesture_head(recognition: Recognition, column: int, expected: str | None) -> str:
+    gesture = recognition.gestures[column]
+    kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
     tags = ""
     if gesture == recognition.label:
         tags += "<span class='tag chosen'>chosen</span>"
     if gesture == expected:
         tags += "<span class='tag expected'>expected</span>"
+    return (
+        f"<th scope='col' class='gesture {kind}' title='{escape(gesture)}'>"
+        f"<span>{escape(gesture)}{tags}</span></th>"
+    )
+
+
+def _vote_row(
+    recognition: Recognition, row: int, columns: Sequence[int], nearness: FloatArray
+) -> str:
+    voter = recognition.voters[row]
+    weight = recognition.weights[voter]
+    share = f"{weight:.0%}" if weight >= 0.005 or weight == 0 else "<1%"
+    choice = recognition.votes.get(voter)
     cells = "".join(
         _vote_cell(
-            float(recognition.distances[column, row]),
+            float(recognition.distances[row, column]),
             float(nearness[column]),
-            recognition.votes.get(recognition.voters[column]) == gesture,
-            recognition.weights[recognition.voters[column]] > 0,
+            recognition.gestures[column] == choice,
         )
         for column in columns
     )
-    kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
+    mute = "" if weight > 0 else " class='mute'"
     return (
-        f"<tr class='{kind}'><th scope='row' title='{escape(gesture)}'>{escape(gesture)}{tags}</th>"
-        f"{cells}<td class='votes'>{counts[gesture]}</td></tr>"
+        f"<tr{mute}><th scope='row'>{escape(readable(voter))}</th>"
+        f"<td class='share'>{escape(share)}</td>{cells}</tr>"
     )
 
 
-def _vote_cell(distance: float, nearness: float, chosen: bool, counts: bool) -> str:
+def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
     shade = f"background:rgba(var(--osg-chosen-rgb),{0.04 + 0.42 * nearness**2:.2f})"
-    kind = " class='mute'" if not counts else " class='choice'" if chosen else ""
+    kind = " class='choice'" if chosen else ""
     return f"<td{kind} style='{shade}'>{short_number(distance)}</td>"
 
 
@@ -263,15 +260,6 @@ def line_chart(
 def cursor(share: float) -> str:
     """Move the cursor of every chart to `share` (0 .. 1) of its time axis."""
     return f"<style>:root {{ --osg-now: {100 * min(max(share, 0.0), 1.0):.2f}% }}</style>"
-
-
-def clock(frame: int, frames: int, seconds: float) -> str:
-    """Show the moment on display: its time and its frame, counted from 0."""
-    return (
-        "<div class='osg'><div class='clock num'>"
-        f"<span><b>{seconds:.2f} s</b></span><span class='dim'>frame {frame} of {frames}</span>"
-        "</div></div>"
-    )
 
 
 def readable(name: str) -> str:

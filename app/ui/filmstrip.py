@@ -19,8 +19,8 @@ Image = npt.NDArray[np.uint8]
 MAX_WIDTH = 480
 """Pixels. Shown about 600 wide and at an angle; every step up costs playback its frame rate."""
 
-MAX_FRAMES = 360
-"""Frames kept: twelve seconds at 30 a second, 9 MB as JPEG; of longer ranges every n-th."""
+MAX_FRAMES = 1800
+"""Frames kept: a minute at 30 a second, 45 MB as JPEG; of longer ranges every n-th."""
 
 JPEG_QUALITY = 82
 """Below 80 rings show around a bright diver on dark water; above 85 only the size grows."""

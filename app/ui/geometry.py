@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.landmarks import LANDMARK_GROUPS, SKELETON
-from app.recognition.poses import PoseSequence
+from app.recognition.poses import FloatArray, PoseSequence
 
 Points = npt.NDArray[np.float32]
 
@@ -67,7 +67,7 @@ class CubeGeometry:
         seconds = float(elapsed[-1])
         total = float(np.clip(seconds * DEPTH_PER_SECOND, *DEPTH_LIMITS))
         depth = (elapsed / seconds * total if seconds else elapsed).astype(np.float32)
-        flat = (poses.xy - np.array([width, height]) / 2) / height
+        flat = _flat(poses.xy, poses.frame_size)
         z = np.broadcast_to(depth[:, None, None], (*flat.shape[:2], 1))
         points = np.concatenate([flat, z], axis=2).astype(np.float32)
         return cls(poses.landmarks, points, depth, width / height, seconds)
@@ -81,18 +81,22 @@ class CubeGeometry:
         """Return the z of a moment, `seconds` after the first."""
         return self.back * seconds / self.seconds if self.seconds else 0.0
 
-    def bones(self, frame: int) -> Points:
-        """Return ``(N, 2, 3)`` the bones of which both ends are in view."""
+    def placed(self, poses: PoseSequence, frame: int, depth: float) -> Points:
+        """Return ``(K, 3)`` one frame of the clip at a depth of the cube's choice."""
+        flat = _flat(poses.xy[frame], poses.frame_size)
+        return np.column_stack([flat, np.full(len(flat), depth)]).astype(np.float32)
+
+    def bones(self, points: Points) -> Points:
+        """Return ``(N, 2, 3)`` the bones between ``(K, 3)`` points, where both ends are in view."""
         index = {name: column for column, name in enumerate(self.landmarks)}
         pairs = [(index[a], index[b]) for a, b in SKELETON if a in index and b in index]
-        points = self._in_view(self.points[frame])
-        return _without_gaps(points[np.array(pairs, dtype=int).reshape(-1, 2)])
+        return _without_gaps(self._in_view(points)[np.array(pairs, dtype=int).reshape(-1, 2)])
 
-    def joints(self, frame: int) -> Points:
-        """Return ``(N, 3)`` the landmarks in view, but those of face and fingers."""
+    def joints(self, points: Points) -> Points:
+        """Return ``(N, 3)`` those of ``(K, 3)`` points in view, but face and fingers."""
         shown = [column for column, name in enumerate(self.landmarks) if name not in UNMARKED]
-        points = self._in_view(self.points[frame, shown])
-        return points[np.isfinite(points).all(axis=1)]
+        visible = self._in_view(points[shown])
+        return visible[np.isfinite(visible).all(axis=1)]
 
     def trail_frames(self, stop: int | None = None) -> npt.NDArray[np.intp]:
         """Return the frames at which a trail up to frame `stop` has its corners."""
@@ -137,6 +141,12 @@ class CubeGeometry:
         steps = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0)
         step = next((step for step in steps if self.seconds / step <= 8), 600.0)
         return [float(value) for value in np.arange(0.0, self.seconds + 1e-6, step)]
+
+
+def _flat(xy: FloatArray, frame_size: tuple[int, int]) -> FloatArray:
+    """Turn pixels to heights of the video about its centre."""
+    width, height = frame_size
+    return np.asarray((xy - np.array([width, height]) / 2) / height)
 
 
 def seen(segments: Points) -> npt.NDArray[np.bool_]:

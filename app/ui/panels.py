@@ -1,10 +1,6 @@
-"""viser's panels: the playback bar and the inspector. Callbacks call the workspace, no more."""
+"""viser's panels: the inspector, and the time cursor in its charts."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,74 +12,22 @@ from app.recognition.trajectory import Trajectory
 from app.ui import charts
 from app.ui.style import PANEL_STYLE
 
-SPEEDS: Final = ("0.25x", "0.5x", "1x", "2x")
 
-HIDDEN_BAR: Final = '<style>[data-testid="floating-panel"] { display: none !important }</style>'
-"""In the place of the charts' cursor while there is nothing to play."""
+class TimeCursor:
+    """The line in every chart that says which moment is on display.
 
+    Playing and seeking are the page's: it has one bar and one set of keys for them.
+    """
 
-@dataclass(frozen=True)
-class PlaybackControls:
-    """What the playback bar asks of its workspace."""
-
-    seek: Callable[[int], None]
-    toggle: Callable[[], bool]
-    set_speed: Callable[[float], None]
-
-
-class PlaybackBar:
-    """Slider, play button, steps, speed and clock, floating under the video."""
-
-    def __init__(self, gui: viser.GuiApi, controls: PlaybackControls) -> None:
-        self._controls = controls
-        self._times: FloatArray = np.zeros(1)
-        gui.set_panel_label("Playback")
+    def __init__(self, gui: viser.GuiApi) -> None:
         gui.add_html(PANEL_STYLE)
-        self._cursor = gui.add_html(HIDDEN_BAR)
-        self.slider = gui.add_slider("Frame", 0, 1, 1, 0)
-        self._clock = gui.add_html("")
-        self.play = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY)
-        self.step = gui.add_button_group(
-            "Step", ("\N{MINUS SIGN}10", "\N{MINUS SIGN}1", "+1", "+10")
-        )
-        self.speed = gui.add_button_group("Speed", SPEEDS)
+        self._line = gui.add_html("")
         # A panel without widgets of ours would show viser's own scene tree.
         gui.main_panel.float(x=16, y=-16, width=600)
-        self.slider.on_update(self._slid)
-        self.play.on_click(lambda _: self.set_playing(controls.toggle()))
-        self.step.on_click(lambda _: self._step(self.step.value))
-        self.speed.on_click(lambda _: controls.set_speed(float(self.speed.value.rstrip("x"))))
 
-    def load(self, times: FloatArray) -> None:
-        """Take over the timestamps ``(T,)`` of another recording; `show` must follow."""
-        self._times = times
-        self._move_slider(0)
-        self.slider.max = max(1, len(times) - 1)
-        self.set_playing(False)
-
-    def show(self, frame: int) -> None:
-        """Show where playback stands."""
-        times = self._times
-        self._move_slider(frame)
-        self._clock.content = charts.clock(frame, len(times), float(times[frame]))
-        span = float(times[-1] - times[0])
-        self._cursor.content = charts.cursor(float(times[frame] - times[0]) / span if span else 0.0)
-
-    def _move_slider(self, frame: int) -> None:
-        self.slider.value = frame  # type: ignore[misc]  # mypy takes viser's setter for none
-
-    def set_playing(self, playing: bool) -> None:
-        """Let the button say what it does next."""
-        self.play.label = "Pause" if playing else "Play"
-        self.play.icon = viser.Icon.PLAYER_PAUSE if playing else viser.Icon.PLAYER_PLAY
-
-    def _slid(self, event: viser.GuiEvent[viser.GuiSliderHandle[int]]) -> None:
-        # Setting the value from here fires this too; only a client's move is a wish to seek.
-        if event.client is not None:
-            self._controls.seek(int(self.slider.value))
-
-    def _step(self, label: str) -> None:
-        self._controls.seek(int(self.slider.value) + int(label.replace("\N{MINUS SIGN}", "-")))
+    def show(self, share: float) -> None:
+        """Stand at a share of the range on display."""
+        self._line.content = charts.cursor(share)
 
 
 class Inspector:

@@ -5,14 +5,45 @@ from __future__ import annotations
 import time as clock
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from threading import Condition, Thread
 
 END_REST_SECONDS = 0.6
 """How long the last frame stands before playback starts again: long enough to see the end."""
 
+SPEEDS = (0.25, 16.0)
+"""Slowest and fastest, either way: below, pictures stand; above, no screen keeps up."""
+
+
+@dataclass(frozen=True)
+class Position:
+    """Where playback stands.
+
+    Attributes
+    ----------
+    frame, frames
+        Index of the frame on display and number of frames in the clip, counted from 0.
+    time
+        Seconds in the clip, by its container.
+    playing
+        Whether the clock runs.
+    speed
+        Times as fast as the camera saw it; negative is backwards.
+    loop
+        Whether the range on display is played over and over.
+
+    """
+
+    frame: int
+    frames: int
+    time: float
+    playing: bool
+    speed: float
+    loop: bool
+
 
 class Playback:
-    """Plays, seeks and pauses over the timestamps of a recording.
+    """Plays, seeks and pauses over the timestamps of a clip.
 
     One thread draws: however many seeks arrive meanwhile, only the newest is drawn next, and two
     frames are never drawn at once (viser runs callbacks in parallel and in any order).
@@ -26,15 +57,18 @@ class Playback:
 
     def __init__(self, show: Callable[[int], None]) -> None:
         self._show = show
+        self._listeners: list[Callable[[Position], None]] = []
         self._changed = Condition()
         self._times: tuple[float, ...] = (0.0,)
+        self._span = (0, 0)
         self._frame = 0
         self._speed = 1.0
+        self._loop = True
         self._playing = False
         self._pending = False
         self._untouched = True
         self._closed = False
-        self._anchor = 0.0
+        self._anchor = (0.0, 0.0)
         self._thread = Thread(target=self._run, name="playback", daemon=True)
         self._thread.start()
 
@@ -48,8 +82,27 @@ class Playback:
         """Whether the clock runs."""
         return self._playing
 
-    def load(self, times: Sequence[float], frame: int = 0) -> None:
-        """Take over another recording and stop at `frame`; playing begins at the start even so.
+    @property
+    def position(self) -> Position:
+        """Where it stands."""
+        with self._changed:
+            return self._position()
+
+    def listen(self, listener: Callable[[Position], None]) -> Callable[[], None]:
+        """Call `listener` after every frame drawn, from the playback's thread; return the end."""
+        with self._changed:
+            self._listeners.append(listener)
+
+        def end() -> None:
+            with self._changed:
+                self._listeners.remove(listener)
+
+        return end
+
+    def load(
+        self, times: Sequence[float], frame: int = 0, span: tuple[int, int] | None = None
+    ) -> None:
+        """Take over another clip and stop at `frame`; playing begins at the range's start even so.
 
         Parameters
         ----------
@@ -57,10 +110,15 @@ class Playback:
             Seconds, increasing, one per frame.
         frame
             Where to stand until someone plays or seeks.
+        span
+            First and last frame of the range on display, which a loop repeats; None for all.
 
         """
         with self._changed:
             self._times = tuple(float(moment) for moment in times) or (0.0,)
+            last = len(self._times) - 1
+            first, end = span or (0, last)
+            self._span = (min(max(first, 0), last), min(max(end, 0), last))
             self._playing = False
             self._untouched = True
             self._set(frame)
@@ -70,6 +128,13 @@ class Playback:
         with self._changed:
             self._untouched = False
             self._set(frame)
+
+    def step(self, frames: int) -> None:
+        """Pause, and go so many frames on or, if negative, back."""
+        with self._changed:
+            self._playing = False
+            self._untouched = False
+            self._set(self._frame + frames)
 
     def redraw(self, frame: int) -> None:
         """Draw again if `frame` is the one on display: its picture has arrived."""
@@ -81,17 +146,28 @@ class Playback:
     def toggle(self) -> bool:
         """Play or pause; from the end it starts over. Returns whether it plays now."""
         with self._changed:
-            self._playing = not self._playing and len(self._times) > 1
-            if self._playing and (self._untouched or self._frame >= len(self._times) - 1):
-                self._frame = 0
-            self._untouched = False
-            self._set(self._frame)
+            self._play(not self._playing)
             return self._playing
 
+    def play(self, speed: float) -> None:
+        """Play `speed` times as fast as the camera saw it; backwards if negative, 0 pauses."""
+        with self._changed:
+            if speed:
+                slowest, fastest = SPEEDS
+                size = min(max(abs(speed), slowest), fastest)
+                self._speed = size if speed > 0 else -size
+            self._play(speed != 0)
+
     def set_speed(self, speed: float) -> None:
-        """Play `speed` times as fast as the camera saw it."""
+        """Play that fast from now on, if playing; else when somebody plays."""
         with self._changed:
             self._speed = speed
+            self._set(self._frame)
+
+    def set_loop(self, loop: bool) -> None:
+        """Repeat the range on display, or play on to the end of the clip."""
+        with self._changed:
+            self._loop = loop
             self._set(self._frame)
 
     def close(self) -> None:
@@ -101,18 +177,41 @@ class Playback:
             self._changed.notify()
         self._thread.join()
 
+    def _position(self) -> Position:
+        frame = self._frame
+        return Position(
+            frame, len(self._times), self._times[frame], self._playing, self._speed, self._loop
+        )
+
+    def _play(self, playing: bool) -> None:
+        self._playing = playing and len(self._times) > 1 and self._span[0] < self._span[1]
+        first, last = self._bounds()
+        begin, end = (first, last) if self._speed > 0 else (last, first)
+        if self._playing and (self._untouched or self._frame == end):
+            self._frame = begin
+        self._untouched = False
+        self._set(self._frame)
+
+    def _bounds(self) -> tuple[int, int]:
+        """First and last frame to play: the range on display if it loops and holds the frame."""
+        first, last = self._span
+        if self._loop and (self._untouched or first <= self._frame <= last):
+            return first, last
+        return 0, len(self._times) - 1
+
     def _set(self, frame: int) -> None:
         self._frame = min(max(frame, 0), len(self._times) - 1)
-        self._anchor = clock.monotonic() - self._elapsed(self._frame) / self._speed
+        self._anchor = (clock.monotonic(), self._times[self._frame])
         self._pending = True
         self._changed.notify()
-
-    def _elapsed(self, frame: int) -> float:
-        return self._times[frame] - self._times[0]
 
     def _run(self) -> None:
         while (frame := self._next()) is not None:
             self._show(frame)
+            with self._changed:
+                position, listeners = self._position(), tuple(self._listeners)
+            for listener in listeners:
+                listener(position)
 
     def _next(self) -> int | None:
         """Wait for the next frame to draw; None when closed."""
@@ -126,25 +225,36 @@ class Playback:
                 self._changed.wait(self._until_next())
         return None
 
+    def _now(self) -> float:
+        """Seconds in the clip that the clock has reached."""
+        started, moment = self._anchor
+        return moment + (clock.monotonic() - started) * self._speed
+
     def _advance(self) -> None:
         """Move to the frame that the clock says is due; frames that come late are left out."""
-        position = (clock.monotonic() - self._anchor) * self._speed
-        if position > self._elapsed(len(self._times) - 1) + END_REST_SECONDS:
-            self._set(0)
-            return
-        due = bisect_right(self._times, self._times[0] + position) - 1
-        if due > self._frame:
-            self._frame = due
-            self._pending = True
+        first, last = self._bounds()
+        now, forward = self._now(), self._speed > 0
+        beyond = now - self._times[last] if forward else self._times[first] - now
+        if beyond > 0 and not self._loop:
+            self._playing = False
+            self._set(last if forward else first)
+        elif beyond > END_REST_SECONDS * abs(self._speed):
+            self._set(first if forward else last)
+        else:
+            due = min(max(bisect_right(self._times, now) - 1, first), last)
+            if due != self._frame:
+                self._frame = due
+                self._pending = True
 
     def _until_next(self) -> float | None:
         """Seconds until the clock has something new to show; None when it stands still."""
         if not self._playing:
             return None
-        last = len(self._times) - 1
-        due = (
-            self._elapsed(self._frame + 1)
-            if self._frame < last
-            else self._elapsed(last) + END_REST_SECONDS
-        )
-        return max(0.001, due / self._speed - (clock.monotonic() - self._anchor))
+        first, last = self._bounds()
+        rest = END_REST_SECONDS * abs(self._speed)
+        if self._speed > 0:
+            at_end = self._times[last] + rest
+            due = at_end if self._frame >= last else self._times[self._frame + 1]
+        else:
+            due = self._times[first] - rest if self._frame <= first else self._times[self._frame]
+        return max(0.001, (due - self._now()) / self._speed)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import viser
 
+from app.recognition import PoseSequence
 from app.ui.geometry import CubeGeometry, Points, seen
 from app.ui.theme import Rgb, Theme, linear, time_colours
 from app.ui.wall import Wall
@@ -64,11 +65,34 @@ class SpaceTimeCube:
         """Use another theme from the next `show` or `clear` on."""
         self._theme = theme
 
-    def show(self, cube: CubeGeometry, salient: tuple[str, ...], wall: Wall | None) -> None:
-        """Draw a recording; the video plane stays blank until `paint`."""
+    def show(
+        self,
+        cube: CubeGeometry,
+        salient: tuple[str, ...],
+        wall: Wall | None,
+        poses: PoseSequence,
+        first: int,
+    ) -> None:
+        """Draw a range of a clip; the video plane stays blank until `seek`.
+
+        Parameters
+        ----------
+        cube
+            The range laid out.
+        salient
+            Landmarks whose trails stand out.
+        wall
+            What hangs behind it, if anything.
+        poses
+            The whole clip's.
+        first
+            Index in the clip of the range's first frame.
+
+        """
         with self._server.atomic():
             self.clear()
             self._cube, self._salient = cube, salient
+            self._poses, self._first = poses, first
             share = cube.depth / cube.back if len(cube.depth) > 1 else np.zeros(1)
             self._colours = time_colours(np.asarray(share, dtype=np.float64))
             self._draw_cube(cube)
@@ -79,20 +103,25 @@ class SpaceTimeCube:
         self._server.flush()
 
     def seek(self, frame: int, image: npt.NDArray[np.uint8] | None) -> None:
-        """Move the video plane, the skeleton and the bright trails to `frame`."""
+        """Move the video plane, the skeleton and the bright trails to a frame of the clip.
+
+        Before the range the plane stands at the cube's front, after it at its back.
+        """
         cube = self._cube
         if cube is None:
             return
-        z = float(cube.depth[frame])
+        inside = min(max(frame - self._first, 0), len(cube.depth) - 1)
+        z = float(cube.depth[inside])
+        points = cube.placed(self._poses, frame, z)
         with self._server.atomic():
             if image is not None:
                 self._video.image = image
             self._video.position = (0.0, 0.0, z)
             self._rim.position = (0.0, 0.0, z - LAYERS["rim"])
-            self._bones.points = in_front(cube.bones(frame), "bones")
-            self._joints.points = in_front(cube.joints(frame), "joints")
+            self._bones.points = in_front(cube.bones(points), "bones")
+            self._joints.points = in_front(cube.joints(points), "joints")
             for name, trail in self._past.items():
-                segments, colours = self._bright_trail(cube, name, frame)
+                segments, colours = self._bright_trail(cube, name, inside)
                 trail.points = segments
                 trail.colors = colours
         self._server.flush()
@@ -212,11 +241,15 @@ class SpaceTimeCube:
             thickness_units="screen",
         )
         self._bones = scene.add_line_segments(
-            "/skeleton/bones", cube.bones(0), theme.bone, thickness=2.4, thickness_units="screen"
+            "/skeleton/bones",
+            cube.bones(cube.points[0]),
+            theme.bone,
+            thickness=2.4,
+            thickness_units="screen",
         )
         self._joints = scene.add_point_cloud(
             "/skeleton/joints",
-            cube.joints(0),
+            cube.joints(cube.points[0]),
             theme.joint,
             point_size=0.011,
             point_shape="circle",

@@ -35,17 +35,22 @@ PANEL_STYLE: Final = """<style>
 .osg .tag { font-size: 10px; font-weight: 600; padding: 0 5px; border-radius: 99px;
   border: 1px solid currentColor; white-space: nowrap; display: table;
   margin-top: 2px; }
+.osg thead .tag { writing-mode: vertical-rl; padding: 5px 0; display: inline-block;
+  margin: 5px 0 0; }
 .osg .tag.expected { border-style: dashed; }
 .osg .scroll { overflow-x: auto; }
 .osg table { border-collapse: separate; border-spacing: 2px; width: 100%; }
 .osg thead th { vertical-align: bottom; font-weight: 500; color: var(--osg-dim); padding: 0 0 4px; }
 .osg table { table-layout: fixed; }
-.osg thead th:first-child { width: 96px; }
-.osg thead th span { writing-mode: vertical-rl; transform: rotate(180deg); white-space: nowrap;
+.osg thead th:nth-child(1) { width: 112px; text-align: left; }
+.osg thead th:nth-child(2) { width: 36px; }
+.osg thead th.gesture { width: 36px; }
+.osg thead th.chosen, .osg thead th.expected { font-weight: 700; color: var(--osg-ink); }
+.osg thead th.gesture span { writing-mode: vertical-rl; transform: rotate(180deg);
+  white-space: nowrap;
   margin: 0 auto; display: block; }
 .osg tbody th { text-align: left; font-weight: 500; padding: 3px 6px 3px 0; line-height: 1.25;
   overflow: hidden; text-overflow: ellipsis; }
-.osg tbody tr.chosen th, .osg tbody tr.expected th { font-weight: 700; color: inherit; }
 .osg td { text-align: center; padding: 5px 0 8px; border-radius: 6px; font-size: 10.5px;
   font-variant-numeric: tabular-nums; color: var(--osg-dim); }
 .osg td.choice { font-weight: 700; color: var(--osg-ink);
@@ -54,7 +59,8 @@ PANEL_STYLE: Final = """<style>
 .osg td.choice::after { content: ""; position: absolute; left: calc(50% - 3px); bottom: 3px;
   width: 6px; height: 6px; border-radius: 50%; background: var(--osg-chosen); }
 .osg .mute { opacity: .45; }
-.osg thead th small { display: block; font-size: 9px; }
+.osg td.share { background: none; padding-right: 4px; text-align: right; }
+.osg tfoot th { text-align: left; font-weight: 500; color: var(--osg-dim); }
 .osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 13px; }
 .osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
 .osg figure { margin: 0; }
@@ -69,52 +75,16 @@ PANEL_STYLE: Final = """<style>
 .osg .legend { display: flex; flex-wrap: wrap; gap: 4px 14px; margin: 4px 0 0; padding: 0;
   list-style: none; color: var(--osg-dim); }
 .osg .legend svg { vertical-align: middle; margin-right: 5px; }
-.osg .clock { display: flex; flex-wrap: wrap; gap: 0 12px; justify-content: center;
-  white-space: nowrap; }
 
 /* viser's own chrome: a second grip says nothing, its title bar opens developer settings. */
 [data-dock-griphandle], [data-testid="floating-panel-handle"], #webgl-software-rendering,
 [data-dock-region-handle] > div:first-child { display: none !important; }
 [data-dock-strip] { padding-left: 4px; }
-[data-testid="floating-panel"] { top: auto !important; bottom: 16px !important;
-  left: calc(50% - 198px) !important; transform: translateX(-50%);
-  width: min(640px, calc(100% - 428px)) !important; border-radius: 12px !important;
-  border: 1px solid var(--osg-line);
-  box-shadow: 0 6px 24px rgba(0, 0, 0, .22) !important; }
-/* The playback bar: slider above, then play, steps, clock and speeds in one row. */
-div:has(> div > .osg-player) { display: grid; align-items: center; gap: 2px 6px;
-  grid-template: "slider slider slider slider" "play step clock speed" / auto auto 1fr auto;
-  padding: 6px 6px 2px; }
-div:has(> .osg-player), div:has(> .osg-player) + div { display: none; }
-div:has(> .osg-player) ~ div:nth-child(3) { grid-area: slider; }
-div:has(> .osg-player) ~ div:nth-child(4) { grid-area: clock; padding-bottom: .5em; }
-div:has(> .osg-player) ~ div:nth-child(5) { grid-area: play; }
-div:has(> .osg-player) ~ div:nth-child(6) { grid-area: step; padding-inline: 0 !important; }
-div:has(> .osg-player) ~ div:nth-child(7) { grid-area: speed; padding-inline: 0 10px !important; }
-div:has(> .osg-player) ~ div div:has(> p > label) { position: absolute !important;
-  clip-path: inset(50%); width: 1px !important; height: 1px; overflow: hidden; }
-div:has(> .osg-player) ~ div .mantine-Flex-root { flex-wrap: nowrap !important; }
-div:has(> .osg-player) ~ div:nth-child(n+6) button { min-width: 36px; --button-bd: 1px solid
-  var(--osg-line) !important; border-color: var(--osg-line) !important; }
-div:has(> .osg-player) ~ div button { height: 30px !important; border-radius: 8px !important;
-  font-variant-numeric: tabular-nums; }
-div:has(> .osg-player) ~ div:nth-child(n+6) button, .osg-player ~ div .mantine-Button-label {
-  color: var(--osg-ink) !important; }
-div:has(> .osg-player) ~ div:nth-child(5) button { min-width: 96px; }
-@media (max-width: 1020px) {
-  div:has(> div > .osg-player) {
-    grid-template: "slider slider" "play clock" "step speed" / auto minmax(0, 1fr); }
-  div:has(> .osg-player) ~ div:nth-child(6) { padding-inline: 10px 0 !important; }
-}
+/* The page has the playback bar; an empty panel would float over the video. */
+[data-testid="floating-panel"] { display: none !important; }
 /* The sheet that takes the panels' place on a phone is as wide as the phone. */
 div[style*="width: 20em"] { width: 100% !important; }
-@media (max-width: 860px) {
-  div:has(> div > .osg-player) {
-    grid-template: "slider slider" "play clock" "step step" "speed speed" / auto minmax(0, 1fr); }
-  div:has(> .osg-player) ~ div:nth-child(n+6) { padding-inline: 10px !important; }
-}
-</style>
-<i class="osg-player" hidden></i>"""
+</style>"""
 """Markup given to `add_html` may carry a style sheet, and that reaches the whole page of viser.
 
 What it says about viser itself leans on that client's attributes; when a later version renames

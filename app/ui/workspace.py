@@ -19,10 +19,10 @@ from app.recognition.salience import salient_landmarks
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import draw
 from app.ui.charts import readable
-from app.ui.filmstrip import Filmstrip
+from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback import quiet, start_server
-from app.ui.panels import Inspector, PlaybackBar, PlaybackControls
+from app.ui.panels import Inspector, TimeCursor
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
@@ -111,7 +111,7 @@ class Range:
 
 
 class Workspace:
-    """A viser server with the space-time cube, the playback bar and the inspector.
+    """A viser server with the space-time cube and the inspector, and the clock of both.
 
     Parameters
     ----------
@@ -127,16 +127,13 @@ class Workspace:
         self._lock = Lock()
         self._view: WorkspaceView | None = None
         self._filmstrip: Filmstrip | None = None
-        self._first = self._frames = 0
+        self._shown: Range | None = None
         self._painted = -1
         self._server = start_server()
         self._configure_theme()
         self._scene = SpaceTimeCube(self._server, self._theme)
         self.playback = Playback(self._draw)
-        controls = PlaybackControls(
-            self.playback.seek, self.playback.toggle, self.playback.set_speed
-        )
-        self._bar = PlaybackBar(self._server.gui, controls)
+        self._cursor = TimeCursor(self._server.gui)
         self._inspector = Inspector(self._server.gui)
 
     @property
@@ -165,10 +162,9 @@ class Workspace:
         """
         shown = Range.of(view)
         with self._lock:
-            same_frames = self._view is not None and _frames_of(self._view) == _frames_of(view)
-            self._view = view
-            if not same_frames or self._filmstrip is None:
-                self._load(view, shown)
+            before, self._view = self._view, view
+            if before is None or _frames_of(before) != _frames_of(view):
+                self._load(before, view, shown)
             self._inspect(view, shown)
 
     def set_dark(self, dark: bool) -> None:
@@ -195,22 +191,26 @@ class Workspace:
             with quiet():
                 self._server.stop()
 
-    def _load(self, view: WorkspaceView, shown: Range) -> None:
+    def _load(self, before: WorkspaceView | None, view: WorkspaceView, shown: Range) -> None:
         """Show other frames: scene, clock and charts at once, pictures as they are decoded."""
+        first, times = shown.first, shown.poses.time
+        last = first + len(times) - 1
+        trajectory = self._draw_scene(view, shown)
+        self._shown = shown
+        self.playback.load(
+            view.recording.poses.time.tolist(), first + first_look(len(times)), (first, last)
+        )
+        self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.salute))
+        if before is None or _pictures_of(before) != _pictures_of(view):
+            self._decode(view, first, last)
+
+    def _decode(self, view: WorkspaceView, first: int, last: int) -> None:
+        """Keep the pictures of the whole clip, or of the range where the clip is too long."""
         if self._filmstrip is not None:
             self._filmstrip.close()
-        first, times = shown.first, shown.poses.time
-        self._first, self._frames = first, len(times)
-        self._filmstrip = Filmstrip(
-            view.video,
-            first,
-            first + len(times) - 1,
-            lambda index: self.playback.redraw(index - first),
-        )
-        trajectory = self._draw_scene(view, shown)
-        self._bar.load(times)
-        self.playback.load(times.tolist(), first_look(len(times)))
-        self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.salute))
+        if len(view.recording.poses) <= MAX_FRAMES:
+            first, last = 0, len(view.recording.poses) - 1
+        self._filmstrip = Filmstrip(view.video, first, last, self.playback.redraw)
         self._filmstrip.start()
 
     def _draw_scene(self, view: WorkspaceView, shown: Range) -> Trajectory | None:
@@ -220,7 +220,7 @@ class Workspace:
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
             wall = Wall.behind(cube, shown.poses, salient, drawing)
-        self._scene.show(cube, salient, wall)
+        self._scene.show(cube, salient, wall, view.recording.poses, shown.first)
         self._painted = -1
         return trajectory
 
@@ -235,18 +235,20 @@ class Workspace:
     def _draw(self, frame: int) -> None:
         """Draw a frame; called by the playback alone."""
         with self._lock:
-            if self._frames:
+            if self._view is not None and self._shown is not None:
                 # A frame that was due before another view was shown may lie beyond its end.
-                self._draw_locked(min(frame, self._frames - 1))
+                times = self._view.recording.poses.time
+                self._draw_locked(min(frame, len(times) - 1), self._shown, times)
 
-    def _draw_locked(self, frame: int) -> None:
+    def _draw_locked(self, frame: int, shown: Range, times: FloatArray) -> None:
         image = None
         if self._filmstrip is not None:
-            nearest = self._filmstrip.nearest(self._first + frame)
+            nearest = self._filmstrip.nearest(frame)
             if nearest is not None and nearest[0] != self._painted:
                 self._painted, image = nearest
         self._scene.seek(frame, image)
-        self._bar.show(frame)
+        start, end = float(shown.poses.time[0]), float(shown.poses.time[-1])
+        self._cursor.show((float(times[frame]) - start) / (end - start) if end > start else 0.0)
 
     def _configure_theme(self) -> None:
         self._server.gui.configure_theme(
@@ -311,3 +313,9 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return what of a view decides which frames and trails are shown."""
     return view.video, view.start, view.end, view.salient
+
+
+def _pictures_of(view: WorkspaceView) -> tuple[object, ...]:
+    """Return what of a view decides which pictures are kept."""
+    whole = len(view.recording.poses) <= MAX_FRAMES
+    return (view.video,) if whole else (view.video, view.start, view.end)

@@ -45,6 +45,8 @@ const gestureAt = (language, label) => `/languages/${id(language.id)}/gestures/$
 
 export const clips = {
   list: () => request("GET", "/clips"),
+  timeline: (clip) => request("GET", `/clips/${id(clip)}/timeline`),
+  filmstrip: (clip) => `${BASE}/clips/${id(clip)}/filmstrip`,
   takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),

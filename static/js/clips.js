@@ -17,7 +17,7 @@ export async function reloadClips() {
 
 /** Show another clip. */
 export function select(id) {
-  update({ clip: id, take: null, start: null, end: null, recognition: null });
+  update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
 }
 
 /** Take over a job's progress, as the server tells it. */

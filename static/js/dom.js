@@ -1,8 +1,13 @@
 // Building elements. Text only ever becomes text nodes: nothing a user wrote is parsed as markup.
 
 const ICONS = {
+  back: "M15 4v12L7 10zM5 4v12",
   close: "M5 5l10 10M15 5L5 15",
+  forth: "M5 4v12l8-6zM15 4v12",
+  loop: "M6 6h8a3 3 0 0 1 3 3v1M14 14H6a3 3 0 0 1-3-3v-1M12 3.500l2.500 2.500L12 8.500M8 16.500L5.500 14 8 11.500",
   more: "M4 10h.01M10 10h.01M16 10h.01",
+  pause: "M7 4v12M13 4v12",
+  play: "M6 4v12l10-6z",
   plus: "M10 4v12M4 10h12",
   rename: "M4 16l1-4 8-8 3 3-8 8z",
   retry: "M15.5 6.5A6.5 6.5 0 1 0 16.5 11M16 3v4h-4",

@@ -25,10 +25,11 @@ function written(event) {
 
 function pressed(event) {
   if (event.defaultPrevented || byId("dialog").open) return;
-  const typing = event.target instanceof Element && event.target.matches(TYPED_IN);
-  if (typing) return;
+  // An element of a frame is no Element of this window.
+  const at = event.target?.closest ? event.target : null;
+  if (at?.closest(TYPED_IN)) return;
   // A button that has the focus is pressed with the space bar.
-  if (event.key === " " && event.target instanceof Element && event.target.closest("button, a, summary, [role=tab]")) return;
+  if (event.key === " " && at?.closest("button, a, summary, [role=tab]")) return;
   const combination = written(event);
   const found = bound.find((each) => each.keys.includes(combination) && each.when());
   if (!found) return;
@@ -53,8 +54,9 @@ export function showKeys() {
   dialog.showModal();
 }
 
-/** Begin to listen. */
-export function listenToKeys() {
-  addEventListener("keydown", pressed);
-  bind({ keys: ["?"], text: "Show all keys", group: "Everywhere", run: showKeys });
+/** Hear the keys that are pressed in a window: this one, or a frame in it. */
+export function listenToKeys(heard = window) {
+  heard.addEventListener("keydown", pressed);
 }
+
+bind({ keys: ["?"], text: "Show all keys", group: "Everywhere", run: showKeys });

@@ -7,8 +7,11 @@ import { drawGestures } from "./gestures.js";
 import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
 import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
 import { listenToKeys, showKeys } from "./keys.js";
+import { rememberFrame } from "./playback.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
+import { drawNow } from "./timeline.js";
 import { attempt } from "./toasts.js";
+import { drawTransport } from "./transport.js";
 import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
 import { followViews } from "./views.js";
@@ -57,6 +60,8 @@ function drawEverything() {
   follow(["gestures"], drawExport);
   follow(["gestures", "result", "clip"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
+  follow(["position", "clips", "clip"], drawTransport);
+  follow(["position"], drawNow);
   follow(["result"], drawOutcome);
 }
 
@@ -77,6 +82,7 @@ function loadWithSelection() {
 async function start() {
   byId("new-language").append(icon("plus"));
   update(readUrl());
+  rememberFrame(state.frame);
   followHistory();
   addEventListener("popstate", reloadLanguages);
   followViews();

@@ -5,9 +5,11 @@ import { ask } from "./dialogs.js";
 import { byId, h } from "./dom.js";
 import { edit } from "./gestures.js";
 import { newLanguage } from "./languages.js";
+import { frameShown } from "./playback.js";
 import { selectedClip, selectedRange, state, update } from "./state.js";
 import { drawTimeline } from "./timeline.js";
 import { attempt, complain, toast } from "./toasts.js";
+import { buildTransport } from "./transport.js";
 import { tellDone } from "./undo.js";
 import { show } from "./workspace.js";
 
@@ -19,12 +21,13 @@ let shownView = "";
 /** Load the takes of the clip on display as soon as it has any. */
 export async function loadTakes() {
   const clip = selectedClip();
-  if (!clip || clip.status !== "done") return update({ takes: null });
-  const takes = await attempt("Loading the takes", () => api.clips.takes(clip.id));
-  if (!takes || state.clip !== clip.id) return undefined;
+  if (!clip || clip.status !== "done") return update({ takes: null, timeline: null });
+  const loaded = await attempt("Loading the takes", () => Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]));
+  if (!loaded || state.clip !== clip.id) return undefined;
+  const [takes, timeline] = loaded;
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
   const byHand = state.start !== null || state.end !== null;
-  return update({ takes, take: kept ?? (takes.length && !byHand ? 0 : null) });
+  return update({ takes, timeline, take: kept ?? (takes.length && !byHand ? 0 : null) });
 }
 
 /** Let the workspace show what is selected, once the selection rests. */
@@ -40,7 +43,7 @@ export function showSelection() {
   if (state.recognition) view.recognition_id = state.recognition;
   const text = JSON.stringify(view);
   if (text === shownView) return;
-  viewTimer = setTimeout(() => { shownView = text; show(view); }, state.take === null && state.start !== null ? SETTLED : 0);
+  viewTimer = setTimeout(() => { shownView = text; show(view).then(frameShown); }, state.take === null && state.start !== null ? SETTLED : 0);
 }
 
 function query() {
@@ -117,6 +120,7 @@ export function drawStage() {
   byId("clip-meta").textContent = ready ? "" : clip.status === "failed" ? (clip.error ?? "") : "Its takes appear as soon as the poses are found.";
   for (const id of ["save-gesture", "recognise", "expected"]) byId(id).disabled = !ready;
   byId("clip-warnings").replaceChildren(...(clip.warnings ?? []).map((warning) => h("li", {}, warning)));
+  byId("range-text").replaceChildren();
   drawTimeline();
 }
 
@@ -124,4 +128,5 @@ export function drawStage() {
 export function stageButtons() {
   byId("save-gesture").onclick = () => saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
+  buildTransport();
 }

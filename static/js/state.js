@@ -1,11 +1,11 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
-const IN_URL = { view: "view", clip: "clip", take: "take", start: "start", end: "end", language: "language", recognition: "recognition" };
-const NUMBERS = new Set(["take", "start", "end"]);
+const IN_URL = { view: "view", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", recognition: "recognition" };
+const NUMBERS = new Set(["take", "start", "end", "frame"]);
 
 const values = {
   view: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
-  languages: [], gestures: null, result: null, connected: null, loaded: false,
+  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, connected: null, loaded: false,
   clip: null, take: null, start: null, end: null, language: null, recognition: null,
 };
 
@@ -68,8 +68,8 @@ function writeUrl(another) {
 
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
 
-/** Seconds the clip lasts; where its container does not say, up to its last take. */
-export const lengthOf = (clip) => clip.duration ?? values.takes?.at(-1)?.end ?? 0;
+/** Seconds the clip lasts, by its last frame; before its poses are found, by its container. */
+export const lengthOf = (clip) => values.timeline?.time.at(-1) ?? clip.duration ?? 0;
 
 /** The range in seconds on which buttons act, and whether it is a take's own. */
 export function selectedRange() {

@@ -1,10 +1,12 @@
-// The takes of a clip along its time, and the range that the buttons act on.
+// The takes of a clip along its time, where the clock stands, and the range the buttons act on.
 
+import { curves, filmstrip, legend } from "./curves.js";
 import { byId, h, icon } from "./dom.js";
 import { moment, plural } from "./format.js";
-import { lengthOf, selectedClip, selectedRange, state, update } from "./state.js";
+import { seek } from "./playback.js";
+import { selectedClip, selectedRange, state, update } from "./state.js";
 
-const LEAST_RANGE = 0.1; // s. Three frames: with fewer there is no gesture.
+const LEAST_FRAMES = 3; // With fewer there is no gesture.
 
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 
@@ -47,23 +49,61 @@ const saluteMarks = (take, duration) => [
   take.closed ? saluteMark(take.end, "closes", duration) : null,
 ].filter(Boolean);
 
-function handle(which, range, duration) {
+/** When the last frame is shown: the right edge of the timeline. */
+const lastMoment = () => state.timeline.time.at(-1) || 1;
+
+/** The frame that is nearest to a moment. */
+function frameAt(seconds) {
+  const { time } = state.timeline;
+  let low = 0;
+  let high = time.length - 1;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (time[middle] < seconds) low = middle + 1;
+    else high = middle;
+  }
+  return low > 0 && seconds - time[low - 1] < time[low] - seconds ? low - 1 : low;
+}
+
+function handle(which) {
   const label = which === "start" ? "Start of the range" : "End of the range";
-  const input = h("input", { type: "range", className: `handle ${which}`, min: 0, max: duration.toFixed(3), step: 0.01, "aria-label": label, title: `${label}: drag, or use the arrow keys` });
-  input.value = range[which].toFixed(2);
-  input.setAttribute("aria-valuetext", moment(range[which]));
-  input.oninput = () => move(which, Number(input.value), duration);
+  const input = h("input", { type: "range", className: `handle ${which}`, min: 0, max: lastMoment(), step: "any", "aria-label": label, title: `${label}: drag, or use the arrow keys, frame by frame` });
+  const to = (frame) => { move(which, frame); seek(frame); };
+  input.oninput = () => to(frameAt(Number(input.value)));
+  // The browser's own step would be a share of the length, not a frame.
+  input.onkeydown = (event) => {
+    const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+    if (!way) return;
+    event.preventDefault();
+    to(Math.min(state.timeline.time.length - 1, Math.max(0, frameAt(Number(input.value)) + way * (event.shiftKey ? 10 : 1))));
+  };
   return input;
 }
 
-/** Move one end of the range; from then on it is a range chosen by hand. */
-function move(which, value, duration) {
-  const { start, end } = selectedRange();
-  const moved = which === "start"
-    ? { start: Math.max(0, Math.min(value, end - LEAST_RANGE)), end }
-    : { start, end: Math.min(duration, Math.max(value, start + LEAST_RANGE)) };
-  update({ take: null, recognition: null, ...moved });
+function placeHandles(track, range) {
+  for (const which of ["start", "end"]) {
+    const input = track.querySelector(`.handle.${which}`);
+    const frame = frameAt(range[which]);
+    input.value = state.timeline.time[frame];
+    input.setAttribute("aria-valuetext", `frame ${frame}, ${moment(range[which])}`);
+  }
 }
+
+/** Move one end of the range to a frame; from then on it is a range chosen by hand. */
+function move(which, frame) {
+  const { time } = state.timeline;
+  const range = selectedRange();
+  const last = time.length - 1;
+  const [start, end] = [frameAt(range.start), frameAt(range.end)];
+  const moved = which === "start"
+    ? [Math.max(0, Math.min(frame, last - LEAST_FRAMES)), Math.max(end, Math.min(last, frame + LEAST_FRAMES))]
+    : [Math.min(start, Math.max(0, frame - LEAST_FRAMES)), Math.min(last, Math.max(frame, LEAST_FRAMES))];
+  update({ take: null, recognition: null, start: time[moved[0]], end: time[moved[1]] });
+}
+
+/** Let the range start, or end, at the frame on display. */
+export const setStart = () => { if (state.timeline && state.position) move("start", state.position.frame); };
+export const setEnd = () => { if (state.timeline && state.position) move("end", state.position.frame); };
 
 function summary(range, takes) {
   const where = `${moment(range.start)} \u2013 ${moment(range.end)}`;
@@ -75,13 +115,28 @@ function summary(range, takes) {
   return `No Vulcan salute was found, so the range is yours to choose: ${where}`;
 }
 
+/** Follow the pointer along the thumbnails or curves with the clock. */
+function scrub(area) {
+  const to = (event) => {
+    const { left, width } = area.getBoundingClientRect();
+    seek(frameAt((lastMoment() * (event.clientX - left)) / width));
+  };
+  area.onpointerdown = (event) => {
+    if (event.button !== 0 || event.target.closest("button, input")) return;
+    area.setPointerCapture(event.pointerId);
+    to(event);
+    area.onpointermove = to;
+  };
+  area.onpointerup = area.onpointercancel = () => { area.onpointermove = null; };
+}
+
 /** Draw the timeline of the clip on display. */
 export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
   const range = selectedRange();
-  const duration = clip ? lengthOf(clip) : 0;
-  if (!duration || clip.status !== "done" || !state.takes) return box.replaceChildren();
+  if (clip?.status !== "done" || !state.takes || !state.timeline) return box.replaceChildren();
+  const duration = lastMoment();
   const track = box.querySelector(".track");
   const lengths = h("div", { className: "range", style: { left: percent(range.start, duration), width: percent(range.end - range.start, duration) } });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
@@ -95,19 +150,26 @@ export function drawTimeline() {
     // The handle being dragged must stay the same element.
     const focused = track.querySelector(".take:focus") ? [...track.querySelectorAll(".take")].indexOf(document.activeElement) : -1;
     track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
-    track.prepend(lengths, ...salutes, ...takes);
+    track.querySelector(".filmstrip")?.after(lengths, ...salutes, ...takes) ?? track.prepend(lengths, ...salutes, ...takes);
     if (focused >= 0) takes[focused]?.focus();
-    for (const which of ["start", "end"]) {
-      const input = track.querySelector(`.handle.${which}`);
-      input.value = range[which].toFixed(2);
-      input.setAttribute("aria-valuetext", moment(range[which]));
-    }
-    box.querySelector(".range-text").replaceWith(note);
+    placeHandles(track, range);
+    byId("range-text").replaceChildren(note);
     return undefined;
   }
   box.dataset.clip = clip.id;
-  return box.replaceChildren(
-    h("div", { className: "track", role: "group", "aria-label": "Takes" }, lengths, salutes, takes, handle("start", range, duration), handle("end", range, duration)),
-    ruler(duration),
-    note);
+  const behind = h("div", { className: "curve-area" }, curves(state.timeline));
+  const lane = h("div", { className: "track", role: "group", "aria-label": "Takes" }, lengths, salutes, takes, handle("start"), handle("end"));
+  const along = h("div", { className: "along" }, lane, behind, h("i", { className: "now", id: "now" }));
+  box.replaceChildren(along, h("div", { className: "under" }, ruler(duration), legend()));
+  lane.prepend(filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight) ?? "");
+  placeHandles(lane, range);
+  scrub(along);
+  byId("range-text").replaceChildren(note);
+  return drawNow();
+}
+
+/** Show where the clock stands. */
+export function drawNow() {
+  const line = document.getElementById("now");
+  if (line && state.position && state.timeline) line.style.left = percent(state.position.time, lastMoment());
 }

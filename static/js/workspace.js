@@ -2,6 +2,8 @@
 
 import * as api from "./api.js";
 import { byId, h } from "./dom.js";
+import { followClock } from "./playback.js";
+import { listenToKeys } from "./keys.js";
 import { complain } from "./toasts.js";
 
 const KEY = "osg-studio.workspace"; // sessionStorage: every tab is its own workspace.
@@ -46,6 +48,7 @@ async function open() {
   else workspace = await api.workspaces.open(prefersDark.matches);
   mine = workspace.id;
   sessionStorage.setItem(KEY, mine);
+  followClock(mine);
   loadFrame(workspace.url);
   return workspace.id;
 }
@@ -71,6 +74,7 @@ function watch(frame, late) {
     observer.disconnect();
     clearTimeout(late);
     explain(null);
+    listenToKeys(frame.contentWindow); // They mean the same while the 3D view has the focus.
   };
   const observer = new MutationObserver(drawn);
   observer.observe(page.querySelector("#root"), { childList: true, subtree: true });

@@ -30,7 +30,7 @@ def background(page: Page, *, in_frame: bool = False) -> str:
 def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library) -> None:
     query = {**library.address, "recognition": library.recognise("circle")}
     page = open_page(query, size=(390, 844))
-    expect(page.frame_locator("#lab").get_by_role("button", name="Play")).to_be_visible()
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     for name in ("Save as gesture", "Recognise", "New language"):
         expect(page.get_by_role("button", name=name)).to_be_in_viewport()

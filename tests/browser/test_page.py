@@ -134,10 +134,12 @@ def test_a_range_can_be_chosen_by_hand_with_the_keyboard(
     page = open_page(library.address, scene=False)
     start = page.get_by_role("slider", name="Start of the range")
     (take,) = library.client.get(f"/api/v1/clips/{library.clip}/takes").json()
-    expect(start).to_have_attribute("aria-valuetext", f"{take['start']:.2f} s")
+    times = library.client.get(f"/api/v1/clips/{library.clip}/timeline").json()["time"]
+    frame = times.index(take["start"])
+    expect(start).to_have_attribute("aria-valuetext", f"frame {frame}, {take['start']:.2f} s")
     start.focus()
     page.keyboard.press("ArrowRight")
-    moved = take["start"] + 0.01
+    moved = times[frame + 1]
     expect(page.get_by_text(f"Range by hand: {moved:.2f} s")).to_be_visible()
     expect(page).to_have_url(re.compile(f"start={moved:.2f}"))
     page.get_by_role("button", name="Back to 1 take").click()

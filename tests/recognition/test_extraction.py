@@ -10,6 +10,7 @@ from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
 from app.recognition.extraction import extract_poses, record
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.takes import takes_in
+from app.recognition.video import VideoFrame
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.recognition.parametric_hand import hand_xy, salute
 
@@ -125,8 +126,8 @@ def test_an_observer_sees_every_frame_before_it_is_counted(clip: Path) -> None:
     seen: list[FrameLandmarks] = []
     counted: list[tuple[int, int]] = []
 
-    def observe(time: float, found: FrameLandmarks) -> None:
-        times.append(time)
+    def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+        times.append(frame.time)
         seen.append(found)
 
     recording = record(
@@ -143,8 +144,8 @@ def test_an_observer_sees_every_frame_before_it_is_counted(clip: Path) -> None:
 
 
 def test_an_exception_in_an_observer_cancels(clip: Path) -> None:
-    def cancel(time: float, _: FrameLandmarks) -> None:
-        raise InterruptedError(f"at {time} s")
+    def cancel(frame: VideoFrame, _: FrameLandmarks) -> None:
+        raise InterruptedError(f"at {frame.time} s")
 
     estimator = ScriptedEstimator()
     with pytest.raises(InterruptedError, match=r"at 0\.0 s"):

@@ -84,14 +84,27 @@ def test_the_verdict_says_in_words_what_came_out(
     assert "2 of 3 voters, confidence 62%" in text
 
 
-def test_the_vote_table_has_a_row_per_gesture_with_the_most_votes_first() -> None:
-    _, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
-    assert [row[0] for row in rows] == ["wedgechosen", "circleexpected", "line"]
-    assert [row[1:] for row in rows] == [
-        [".25", ".004", "1.00", "2"],
-        ["1.00", "1.00", ".50", "1"],
-        ["1.00", "1.00", "1.00", "0"],
+def test_the_vote_table_has_a_row_per_voter_and_the_most_votes_come_first() -> None:
+    head, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
+    assert head == ["voter", "share", "wedgechosen", "circleexpected", "line"]
+    assert rows == [
+        ["hu", "33%", ".25", "1.00", "1.00"],
+        ["aspect ratio", "33%", ".004", "1.00", "1.00"],
+        ["solidity", "33%", "1.00", ".50", "1.00"],
+        ["votes", "2", "1", "0"],
     ]
+
+
+def test_voters_that_have_no_share_come_last_and_do_not_count() -> None:
+    told = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
+    table = Elements(charts.vote_table(told, None))
+    assert [row[:2] for row in table.rows[1:]] == [
+        ["solidity", "70%"],
+        ["aspect ratio", "30%"],
+        ["hu", "0%"],
+        ["votes", "1"],
+    ]
+    assert [row.get("class") for row in table.named("tr")].count("mute") == 1
 
 
 def test_each_voters_choice_is_marked_once_and_not_by_colour_alone() -> None:
@@ -113,14 +126,14 @@ def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
     distances[:, 2] = np.inf
     uncomparable = replace(plain, distances=distances)
     rows = Elements(charts.vote_table(uncomparable, None)).rows
-    assert rows[-1] == ["line", *["\N{INFINITY}"] * 3, "0"]
+    assert [row[-1] for row in rows] == ["line", *["\N{INFINITY}"] * 3, "0"]
 
 
 def test_a_large_language_shows_its_nearest_gestures_and_counts_the_rest() -> None:
     gestures = tuple(f"gesture {number}" for number in range(200))
     html = charts.vote_table(recognition(label="gesture 1", gestures=gestures), None)
-    assert len(Elements(html).rows) == charts.MAX_ROWS + 1
-    assert f"{200 - charts.MAX_ROWS} farther gestures are not shown" in html
+    assert len(Elements(html).rows[0]) == charts.MAX_COLUMNS + 2
+    assert f"{200 - charts.MAX_COLUMNS} farther gestures are not shown" in html
 
 
 @given(st.text(min_size=1))

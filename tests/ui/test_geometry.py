@@ -66,9 +66,9 @@ def test_a_single_frame_is_a_cube_as_well() -> None:
 def test_bones_and_joints_that_were_not_seen_are_not_drawn() -> None:
     cube = CubeGeometry.from_poses(recording_of("circle").poses)
     # Seen: both shoulders and hips, joined by four bones; wrists without elbows have none.
-    assert cube.bones(0).shape == (4, 2, 3)
-    assert len(cube.joints(0)) == 6
-    assert np.isfinite(cube.bones(0)).all()
+    assert cube.bones(cube.points[0]).shape == (4, 2, 3)
+    assert len(cube.joints(cube.points[0])) == 6
+    assert np.isfinite(cube.bones(cube.points[0])).all()
 
 
 def test_a_trail_runs_from_the_start_to_the_frame_on_display() -> None:
@@ -94,8 +94,8 @@ def test_landmarks_beside_the_video_are_guesses_and_not_drawn() -> None:
         PoseSequence(landmarks=POSE_LANDMARKS, xy=xy, time=poses.time, frame_size=poses.frame_size)
     )
     inside = CubeGeometry.from_poses(poses)
-    assert len(beside.joints(0)) == len(inside.joints(0)) - 1
-    assert len(beside.bones(0)) == len(inside.bones(0)) - 2
+    assert len(beside.joints(beside.points[0])) == len(inside.joints(inside.points[0])) - 1
+    assert len(beside.bones(beside.points[0])) == len(inside.bones(inside.points[0])) - 2
     assert len(beside.quiet_trails(())) < len(inside.quiet_trails(()))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.ui.playback import Playback
+from app.ui.playback import Playback, Position
 from tests.api.running import until
 
 
@@ -110,6 +110,56 @@ def test_another_recording_stops_the_last_one(playback: Playback) -> None:
     playback.load([0.0, 1.0, 2.0], frame=1)
     assert not playback.playing
     assert playback.frame == 1
+
+
+def test_a_loop_stays_in_the_range_on_display(playback: Playback, screen: Screen) -> None:
+    playback.load([second / 100 for second in range(30)], frame=12, span=(10, 14))
+    playback.play(16)
+    until(lambda: 14 in screen.drawn and screen.drawn[-1] == 10)
+    assert set(screen.drawn[1:]) <= set(range(10, 15))
+
+
+def test_without_a_loop_it_plays_to_the_end_of_the_clip_and_stops(
+    playback: Playback, screen: Screen
+) -> None:
+    playback.load([second / 100 for second in range(30)], frame=12, span=(10, 14))
+    playback.set_loop(False)
+    playback.play(2)
+    until(shows(screen, 29))
+    until(lambda: not playback.playing)
+
+
+def test_backwards_it_plays_to_the_start(playback: Playback, screen: Screen) -> None:
+    playback.load([second / 100 for second in range(30)])
+    playback.set_loop(False)
+    playback.seek(20)
+    playback.play(-2)
+    until(shows(screen, 0))
+    until(lambda: not playback.playing)
+    assert playback.position.speed == -2
+
+
+def test_a_step_pauses_and_moves_by_whole_frames(playback: Playback, screen: Screen) -> None:
+    playback.load([0.0, 3600.0, 7200.0, 7300.0])
+    playback.play(1)
+    playback.step(2)
+    until(shows(screen, 2))
+    assert not playback.playing
+    playback.step(-1)
+    until(shows(screen, 1))
+
+
+def test_who_listens_hears_of_every_frame_until_it_ends(playback: Playback) -> None:
+    heard: list[Position] = []
+    end = playback.listen(heard.append)
+    playback.load([0.0, 0.25, 0.5])
+    playback.seek(2)
+    until(lambda: bool(heard) and heard[-1].frame == 2)
+    assert heard[-1] == Position(2, 3, 0.5, playing=False, speed=1.0, loop=True)
+    end()
+    playback.seek(0)
+    until(lambda: playback.position.frame == 0)
+    assert heard[-1].frame == 2
 
 
 def test_a_picture_that_arrives_is_drawn_if_its_frame_is_on_display(

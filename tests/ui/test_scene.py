@@ -41,7 +41,7 @@ def wall_behind(shown: Range) -> Wall:
 def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, shown: Range) -> None:
     scene = SpaceTimeCube(server, DARK)
     cube = CubeGeometry.from_poses(shown.poses)
-    scene.show(cube, SALIENT, wall_behind(shown))
+    scene.show(cube, SALIENT, wall_behind(shown), shown.poses, 0)
     image = np.full((12, 16, 3), 200, np.uint8)
     scene.seek(10, image)
     video = server.scene.get_handle_by_name("/video")
@@ -56,13 +56,33 @@ def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, show
     np.testing.assert_array_equal(video.image, image)
 
 
+def test_outside_the_range_the_plane_stands_at_its_ends(
+    server: viser.ViserServer, tmp_path: Path
+) -> None:
+    view = view_in(tmp_path)
+    shown = Range.of(view)
+    scene = SpaceTimeCube(server, DARK)
+    cube = CubeGeometry.from_poses(shown.poses)
+    scene.show(cube, SALIENT, None, view.recording.poses, shown.first)
+    video = server.scene.get_handle_by_name("/video")
+    joints = server.scene.get_handle_by_name("/skeleton/joints")
+    assert isinstance(video, viser.ImageHandle)
+    assert isinstance(joints, viser.PointCloudHandle)
+    for frame, depth in ((0, 0.0), (len(view.recording.poses) - 1, cube.back)):
+        scene.seek(frame, None)
+        assert video.position[2] == pytest.approx(depth)
+        whole = CubeGeometry.from_poses(view.recording.poses)
+        expected = whole.joints(whole.points[frame])
+        np.testing.assert_allclose(joints.points[:, :2], expected[:, :2], atol=1e-6)
+
+
 def test_another_recording_leaves_nothing_of_the_last_one(
     server: viser.ViserServer, shown: Range
 ) -> None:
     scene = SpaceTimeCube(server, DARK)
     cube = CubeGeometry.from_poses(shown.poses)
-    scene.show(cube, SALIENT, wall_behind(shown))
-    scene.show(cube, ("nose",), None)
+    scene.show(cube, SALIENT, wall_behind(shown), shown.poses, 0)
+    scene.show(cube, ("nose",), None, shown.poses, 0)
     assert server.scene.get_handle_by_name("/trails/right_wrist/past") is None
     assert server.scene.get_handle_by_name("/wall/image") is None
     scene.clear()

@@ -57,10 +57,12 @@ def test_showing_a_view_stands_where_past_and_future_are_seen(
 ) -> None:
     view = view_in(tmp_path)
     workspace.show(view)
-    frames = len(Range.of(view).poses)
+    shown = Range.of(view)
+    frames = len(shown.poses)
     assert workspace.view == view
-    assert workspace.playback.frame == first_look(frames)
+    assert workspace.playback.frame == shown.first + first_look(frames)
     assert 0 < first_look(frames) < frames - 1
+    assert workspace.playback.position.frames == len(view.recording.poses)
 
 
 def test_a_recognition_of_the_same_take_keeps_the_frame(
@@ -139,7 +141,7 @@ def test_a_range_of_one_frame_is_a_picture(workspace: Workspace, tmp_path: Path)
     view = view_in(tmp_path)
     moment = float(view.recording.poses.time[14])
     workspace.show(replace(view, start=moment, end=moment))
-    assert workspace.playback.frame == 0
+    assert workspace.playback.frame == 14
     assert workspace.playback.toggle() is False
 
 

@@ -40,10 +40,10 @@ async def probe(clip: Path, settings: Settings) -> Probed | Failed:
 
 
 async def extract(
-    clip: Path, recording: Path, poster: Path, settings: Settings
+    clip: Path, recording: Path, poster: Path, filmstrip: Path, settings: Settings
 ) -> AsyncGenerator[Progressed | Finished | Failed, None]:
     """Extract a clip, in a process of its own; the last message says how it ended."""
-    command = ["extract", str(clip), str(recording), str(poster)]
+    command = ["extract", str(clip), str(recording), str(poster), str(filmstrip)]
     silence_seconds = settings.worker_silence_seconds
     async with aclosing(_messages(command, settings, silence_seconds)) as messages:
         async for message in messages:

@@ -160,6 +160,7 @@ class ExtractionRunner:
             self._clips.video(job.clip_id),
             self._clips.recording(job.clip_id),
             self._clips.poster(job.clip_id),
+            self._clips.filmstrip(job.clip_id),
             self._settings,
         )
         started: float | None = None

@@ -22,18 +22,13 @@ from app.api.extraction.messages import Failed, Finished, Message, Pose, Probed,
 
 if TYPE_CHECKING:
     from app.recognition.estimation.base import Body, FrameLandmarks
+    from app.recognition.video import VideoFrame
 
 PROGRESS_SECONDS = 0.1
 """Shortest time between two reports: what an eye follows on a progress bar."""
 
 POSE_DIGITS = 4
 """Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
-
-POSTER_SECONDS = 1.0
-"""Where in the clip its still picture is taken: recordings often begin black or shaking."""
-
-POSTER_WIDTH = 320
-"""Pixels; a card of the page at twice the usual screen density."""
 
 Report = Callable[[Message], None]
 
@@ -45,18 +40,21 @@ def probe(clip: Path, report: Report) -> None:
     report(Probed(**asdict(video.probe(clip))))
 
 
-def extract(clip: Path, recording: Path, poster: Path, report: Report) -> None:
-    """Write the clip's poster and recording, reporting progress and the newest pose."""
+def extract(clip: Path, recording: Path, poster: Path, filmstrip: Path, report: Report) -> None:
+    """Write the clip's pictures and recording, reporting progress and the newest pose."""
+    from app.api.extraction.pictures import Thumbnails, write_poster
     from app.recognition import extraction, video
 
     write_poster(clip, poster)
     info = video.probe(clip)
     reported, newest_time = 0.0, 0.0
     newest: Body | None = None
+    thumbnails = Thumbnails()
 
-    def observe(frame_time: float, found: FrameLandmarks) -> None:
+    def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
         nonlocal newest_time, newest
-        newest_time, newest = frame_time, found.body
+        newest_time, newest = frame.time, found.body
+        thumbnails.add(frame.index, frame.image)
 
     def progress(done: int, total: int) -> None:
         nonlocal reported
@@ -69,6 +67,7 @@ def extract(clip: Path, recording: Path, poster: Path, report: Report) -> None:
     recorded = extraction.record(clip, progress=progress, observer=observe)
     frames = len(recorded.poses)
     report(Progressed(stage="saving", done=frames, total=frames))
+    thumbnails.write(filmstrip)
     recorded.save(recording)
     report(Finished(frames=frames, warnings=recorded.warnings))
 
@@ -81,29 +80,6 @@ def pose_in(body: Body, width: int, height: int) -> Pose:
         else None
         for x, y in body.xy.tolist()
     )
-
-
-def write_poster(clip: Path, poster: Path) -> None:
-    """Write a small JPEG of the frame at `POSTER_SECONDS`, or of the last one before."""
-    import cv2
-
-    from app.recognition import video
-
-    image = None
-    with video.read_frames(clip) as frames:
-        for frame in frames:
-            image = frame.image
-            if frame.time >= POSTER_SECONDS:
-                break
-    if image is None:
-        return
-    height, width = image.shape[:2]
-    size = (POSTER_WIDTH, max(1, round(height * POSTER_WIDTH / width)))
-    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
-    _, encoded = cv2.imencode(".jpg", cv2.cvtColor(small, cv2.COLOR_RGB2BGR))
-    partial = poster.with_suffix(".part")
-    partial.write_bytes(encoded.tobytes())
-    partial.replace(poster)
 
 
 def limit_resources(memory_bytes: int, cpu_seconds: int) -> None:
@@ -143,7 +119,7 @@ def main() -> None:
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("probe").add_argument("clip", type=Path)
     extracting = commands.add_parser("extract")
-    for name in ("clip", "recording", "poster"):
+    for name in ("clip", "recording", "poster", "filmstrip"):
         extracting.add_argument(name, type=Path)
     chosen = parser.parse_args()
 
@@ -162,7 +138,7 @@ def main() -> None:
         if chosen.command == "probe":
             probe(chosen.clip, report)
         else:
-            extract(chosen.clip, chosen.recording, chosen.poster, report)
+            extract(chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip, report)
     except MemoryError:
         report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
     except ModelError as error:

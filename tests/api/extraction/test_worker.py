@@ -6,11 +6,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 import pytest
 
-from app.api.extraction.worker import POSTER_WIDTH, pose_in, write_poster
+from app.api.extraction.worker import pose_in
 from app.recognition import Recording
 from app.recognition.estimation.base import Body
 from tests.recognition.damaged_clips import write_clip
@@ -41,10 +40,10 @@ def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("models")
-def test_extracting_reports_progress_and_leaves_recording_and_poster(tmp_path: Path) -> None:
+def test_extracting_reports_progress_and_leaves_recording_and_pictures(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=5)
     recording, poster = tmp_path / "recording.npz", tmp_path / "poster.jpg"
-    told = answers("extract", clip, recording, poster)
+    told = answers("extract", clip, recording, poster, tmp_path / "filmstrip.jpg")
     assert told[-1]["kind"] == "finished"
     assert told[-1]["frames"] == 5
     last = [answer for answer in told if answer.get("stage") == "poses"][-1]
@@ -54,6 +53,7 @@ def test_extracting_reports_progress_and_leaves_recording_and_poster(tmp_path: P
     assert poster.read_bytes()[:2] == b"\xff\xd8"
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "clip.mp4",
+        "filmstrip.jpg",
         "poster.jpg",
         "recording.npz",
     ]
@@ -70,20 +70,10 @@ def test_a_pose_is_told_as_fractions_of_the_picture() -> None:
 
 def test_a_worker_whose_server_is_gone_ends(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=2000)
-    command = [*COMMAND, "extract", str(clip), str(tmp_path / "r.npz"), str(tmp_path / "p.jpg")]
+    left = [str(tmp_path / name) for name in ("r.npz", "p.jpg", "f.jpg")]
+    command = [*COMMAND, "extract", str(clip), *left]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
         assert process.stdin is not None
         process.stdin.close()
         assert process.wait(60) == 1
     assert not (tmp_path / "r.npz").exists()
-
-
-def test_the_poster_is_the_upright_picture_made_small(tmp_path: Path) -> None:
-    clip = write_clip(tmp_path / "clip.mp4", size=(640, 480), frames=30)
-    write_poster(clip, tmp_path / "poster.jpg")
-    picture = cv2.imread(str(tmp_path / "poster.jpg"))
-    assert picture is not None
-    assert picture.shape == (POSTER_WIDTH * 3 // 4, POSTER_WIDTH, 3)
-    # The clip's top left quarter is red, the rest blue (OpenCV reads BGR).
-    assert int(np.argmax(picture[20, 20])) == 2
-    assert int(np.argmax(picture[-20, -20])) == 0

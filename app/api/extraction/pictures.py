@@ -1,0 +1,86 @@
+"""Still pictures of a clip: its poster, and the thumbnails along its timeline."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition import video
+
+Image = npt.NDArray[np.uint8]
+
+POSTER_SECONDS = 1.0
+"""Where in the clip its still picture is taken: recordings often begin black or shaking."""
+
+POSTER_WIDTH = 320
+"""Pixels; a card of the page at twice the usual screen density."""
+
+THUMBNAIL_HEIGHT = 72
+"""Pixels; the timeline's track at twice the usual screen density."""
+
+FEWEST_THUMBNAILS = 32
+"""A timeline 1400 wide has room for about thirty of 4:3; twice as many at most are kept."""
+
+
+def write_poster(clip: Path, poster: Path) -> None:
+    """Write a small JPEG of the frame at `POSTER_SECONDS`, or of the last one before."""
+    image = None
+    with video.read_frames(clip) as frames:
+        for frame in frames:
+            image = frame.image
+            if frame.time >= POSTER_SECONDS:
+                break
+    if image is None:
+        return
+    height, width = image.shape[:2]
+    _write(_resized(image, POSTER_WIDTH, round(height * POSTER_WIDTH / width)), poster)
+
+
+class Thumbnails:
+    """Keeps small pictures at even distances, however long the clip turns out to be.
+
+    Every frame at first; whenever there are too many, every other one is dropped.
+    """
+
+    def __init__(self) -> None:
+        self._stride = 1
+        self._images: list[Image] = []
+
+    def add(self, index: int, image: Image) -> None:
+        """Take frame number `index`; frames come in order, none left out."""
+        if index % self._stride:
+            return
+        height, width = image.shape[:2]
+        small = _resized(image, round(width * THUMBNAIL_HEIGHT / height), THUMBNAIL_HEIGHT)
+        self._images.append(small)
+        if len(self._images) >= 2 * FEWEST_THUMBNAILS:
+            self._images = self._images[::2]
+            self._stride *= 2
+
+    def write(self, path: Path) -> None:
+        """Write all of them side by side as one JPEG; nothing when there is none."""
+        if self._images:
+            _write(np.concatenate(self._images, axis=1), path)
+
+
+def thumbnails_in(frames: int) -> int:
+    """Return how many thumbnails a clip of so many frames has."""
+    stride = 1
+    while -(-frames // stride) >= 2 * FEWEST_THUMBNAILS:
+        stride *= 2
+    return -(-frames // stride)
+
+
+def _resized(image: Image, width: int, height: int) -> Image:
+    size = (max(1, width), max(1, height))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def _write(image: Image, path: Path) -> None:
+    _, encoded = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+    partial = path.with_suffix(".part")
+    partial.write_bytes(encoded.tobytes())
+    partial.replace(path)

@@ -1,0 +1,100 @@
+"""What lies along a clip's time: thumbnails, the salute's confidence, the wrists' speed."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, Field
+
+from app.api.extraction.pictures import thumbnails_in
+from app.api.problems import ProblemError, documented
+from app.api.ranges import keep_single_range
+from app.api.studio import CurrentStudio
+from app.recognition import PoseError, Recording
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import Trajectory
+
+router = APIRouter(prefix="/clips", tags=["clips"])
+
+WRISTS = ("left_wrist", "right_wrist")
+
+TIME_DIGITS = 6
+"""Microseconds: the finest that containers count in."""
+
+CURVE_DIGITS = 3
+"""More than a curve forty pixels high can show."""
+
+
+class TimelineView(BaseModel):
+    """What lies along a clip's time, one value a frame."""
+
+    time: list[float] = Field(description="Seconds, by the container")
+    salute: list[float] = Field(description="Confidence of the salute, 0 to 1")
+    speed: dict[str, list[float | None]] = Field(
+        description="Per wrist, torso lengths a second; null where it was not seen"
+    )
+    unit: str = Field(description="Of the speed's lengths: torso_length, or extent without a torso")
+    thumbnails: int = Field(description="How many the filmstrip has")
+
+
+@router.get("/{clip_id}/timeline", response_model=TimelineView, responses=documented(404, 409))
+def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
+    """Return the curves along the clip, one value a frame."""
+    recording = studio.recording(clip_id)
+    has_thumbnails = studio.clips.filmstrip(clip_id).is_file()
+    speeds, unit = wrist_speeds(recording)
+    content = {
+        "time": np.round(recording.poses.time, TIME_DIGITS).tolist(),
+        "salute": np.round(recording.salute, CURVE_DIGITS).tolist(),
+        "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
+        "unit": unit,
+        "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,
+    }
+    return Response(json.dumps(content, allow_nan=False), media_type="application/json")
+
+
+@router.get(
+    "/{clip_id}/filmstrip",
+    response_class=FileResponse,
+    responses={
+        **documented(404, 416),
+        200: {"description": "Thumbnails side by side", "content": {"image/jpeg": {}}},
+    },
+)
+def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+    """Send the thumbnails along the clip, once its poses are found."""
+    studio.clips.get(clip_id)
+    path = studio.clips.filmstrip(clip_id)
+    if not path.is_file():
+        raise ProblemError(404, "no_filmstrip", "there are no thumbnails of this clip yet")
+    keep_single_range(request, path.stat().st_size)
+    headers = {"Cache-Control": "private, max-age=3600"}
+    return FileResponse(path, media_type="image/jpeg", headers=headers)
+
+
+def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
+    """Return each wrist's speed ``(T,)``, and the unit of its lengths.
+
+    NaN where a wrist was not seen. Without anybody in view both are NaN throughout.
+    """
+    count = len(recording.poses)
+    try:
+        trajectory = Trajectory.from_poses(recording.poses)
+    except PoseError:
+        return {name: np.full(count, np.nan) for name in WRISTS}, "torso_length"
+    speeds = {}
+    for name in WRISTS:
+        path = trajectory.xy[:, trajectory.landmarks.index(name)]
+        moves = (
+            np.gradient(path, trajectory.time, axis=0) if count > 1 else np.full_like(path, np.nan)
+        )
+        speeds[name] = np.asarray(np.hypot(moves[:, 0], moves[:, 1]))
+    return speeds, trajectory.unit
+
+
+def _with_nulls(values: FloatArray) -> list[float | None]:
+    rounded = np.round(values, CURVE_DIGITS)
+    return [None if np.isnan(value) else float(value) for value in rounded]

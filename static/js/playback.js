@@ -1,0 +1,57 @@
+// The clock of the workspace: one for the 3D view, the timeline, and every key.
+
+import { state, update } from "./state.js";
+
+const RETRY = 1000; // ms
+
+let socket = null;
+let workspace = null;
+let wantedFrame = null; // what the URL said, until the clip is shown
+
+/** Follow the clock of a workspace, and of another one when that one is gone. */
+export function followClock(id) {
+  workspace = id;
+  socket?.close();
+  connect(id);
+}
+
+function connect(id) {
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  const opened = new WebSocket(`${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`);
+  socket = opened;
+  opened.onmessage = ({ data }) => told(JSON.parse(data));
+  // A workspace that is gone is opened anew by whoever shows something next.
+  opened.onclose = () => { if (socket === opened && workspace === id) setTimeout(() => { if (socket === opened) connect(id); }, RETRY); };
+}
+
+function told(position) {
+  const rests = !position.playing && wantedFrame === null && state.takes !== null;
+  update(rests ? { position, frame: position.frame } : { position });
+}
+
+function ask(wish) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wish));
+}
+
+/** Keep the frame that a link names, for `frameShown`. */
+export function rememberFrame(frame) {
+  wantedFrame = frame;
+}
+
+/** The clip is on display: go to the frame that the link named, once. */
+export function frameShown() {
+  if (wantedFrame !== null) seek(wantedFrame);
+  wantedFrame = null;
+}
+
+/** Show a frame of the clip, counted from 0. */
+export const seek = (frame) => ask({ do: "seek", frame: Math.max(0, Math.round(frame)) });
+
+/** Pause, and go some frames on or back. */
+export const step = (frames) => ask({ do: "step", frames });
+
+/** Play that many times as fast as the camera saw it; backwards if negative, 0 pauses. */
+export const play = (speed) => ask({ do: "play", speed });
+
+/** Repeat the range on display, or play on. */
+export const loop = (on) => ask({ do: "loop", on });
