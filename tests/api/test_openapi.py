@@ -76,7 +76,7 @@ def test_real_objects_answer_as_described(lasting_server: Running) -> None:
         language_id = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
         body: dict[str, Any] = {"label": "circle", "clip_id": clip_id}
         client.post(f"/api/v1/languages/{language_id}/gestures", json=body)
-        query = {"clip_id": clip_id, "language_id": language_id}
+        query = {"clip_id": clip_id, "language_id": language_id, "expected": "circle"}
         recognition_id = client.post("/api/v1/recognitions", json=query).json()["id"]
         known = {
             "clip_id": clip_id,
