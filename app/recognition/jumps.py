@@ -56,19 +56,27 @@ def jumps(trajectory: Trajectory) -> Mask:
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     paths = trajectory.xy / body_unit(trajectory)
+    known = np.asarray(np.isfinite(paths).all(axis=2))
+    kinked = _has_kink(paths)
     for index, name in enumerate(trajectory.landmarks):
-        seen = np.flatnonzero(np.isfinite(paths[:, index]).all(axis=1))
-        if name not in UNFOLLOWED and _has_kink(paths[seen, index]):
-            off[seen, index] = _strays(paths[seen, index], trajectory.time[seen])
+        seen = np.flatnonzero(known[:, index])
+        with_gaps = len(seen) < len(paths)
+        if name in UNFOLLOWED or not (with_gaps or kinked[index]):
+            continue
+        if with_gaps and not _has_kink(paths[seen, index, None]).any():
+            continue
+        off[seen, index] = _strays(paths[seen, index], trajectory.time[seen])
     return off
 
 
-def _has_kink(path: FloatArray) -> bool:
-    """Tell whether a step differs from the one before by more than `NOTICED`, as every jump's does.
+def _has_kink(paths: FloatArray) -> Mask:
+    """Tell ``(K,)`` in which of paths ``(T, K, 2)``, without gaps, a step differs from the last.
 
-    At thirty frames a second no movement's do; then nothing else need be looked at.
+    By more than `NOTICED`, as every jump's does. At thirty frames a second no movement's do; then
+    nothing else need be looked at.
     """
-    return float(np.linalg.norm(np.diff(path, 2, axis=0), axis=1).max(initial=0)) > NOTICED
+    bends = np.diff(paths, 2, axis=0)
+    return np.asarray(np.hypot(bends[..., 0], bends[..., 1]).max(axis=0, initial=0) > NOTICED)
 
 
 def body_unit(trajectory: Trajectory) -> float:

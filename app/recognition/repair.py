@@ -84,19 +84,27 @@ def repaired(poses: PoseSequence) -> Repair:
     """
     no_frame = np.zeros(len(poses), dtype=bool)
     result = Repair(poses, no_frame, no_frame, np.zeros(poses.seen.shape, dtype=bool))
+    if not poses.seen.any():
+        return result
+    seen = Trajectory.from_poses(poses)
     for _ in range(ROUNDS):
         before = result.poses
         for mend in (_with_sides_right, _without_jumps):
-            if result.poses.seen.any():
-                result = mend(result)
+            mended = mend(result, seen)
+            if mended is result:
+                continue
+            result = mended
+            if not result.poses.seen.any():
+                return result
+            seen = Trajectory.from_poses(result.poses)
         if result.poses is before:
             break
     return result
 
 
-def _with_sides_right(repair: Repair) -> Repair:
+def _with_sides_right(repair: Repair, seen: Trajectory) -> Repair:
     poses = repair.poses
-    sides = mistaken_sides(Trajectory.from_poses(poses))
+    sides = mistaken_sides(seen)
     if not sides.exchanged.any():
         return repair
     xy = exchanged_back(poses.xy, poses.landmarks, sides.exchanged)
@@ -112,9 +120,9 @@ def _with_sides_right(repair: Repair) -> Repair:
     )
 
 
-def _without_jumps(repair: Repair) -> Repair:
+def _without_jumps(repair: Repair, seen: Trajectory) -> Repair:
     poses = repair.poses
-    off = jumps(Trajectory.from_poses(poses))
+    off = jumps(seen)
     if not off.any():
         return repair
     xy = np.where(off[..., None], np.nan, poses.xy)

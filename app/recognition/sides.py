@@ -95,7 +95,13 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     toll = TOLL * float(np.median(apart))
     # A body in view tells its sides apart by the trunk, wherever the hands went meanwhile.
     speed = 0.0 if set(SHOULDERS) <= set(trajectory.landmarks) else UNSEEN_SPEED
-    mistaken = _steadiest(_accelerations(here, there, trajectory.time[clear], speed), toll)
+    both = np.stack([np.stack([here, there], 1), np.stack([there, here], 1)])
+    accelerations = _Accelerations.between(both, trajectory.time[clear], speed)
+    kept = accelerations.of(0, 0, 0)
+    # A change of sides spares at most the two accelerations around it.
+    if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
+        return none
+    mistaken = _steadiest(accelerations.of_all(), toll)
     if not mistaken.any():
         return none
     if mistaken.mean() > MOST_EXCHANGED:
@@ -137,40 +143,51 @@ def _blended(trajectory: Trajectory) -> Mask:
     return np.asarray((width < BLENDED * usual) & (usual > FRONTAL))
 
 
-def _accelerations(
-    here: FloatArray, there: FloatArray, time: FloatArray, unseen_speed: float
-) -> FloatArray:
-    """Sum by how much landmarks miss where their velocity would have carried them.
+@dataclass(frozen=True, eq=False)
+class _Accelerations:
+    """By how much landmarks miss where their velocity would have carried them.
 
-    Parameters
+    Attributes
     ----------
-    here, there
-        ``(T, K, 2)``: one side's landmarks and their counterparts, in torso lengths.
-    time
-        ``(T,)`` seconds.
-    unseen_speed
-        Torso lengths a second that each landmark may have gone elsewhere in a gap.
-
-    Returns
-    -------
-    ``(T - 2, 2, 2, 2)``: for each frame from the third on, when the frame two before, the one
-    before and itself are kept (0) or exchanged (1). A landmark that is not seen in all three counts
-    nothing.
+    both
+        ``(2, T, 2, K, 2)``: the landmarks of both sides, kept (0) or exchanged (1), in torso
+        lengths.
+    carried
+        ``(T - 2, 1, 1, 1)``: share of the last step by which the next one carries on.
+    elsewhere
+        ``(T - 2, 1, 1)``: torso lengths that a landmark may have gone elsewhere in a gap.
 
     """
-    both = np.stack([np.stack([here, there], 1), np.stack([there, here], 1)])
-    steps = np.diff(time)
-    # After a gap a hand may have stopped, so it is carried no farther than between the frames
-    # before, and it may have gone elsewhere.
-    carried = np.minimum(steps[1:] / steps[:-1], 1.0)[:, None, None, None]
-    gaps = np.maximum(steps[1:], steps[:-1]) - float(np.median(steps))
-    elsewhere = unseen_speed * np.maximum(gaps, 0.0)[:, None, None]
-    missed = np.empty((len(time) - 2, 2, 2, 2))
-    for first, second, third in np.ndindex(2, 2, 2):
-        before, last = both[first, :-2], both[second, 1:-1]
-        off = np.linalg.norm(both[third, 2:] - last - carried * (last - before), axis=-1)
-        missed[:, first, second, third] = np.nansum(np.maximum(off - elsewhere, 0), axis=(1, 2))
-    return missed
+
+    both: FloatArray
+    carried: FloatArray
+    elsewhere: FloatArray
+
+    @classmethod
+    def between(cls, both: FloatArray, time: FloatArray, unseen_speed: float) -> _Accelerations:
+        """Prepare for frames at times ``(T,)`` and a speed in gaps, torso lengths a second."""
+        steps = np.diff(time)
+        # After a gap a hand may have stopped, so it is carried no farther than between the frames
+        # before, and it may have gone elsewhere.
+        carried = np.minimum(steps[1:] / steps[:-1], 1.0)[:, None, None, None]
+        gaps = np.maximum(steps[1:], steps[:-1]) - float(np.median(steps))
+        elsewhere = unseen_speed * np.maximum(gaps, 0.0)[:, None, None]
+        return cls(both, carried, elsewhere)
+
+    def of(self, first: int, second: int, third: int) -> FloatArray:
+        """Sum them, ``(T - 2,)``, for frames of which each is kept (0) or exchanged (1).
+
+        A landmark that is not seen in all three counts nothing.
+        """
+        before, last = self.both[first, :-2], self.both[second, 1:-1]
+        off = self.both[third, 2:] - last - self.carried * (last - before)
+        missed = np.maximum(np.hypot(off[..., 0], off[..., 1]) - self.elsewhere, 0.0)
+        return np.asarray(np.nansum(missed, axis=(1, 2)))
+
+    def of_all(self) -> FloatArray:
+        """Sum them for every choice: ``(T - 2, 2, 2, 2)``."""
+        choices = [self.of(*choice) for choice in np.ndindex(2, 2, 2)]
+        return np.stack(choices, axis=1).reshape(-1, 2, 2, 2)
 
 
 def _steadiest(missed: FloatArray, toll: float) -> Mask:
@@ -179,15 +196,11 @@ def _steadiest(missed: FloatArray, toll: float) -> Mask:
     Parameters
     ----------
     missed
-        See `_accelerations`.
+        See `_Accelerations.of_all`.
     toll
         Added for every change of sides.
 
     """
-    kept = missed[:, 0, 0, 0]
-    # A change of sides spares at most the two accelerations around it.
-    if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
-        return np.zeros(len(missed) + 2, dtype=bool)
     change = toll * np.array([[0.0, 1.0], [1.0, 0.0]])
     total = np.array([[0.0, toll], [np.inf, np.inf]])  # by what the last two frames are
     came_from = np.empty((len(missed), 2, 2), dtype=np.intp)
