@@ -35,11 +35,28 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     grow with the number of steps; infinite where nothing can be compared.
 
     """
-    costs = squared_distances(query, references)
-    steps = len(query)
-    cells = costs.reshape(steps * steps, len(references))
+    return alignment_costs(squared_distances(query, references), band)
+
+
+def alignment_costs(costs: FloatArray, band: int) -> FloatArray:
+    """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
+
+    Parameters
+    ----------
+    costs
+        ``(N, N, M)``: of each step of the one sequence against each of the other, for M pairs.
+    band
+        As for `elastic_distances`.
+
+    Returns
+    -------
+    ``(M,)``: costs summed along the alignment over N.
+
+    """
+    steps, _, pairs = costs.shape
+    cells = costs.reshape(steps * steps, pairs)
     # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
-    total = np.full((2 * band + 3, len(references)), np.inf)
+    total = np.full((2 * band + 3, pairs), np.inf)
     total[band + 1] = cells[0]
     for diagonal in _diagonals(steps, band):
         # A row was last written two diagonals ago (both ran on), its neighbours one ago.

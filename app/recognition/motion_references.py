@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.elastic import alignment_costs
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
 from app.recognition.movement import (
@@ -21,7 +22,7 @@ from app.recognition.movement import (
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading, readings
 from app.recognition.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as
@@ -46,9 +47,12 @@ MAX_GESTURES_READ_OTHERWISE = 64
 differ by nothing but direction are to be expected, and the comparison of all with all in all
 readings would take seconds."""
 
-MOST_COMPARED = 2
+MOST_COMPARED = 1
 """Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
 576 air-drawn digits, letters and commands none was named otherwise with 1, 2, 3, 4 or all."""
+
+ROWS_AT_ONCE = 64
+"""Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
@@ -134,7 +138,7 @@ class MotionReferences:
         """
         rows = self.promising(query["path"])
         distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
-        distances[:, rows] = self._distances(query, rows)
+        distances[:, rows] = _distances(query, self._described(rows))
         return distances
 
     def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
@@ -165,24 +169,22 @@ class MotionReferences:
         kinds = [2 * reading.exchanged + reading.backward for reading in self.readings]
         return 4 * self.gestures + np.array(kinds, dtype=np.intp)
 
-    def _distances(
-        self, query: dict[str, FloatArray], rows: npt.NDArray[np.intp] | slice
-    ) -> FloatArray:
-        """Compare a query with some of the rows: ``(V, len(rows))``."""
-        return np.stack(
-            [
-                voter.distances(query[voter.name], self.descriptors[voter.name][rows])
-                for voter in MOTION_VOTERS
-            ]
-        )
+    @cached_property
+    def _penalties(self) -> FloatArray:
+        """``(R,)``: the factor on each row's distances."""
+        return np.array([reading.penalty for reading in self.readings])
+
+    def _described(self, rows: npt.NDArray[np.intp] | slice | int) -> dict[str, FloatArray]:
+        return {name: values[rows] for name, values in self.descriptors.items()}
 
     def own_distances(self, rows: npt.NDArray[np.intp]) -> FloatArray:
         """Compare some of the rows with all: ``(V, len(rows), R)``."""
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
-        for index, row in enumerate(rows):
-            own[:, index] = self._distances(
-                {name: values[row] for name, values in self.descriptors.items()}, slice(None)
-            )
+        for start in range(0, len(self), ROWS_AT_ONCE):
+            block = slice(start, start + ROWS_AT_ONCE)
+            references = self._described(block)
+            for index, row in enumerate(rows):
+                own[:, index, block] = _distances(self._described(int(row)), references)
         return own
 
     def nearest(
@@ -204,13 +206,27 @@ class MotionReferences:
         ``(G,)`` the row of that reading; -1 for a gesture without demonstration.
 
         """
-        penalties = np.array([reading.penalty for reading in self.readings])
-        scores = fused(distances, say, between) * penalties
+        scores = fused(distances, say, between) * self._penalties
         chosen = np.full(count, -1, dtype=np.intp)
         # Writing the best last lets it stay, and of equals the first: as shown.
         order = np.argsort(scores, kind="stable")[::-1]
         chosen[self.gestures[order]] = order
         return chosen
+
+
+def _distances(query: dict[str, FloatArray], references: dict[str, FloatArray]) -> FloatArray:
+    """Compare a query with M references, each described per voter: ``(V, M)``.
+
+    The elastic voters' alignments are found together, which costs hardly more than one of them.
+    """
+    elastic = [voter for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter)]
+    costs = [voter.step_costs(query[voter.name], references[voter.name]) for voter in elastic]
+    aligned = np.split(alignment_costs(np.concatenate(costs, axis=2), BAND), len(elastic))
+    found = {voter.name: row for voter, row in zip(elastic, aligned, strict=True)}
+    for voter in MOTION_VOTERS:
+        if voter.name not in found:
+            found[voter.name] = voter.distances(query[voter.name], references[voter.name])
+    return np.stack([found[voter.name] for voter in MOTION_VOTERS])
 
 
 def tempo_counts(

@@ -44,11 +44,14 @@ class Outline:
     @classmethod
     def of(cls, image: BinaryImage) -> Outline:
         """Close gaps and follow the outer contours (Suzuki and Abe 1985)."""
-        padded = np.pad(image, CLOSING_DIAMETER)
+        left, top, width, height = cv2.boundingRect(image)
+        strokes = image[top : top + height, left : left + width]
+        padded = np.pad(strokes, CLOSING_DIAMETER)
         found, _ = cv2.findContours(
             closed(padded, CLOSING_DIAMETER), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
         )
-        contours = [contour[:, 0].astype(np.float64) - CLOSING_DIAMETER for contour in found]
+        corner = np.array([left, top]) - CLOSING_DIAMETER
+        contours = [contour[:, 0].astype(np.float64) + corner for contour in found]
         return cls(tuple(sorted(contours, key=lambda contour: tuple(contour.mean(axis=0)))))
 
     @cached_property

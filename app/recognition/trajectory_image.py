@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
 
 import cv2
 import numpy as np
@@ -104,8 +103,9 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
 
 def _strokes(path: FloatArray) -> list[FloatArray]:
     """Split ``(T, 2)`` at its NaN rows into unbroken stretches."""
-    runs = groupby(path, key=lambda point: bool(np.isfinite(point).all()))
-    return [np.stack(list(points)) for known, points in runs if known]
+    known = np.isfinite(path).all(axis=1)
+    ends = np.flatnonzero(np.diff(known, prepend=False, append=False))
+    return [path[start:end] for start, end in ends.reshape(-1, 2)]
 
 
 def _draw_stroke(image: BinaryImage, corners: FloatArray) -> None:
@@ -153,6 +153,8 @@ def _distances_to_segment(points: FloatArray, start: FloatArray, end: FloatArray
     """Return the distance of each of ``(N, 2)`` points from a straight segment, ``(N,)``."""
     along = end - start
     length = float(along @ along)
-    share = np.clip((points - start) @ along / length, 0.0, 1.0) if length > 0 else 0.0
-    nearest = start + np.multiply.outer(share, along)
-    return np.asarray(np.linalg.norm(points - nearest, axis=1), dtype=np.float64)
+    offsets = points - start
+    if length > 0:
+        share = np.minimum(np.maximum(offsets @ along / length, 0.0), 1.0)
+        offsets -= share[:, None] * along
+    return np.asarray(np.hypot(offsets[:, 0], offsets[:, 1]), dtype=np.float64)

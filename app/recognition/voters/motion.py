@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
 
-from app.recognition.elastic import elastic_distances, squared_distances
+from app.recognition.elastic import alignment_costs, squared_distances
 from app.recognition.movement import LIMBS, Movement
 from app.recognition.poses import FloatArray
 from app.recognition.voters.base import euclidean_distances
@@ -45,7 +46,27 @@ class MotionVoter(Protocol):
         ...
 
 
-class Path:
+class ElasticVoter(ABC):
+    """A voter that aligns two movements step by step, and so can be asked together with others."""
+
+    @abstractmethod
+    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Compare each step of the query with each of every reference: ``(N, N, M)``."""
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the elastic distances, ``(M,)``; infinite where nothing can be compared."""
+        return alignment_costs(self.step_costs(query, references), BAND)
+
+
+class _Vectors(ElasticVoter):
+    """A voter whose every step is one vector, known throughout."""
+
+    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return squared distances."""
+        return squared_distances(query, references)
+
+
+class Path(_Vectors):
     """Elastic distance between the paths, free of place and size (Sakoe and Chiba 1978).
 
     Each landmark's path is relative to its own mean; all are divided by one size, the root of the
@@ -59,12 +80,8 @@ class Path:
         """Return ``(N, 2 L)`` coordinates in sizes."""
         return _sized(movement.paths - movement.paths.mean(axis=0)).reshape(len(movement.paths), -1)
 
-    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Return the elastic distances, ``(M,)``."""
-        return elastic_distances(query, references, BAND)
 
-
-class Direction:
+class Direction(_Vectors):
     """Elastic distance between the directions of travel (Taranta et al. 2017, Jackknife).
 
     The joint unit vector of all landmarks' velocities at equal steps: of no size, so that small
@@ -80,20 +97,16 @@ class Direction:
         length = np.sqrt((steps**2).sum(axis=(1, 2), keepdims=True))
         return np.asarray((steps / (length + 1e-9)).reshape(len(steps), -1))
 
-    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Return the elastic distances, ``(M,)``."""
-        return elastic_distances(query, references, BAND)
 
-
-class _Limbs:
+class _Limbs(ElasticVoter):
     """A voter that compares vectors along bones, each step weighted by how far it is under way."""
 
-    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Return the elastic distances, ``(M,)``; infinite where no limb is seen in both."""
+    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return squared distances; infinite where no limb is seen in both."""
         known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
         if not known.any():
-            return np.full(len(references), np.inf)
-        return elastic_distances(query[:, known], references[..., known], BAND)
+            return np.full((len(query), len(query), len(references)), np.inf)
+        return squared_distances(query[:, known], references[..., known])
 
 
 class Posture(_Limbs):
