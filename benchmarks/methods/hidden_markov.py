@@ -18,7 +18,7 @@ STATES = 8
 LEAST_VARIANCE = 1e-3
 """Of a coordinate within a state, in squared sizes: below the spread between two takes."""
 
-ROUNDS = 15
+ROUNDS = 10
 """Of expectation maximisation."""
 
 

@@ -13,9 +13,9 @@ from app.recognition.variation import variants
 from benchmarks.methods.base import Method
 from benchmarks.methods.steps import features
 
-VARIANTS = 50
-"""Variants of each gesture that are trained on, beside the demonstration itself. Doubling them
-changed no accuracy by more than sampling error."""
+VARIANTS = 30
+"""Variants of each gesture that are trained on, beside the demonstration itself: few enough that
+all methods are trained on hundreds of languages in one run."""
 
 
 class TrainedOnVariants(Method):
