@@ -14,11 +14,10 @@ from typing import Any, Literal
 import numpy as np
 
 from app.recognition.course import course
-from app.recognition.fusion import TYPICAL
 from app.recognition.landmarks import other_side
 from app.recognition.motion_references import CLEARLY_SLOWER
 from app.recognition.movement import STEPS, movement
-from app.recognition.pairing import Pairing
+from app.recognition.pairing import ALIKE, Pairing
 from app.recognition.poses import FloatArray
 from app.recognition.sides import exchanged_back, mistaken_sides
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
@@ -32,8 +31,9 @@ Kind = Literal[
 hand; as its mirror image; a part missing, or too much; another course; slower or quicker; elsewhere
 beside the body; larger or smaller; not seen for a while."""
 
-CLEARLY_ALIKE = TYPICAL["path"].within
-"""Distance between paths below which two takes are one figure: that of two people's takes."""
+DIFFERENT = 2 * ALIKE
+"""Path distance from which a query's path is told to differ: twice what two people's takes of one
+figure differ by. Of plausible takes by another person a third lie beyond it."""
 
 LEAST_SHARE = 0.5
 """Share of the distance that undoing a difference must take away for it to be named: what it
@@ -64,8 +64,9 @@ class Difference:
     kind
         See `Kind`.
     share
-        In [0, 1]: of the distance between the paths, what undoing it takes away; 0 for what is
-        told beside it and changes no path: tempo, place, size, what was not seen.
+        In [0, 1]: of the distance between the paths, beyond what takes of one figure differ by,
+        what undoing it takes away; 0 for what is told beside it and changes no path: tempo,
+        place, size, what was not seen.
     landmark
         The joint concerned most; None: all of them.
     start, end
@@ -101,12 +102,13 @@ def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, 
 
     """
     found: list[Difference] = []
-    if pairing.base > CLEARLY_ALIKE:
-        undone = [*_exchanged(pairing), *_on_the_other_side(pairing), *_cut(pairing)]
-        if sees_direction:
-            undone += _turned(pairing)
+    if pairing.base > DIFFERENT:
+        turned = _turned(pairing) if sees_direction else ()
+        undone = [*_exchanged(pairing), *turned, *_on_the_other_side(pairing), *_cut(pairing)]
         found = [difference for difference in undone if difference.share >= LEAST_SHARE]
-        found = sorted(found, key=lambda difference: -difference.share) or [_bent(pairing)]
+        # A circle turned round is its mirror image too: of equals the first is the likeliest.
+        found = sorted(found, key=lambda difference: -round(difference.share, 1))
+        found = found or [_bent(pairing)]
     if found and found[0].kind == "exchanged_sides":
         return tuple(found)  # where and how large such a path is, says nothing of the gesture
     beside = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing)]
@@ -222,9 +224,19 @@ def _cut(pairing: Pairing) -> Iterator[Difference]:
 def _best_cut(
     pairing: Pairing, whole: FloatArray, cut: FloatArray, at_end: bool
 ) -> tuple[int, float]:
-    """Find how many steps to cut off so that the rest is the whole of the other: with what left."""
-    rests = [cut[: STEPS - steps] if at_end else cut[steps:] for steps in CUTS]
-    left = [pairing.distance(whole, [_stretched(rest)]) for rest in rests]
+    """Find how many steps to cut off so that the rest is the whole of the other: with what left.
+
+    Where it leaves less to cut both, the one has something else there, not nothing: no cut is good.
+    """
+    rests, others = (
+        [_stretched(path[: STEPS - steps] if at_end else path[steps:]) for steps in CUTS]
+        for path in (cut, whole)
+    )
+    left = [
+        alone if alone <= pairing.distance(other, [rest]) else np.inf
+        for rest, other in zip(rests, others, strict=True)
+        for alone in (pairing.distance(whole, [rest]),)
+    ]
     first = next(index for index, each in enumerate(left) if each <= AS_GOOD * min(left))
     return CUTS[first], left[first]
 

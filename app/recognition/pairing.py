@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from app.recognition.alignment import Example
+from app.recognition.fusion import TYPICAL
 from app.recognition.gesture import Gesture
 from app.recognition.landmarks import other_side
 from app.recognition.movement import Movement, hands_in, movement
@@ -15,6 +17,9 @@ from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading, readings
 from app.recognition.trajectory import Trajectory
 from app.recognition.voters.motion import Path
+
+ALIKE = TYPICAL["path"].within
+"""Path distance between two people's takes of one figure, the mean."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,7 +83,7 @@ class Pairing:
             start=start,
         )
 
-    @property
+    @cached_property
     def base(self) -> float:
         """The path distance between the two as they were compared."""
         return self.distance(self.query.paths, [self.example.movement.paths])
@@ -89,9 +94,18 @@ class Pairing:
         described = [voter.describe(replace(self.query, paths=each)) for each in (paths, *others)]
         return float(voter.distances(described[0], np.stack(described[1:])).min())
 
-    def share(self, undone: float) -> float:
-        """Return what share of the base distance is gone when `undone` of it is left."""
-        return max(0.0, 1.0 - undone / self.base) if self.base > 0 else 0.0
+    def share(self, left: float) -> float:
+        """Return what share of the distance between takes of other figures is gone.
+
+        Parameters
+        ----------
+        left
+            The distance after something has been undone. What two people's takes of one figure
+            differ by is no fault, and is left out of it as of the distance before.
+
+        """
+        fault = self.base - ALIKE
+        return min(1.0, max(0.0, 1.0 - max(0.0, left - ALIKE) / fault)) if fault > 0 else 0.0
 
     def paths_begun_anywhere(self, *, backward: bool = False) -> list[FloatArray]:
         """Return the gesture's paths from each of its starts, as shown or the other way round."""

@@ -1,0 +1,156 @@
+"""Whether explanations name a fault that is known: takes with one thing wrong, and what is told.
+
+Plausible takes by another person are drawn of every gesture of the larger sample language, and
+each is spoilt in one way. First: the first difference told is of that kind; named: any one is.
+
+    python -m benchmarks.known_faults [--takes 10] [--seed 0]
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from app.evaluation.share import Share
+from app.recognition import Gesture, Language, Recognizer
+from app.recognition.difference import differences
+from app.recognition.gesture import condensed
+from app.recognition.landmarks import other_side
+from app.recognition.movement import part_of
+from app.recognition.pairing import Pairing
+from app.recognition.readings import AS_SHOWN
+from app.recognition.trajectory import Trajectory
+from app.recognition.variation import ARM_PARTS, variants
+from app.resources import samples_dir
+
+Fault = Callable[[Trajectory], Trajectory]
+
+CUT = 0.35
+"""Share of a take's duration that is missing."""
+
+APPROACH_SECONDS = 0.6
+"""What a hand takes to come from beside the hip."""
+
+
+def turned_round(take: Trajectory) -> Trajectory:
+    """Show it the other way round."""
+    return replace(take, xy=take.xy[::-1].copy())
+
+
+def last_missing(take: Trajectory) -> Trajectory:
+    """Stop early."""
+    return take.between(0.0, float(take.time[-1]) * (1 - CUT))
+
+
+def first_missing(take: Trajectory) -> Trajectory:
+    """Begin late."""
+    late = take.between(float(take.time[-1]) * CUT, float(take.time[-1]))
+    return replace(late, time=late.time - late.time[0])
+
+
+def approached(take: Trajectory) -> Trajectory:
+    """Come from beside the hip first."""
+    step = float(np.median(np.diff(take.time)))
+    share = np.arange(0, APPROACH_SECONDS, step)[:, None, None] / APPROACH_SECONDS
+    hip = take.xy[:1] + 0.0
+    moving = _of_arms(take)
+    hip[:, moving] = (0.6, 0.9)
+    come = hip * (1 - share) + take.xy[:1] * share
+    time = np.concatenate([share.ravel() * APPROACH_SECONDS, take.time + APPROACH_SECONDS])
+    return replace(take, xy=np.concatenate([come, take.xy]), time=time)
+
+
+def exchanged(take: Trajectory) -> Trajectory:
+    """Take left for right in two stretches, a fifth of the moments together."""
+    names = take.landmarks
+    others = [names.index(other_side(name)) for name in names]
+    xy = take.xy.copy()
+    for start, end in ((0.3, 0.4), (0.6, 0.7)):
+        span = slice(int(start * len(xy)), int(end * len(xy)))
+        xy[span] = xy[span][:, others]
+    return replace(take, xy=xy)
+
+
+def slower(take: Trajectory) -> Trajectory:
+    """Take three times as long."""
+    return replace(take, time=take.time * 3)
+
+
+def higher(take: Trajectory) -> Trajectory:
+    """Show it a torso length higher."""
+    xy = take.xy.copy()
+    xy[:, _of_arms(take)] -= (0.0, 1.0)
+    return replace(take, xy=xy)
+
+
+def larger(take: Trajectory) -> Trajectory:
+    """Show it three times as large."""
+    moving = _of_arms(take)
+    xy = take.xy.copy()
+    middle = xy[:, moving].mean(axis=0)
+    xy[:, moving] = middle + 3 * (xy[:, moving] - middle)
+    return replace(take, xy=xy)
+
+
+FAULTS: dict[str, tuple[Fault, list[str]]] = {
+    "none": (lambda take: take, []),
+    "the other way round": (turned_round, ["direction"]),
+    "the other hand": (Trajectory.mirrored, ["hand"]),
+    "last third missing": (last_missing, ["missing"]),
+    "first third missing": (first_missing, ["missing"]),
+    "too much before": (approached, ["extra"]),
+    "sides exchanged": (exchanged, ["exchanged_sides"]),
+    "three times slower": (slower, ["tempo"]),
+    "higher": (higher, ["place"]),
+    "three times larger": (larger, ["size"]),
+}
+
+
+def main() -> None:
+    """Print per fault what is told."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--takes", type=int, default=10, help="per gesture")
+    parser.add_argument("--seed", type=int, default=0)
+    arguments = parser.parse_args()
+    language = Language.load(samples_dir() / "osg-table-2.json")
+    recognizer = Recognizer(language, "full")
+    for fault, (spoil, kinds) in FAULTS.items():
+        first, named, told = Share(0, 0), Share(0, 0), Counter[str]()
+        for gesture in language.gestures:
+            for take in drawn(gesture, arguments.takes, arguments.seed):
+                found = told_of(recognizer, gesture, condensed(spoil(take)))
+                told[found[0] if found else "none"] += 1
+                first += Share(int(found[:1] == kinds), 1)
+                named += Share(int({*kinds} <= {*found} if kinds else not found), 1)
+        print(f"{fault:20} first {first!s:20} named {named!s:20} {dict(told.most_common())}")
+
+
+def drawn(gesture: Gesture, count: int, seed: int) -> tuple[Trajectory, ...]:
+    """Draw takes of a gesture by another person."""
+    assert gesture.trajectory is not None
+    return variants(gesture.trajectory, count, seed=seed, person="another")
+
+
+def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list[str]:
+    """Return the kinds of difference that are told of a query, the first one first."""
+    compared = recognizer.compare(query)
+    at = recognizer.language.labels.index(gesture.label)
+    reading = compared.readings[at] or AS_SHOWN
+    pairing = Pairing.of(query, gesture, reading, mirrored=bool(compared.mirrored[at]))
+    if pairing is None:
+        return []
+    return [each.kind for each in differences(pairing, sees_direction=True)]
+
+
+def _of_arms(take: Trajectory) -> npt.NDArray[np.bool_]:
+    """Tell ``(K,)`` which landmarks an arm moves."""
+    return np.array([part_of(name).split("_", 1)[-1] in ARM_PARTS for name in take.landmarks])
+
+
+if __name__ == "__main__":
+    main()

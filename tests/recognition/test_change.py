@@ -1,0 +1,140 @@
+"""Changes: each makes of a situation the one that it says."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer, Take
+from app.recognition.change import (
+    Change,
+    KeypointRepair,
+    NewDemonstration,
+    OtherProfile,
+    SalientKeypoints,
+    Simplification,
+    SwitchPosition,
+    Trim,
+    VoterWeight,
+)
+from app.recognition.situation import Situation
+from app.recognition.tuning import Tuning
+from tests.recognition.strategies import SHAPES, circle, recording, wedge
+
+LANGUAGE = Language(
+    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
+)
+
+
+@pytest.fixture(scope="module")
+def situation() -> Situation:
+    recognizer = Recognizer(LANGUAGE, "full", tuning=Tuning(weights={"hu": 3.0}))
+    whole = recording(wedge)
+    return Situation(recognizer=recognizer, poses=whole.between(0.5, 1.5), whole=whole)
+
+
+def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(situation: Situation) -> None:
+    changed = Trim(size=0.5, start=0.2, end=1.0).applied(situation)
+    assert (changed.poses.time[0], changed.poses.time[-1]) == pytest.approx((0.2, 1.0))
+    assert changed.recognizer is situation.recognizer
+
+
+def test_a_weight_multiplies_the_one_there_is(situation: Situation) -> None:
+    for voter, expected in (("hu", {"hu": 1.5}), ("path", {"hu": 3.0, "path": 0.5})):
+        changed = VoterWeight(size=0.1, voter=voter, factor=0.5).applied(situation)
+        assert changed.tuning.weights == expected
+
+
+def test_tuning_changes_one_thing_and_keeps_the_rest(situation: Situation) -> None:
+    coarser = Simplification(size=0.5, tolerance=8.0).applied(situation)
+    assert (coarser.tuning.simplification, coarser.tuning.weights) == (8.0, {"hu": 3.0})
+    unrepaired = KeypointRepair(size=0.1, on=False).applied(situation)
+    assert (unrepaired.recognizer.repairs, unrepaired.tuning.weights) == (False, {"hu": 3.0})
+
+
+def test_another_profile_drops_weights_of_voters_it_may_not_have(situation: Situation) -> None:
+    changed = OtherProfile(size=1.0, profile="paper").applied(situation)
+    assert (changed.profile, dict(changed.tuning.weights)) == ("paper", {})
+
+
+def test_other_salient_keypoints_are_drawn_anew(situation: Situation) -> None:
+    both = ("left_wrist", "right_wrist")
+    change = SalientKeypoints(size=0.5, label="circle", salient=both)
+    changed = change.applied(situation).language.gesture("circle")
+    assert changed.salient == both
+    assert (changed.image != LANGUAGE.gesture("circle").image).any()
+    with pytest.raises(GestureError, match="not in this recording"):
+        replace(change, salient=("left_knee",)).applied(situation)
+
+
+def test_a_switch_is_the_only_thing_that_changes_about_a_gesture(situation: Situation) -> None:
+    change = SwitchPosition(size=1 / 3, label="wedge", switch="mirror", position="on")
+    switches = change.applied(situation).language.gesture("wedge").switches
+    assert (switches.mirror, switches.direction, switches.tempo) == ("on", "auto", "auto")
+
+
+def test_a_new_demonstration_keeps_what_the_author_wrote() -> None:
+    told = replace(LANGUAGE.gesture("circle"), description="round", command="orbit")
+    gestures = [told if each.label == "circle" else each for each in LANGUAGE.gestures]
+    query = recording(wedge)
+    before = Situation(
+        recognizer=Recognizer(Language("pool", gestures), "paper"), poses=query, whole=query
+    )
+    assert before.result.label == "wedge"
+    after = NewDemonstration(size=1.0, label="circle").applied(before)
+    made = after.language.gesture("circle")
+    assert (made.description, made.command) == ("round", "orbit")
+    assert (made.image == LANGUAGE.gesture("wedge").image).all()
+    assert after.result.label == "circle"  # of two that are now the same, the first
+
+
+def test_nothing_can_be_demonstrated_by_a_hand_at_rest(situation: Situation) -> None:
+    still = recording(lambda share: circle(0 * share))
+    with pytest.raises(GestureError, match="nothing moves"):
+        NewDemonstration(size=1.0, label="circle").applied(replace(situation, poses=still))
+
+
+@pytest.mark.parametrize(
+    ("change", "values", "words"),
+    [
+        (Trim(size=0.2, start=0.1, end=1.6), {"start": 0.1, "end": 1.6}, "0.10-1.60 s"),
+        (VoterWeight(size=0.1, voter="hu", factor=0.0), {"factor": 0.0}, "without the voter hu"),
+        (VoterWeight(size=0.1, voter="hu", factor=2.0), {"voter": "hu"}, "2 times the weight"),
+        (KeypointRepair(size=0.1, on=True), {"on": True}, "put right"),
+        (OtherProfile(size=1.0, profile="full"), {"profile": "full"}, "profile full"),
+        (
+            SalientKeypoints(size=0.5, label="a", salient=("left_wrist", "nose")),
+            {"salient": ["left_wrist", "nose"]},
+            "left wrist and nose",
+        ),
+        (
+            SwitchPosition(size=1 / 3, label="a", switch="tempo", position="off"),
+            {"switch": "tempo", "position": "off"},
+            "switch tempo of 'a' off",
+        ),
+        (NewDemonstration(size=1.0, label="a"), {"label": "a"}, "this take"),
+    ],
+)
+def test_a_change_is_plain_json_to_apply_and_words_to_read(
+    change: Change, values: dict[str, object], words: str
+) -> None:
+    told = json.loads(json.dumps(change.to_dict()))
+    assert told["kind"] == change.kind
+    assert values.items() <= told.items()
+    assert words in told["words"]
+
+
+def test_a_situation_of_a_take_can_be_cut_to_all_of_it(situation: Situation) -> None:
+    def take(poses: PoseSequence) -> Take:
+        return Take(
+            start=0.0,
+            end=2.0,
+            closed=True,
+            poses=poses.between(0.5, 1.5),
+            stroke_start=0.5,
+            stroke_end=1.5,
+            untrimmed=poses,
+        )
+
+    cut = Situation.of_take(situation.recognizer, take(recording(wedge)))
+    assert (len(cut.poses), len(cut.whole)) == (len(situation.poses), len(situation.whole))

@@ -1,0 +1,133 @@
+"""Counterfactuals: small changes that help, verified, with what they do to the rest."""
+
+from collections import Counter
+
+import pytest
+
+from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.counterfactual import (
+    MOST,
+    MOST_OF_A_KIND,
+    Counterfactuals,
+    counterfactuals,
+    margin,
+)
+from app.recognition.landmarks import POSE_LANDMARKS, other_side
+from app.recognition.recognizer import PROFILES
+from app.recognition.situation import Situation
+from tests.recognition.strategies import SHAPES, recording, wedge
+from tests.recognition.test_difference import HOOK, corners, exchanged
+
+LANGUAGE = Language(
+    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
+)
+RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
+
+
+def found_for(
+    poses: PoseSequence, expected: str, recognizer: Recognizer, whole: PoseSequence | None = None
+) -> Counterfactuals:
+    situation = Situation(recognizer=recognizer, poses=poses, whole=whole or poses)
+    assert situation.result.label != expected
+    return counterfactuals(situation, expected)
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
+    query = recording(wedge, jitter=0.02)
+    situation = Situation(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
+    told = counterfactuals(situation, "circle")
+    assert told.found
+    assert told.tried >= len(told.found)
+    for each in told.found:
+        after = each.change.applied(situation).result
+        assert after.label == each.label == "circle"
+        assert after.confidence == each.confidence
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_the_smallest_come_first_and_not_too_many_of_a_kind(profile: str) -> None:
+    told = found_for(recording(SHAPES["square"], jitter=0.03), "circle", RECOGNIZERS[profile])
+    sizes = [each.change.size for each in told.found]
+    assert sizes == sorted(sizes)
+    assert all(0.0 < size <= 1.0 for size in sizes)
+    assert len(sizes) <= MOST
+    kinds = Counter(each.change.kind for each in told.found)
+    assert max(kinds.values()) <= MOST_OF_A_KIND
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_transit_in_the_stroke_is_trimmed_off(profile: str) -> None:
+    gestures = [
+        Gesture.from_demonstration("corner", recording(corners(*HOOK[:3]))),
+        Gesture.from_demonstration("hook", recording(corners(*HOOK))),
+    ]
+    recognizer = Recognizer(Language("hooks", gestures), profile)
+    told = found_for(recording(corners(*HOOK)), "corner", recognizer)
+    trims = [each for each in told.found if each.change.kind == "trim"]
+    assert trims
+    assert trims[0].effect is None  # it changes this take alone
+
+
+def test_a_stroke_cut_too_short_is_made_longer() -> None:
+    gestures = [
+        Gesture.from_demonstration("corner", recording(corners(*HOOK[:3]))),
+        Gesture.from_demonstration("hook", recording(corners(*HOOK))),
+    ]
+    whole = recording(corners(*HOOK), frames=90)
+    recognizer = Recognizer(Language("hooks", gestures), "full")
+    told = found_for(whole.between(0.0, 2.0), "hook", recognizer, whole)
+    assert any(each.change.kind == "trim" for each in told.found)
+
+
+def test_bad_keypoints_are_repaired() -> None:
+    mistaken = exchanged(recording(wedge), [slice(20, 26), slice(34, 40)])
+    told = found_for(mistaken, "wedge", RECOGNIZERS["paper"])
+    repairs = [each for each in told.found if each.change.kind == "keypoint_repair"]
+    assert len(repairs) == 1
+    assert repairs[0].change.size == pytest.approx(12 / 60, abs=0.07)
+
+
+def test_the_other_hand_counts_with_the_mirror_switch() -> None:
+    two = Gesture.from_demonstration("other", recording(SHAPES["line"], hand="left_wrist"))
+    language = Language("pool", [*LANGUAGE.gestures, two])
+    query = recording(wedge)
+    mirrored = PoseSequence(
+        landmarks=tuple(other_side(name) for name in query.landmarks),
+        xy=query.xy * (-1.0, 1.0) + (640.0, 0.0),
+        time=query.time,
+        frame_size=query.frame_size,
+    )
+    told = found_for(mirrored, "wedge", Recognizer(language, "full"))
+    assert "switch" in {each.change.kind for each in told.found}
+
+
+def test_what_a_change_does_to_the_language_is_told() -> None:
+    told = found_for(recording(SHAPES["line"], jitter=0.01), "circle", RECOGNIZERS["paper"])
+    (made,) = [each for each in told.found if each.change.kind == "demonstration"]
+    assert made.effect is not None
+    assert made.effect.takes == 2 * len(SHAPES)
+    # A circle shown as a line is no circle any more, and takes lines for itself.
+    assert "circle" in made.effect.lost
+    assert made.effect.right_after < made.effect.right_before
+
+
+def test_no_weight_helps_a_gesture_whose_keypoint_is_not_seen() -> None:
+    left = Gesture.from_demonstration("left", recording(wedge, hand="left_wrist"))
+    recognizer = Recognizer(Language("pool", [*LANGUAGE.gestures, left]), "paper")
+    landmarks = tuple(name for name in POSE_LANDMARKS if name != "left_wrist")
+    told = found_for(recording(SHAPES["circle"], landmarks=landmarks), "left", recognizer)
+    assert {each.change.kind for each in told.found} <= {"salient", "demonstration"}
+
+
+@pytest.mark.parametrize(
+    ("scores", "expected"),
+    [
+        ([0.2, 0.5, 0.9], 0.3),
+        ([0.6, 0.5, 0.9], -0.1),
+        ([0.2], float("inf")),
+        ([float("inf"), 0.5], -float("inf")),
+    ],
+)
+def test_the_margin_is_to_the_nearest_other(scores: list[float], expected: float) -> None:
+    assert margin(scores, 0) == pytest.approx(expected)

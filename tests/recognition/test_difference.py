@@ -1,0 +1,173 @@
+"""Differences: a known fault is named as what it is, at the time and on the joint where it lies."""
+
+import numpy as np
+import pytest
+
+from app.recognition import Gesture, PoseSequence
+from app.recognition.difference import Difference, differences
+from app.recognition.gesture import condensed
+from app.recognition.landmarks import POSE_LANDMARKS, other_side
+from app.recognition.pairing import Pairing
+from app.recognition.poses import FloatArray
+from app.recognition.readings import AS_SHOWN
+from app.recognition.trajectory import Trajectory
+from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
+
+START = 5.0
+"""Second of the clock at which the queries of these tests begin."""
+
+
+def corners(*points: tuple[float, float]) -> Shape:
+    def shape(share: FloatArray) -> FloatArray:
+        at = np.linspace(0, 1, len(points))
+        return np.stack(
+            [np.interp(share, at, [point[axis] for point in points]) for axis in range(2)], axis=1
+        )
+
+    return shape
+
+
+HOOK = ((-1.2, -0.4), (-0.4, -0.4), (-0.4, 0.4), (-0.9, 0.4))
+hook = corners(*HOOK)
+
+
+def told(
+    query: PoseSequence, shape: Shape = hook, *, sees_direction: bool = True
+) -> tuple[Difference, ...]:
+    gesture = Gesture.from_demonstration("hook", recording(shape))
+    trajectory = condensed(Trajectory.from_poses(query))
+    pairing = Pairing.of(trajectory, gesture, AS_SHOWN, start=START)
+    assert pairing is not None
+    return differences(pairing, sees_direction=sees_direction)
+
+
+def mirrored(shape: Shape) -> Shape:
+    return lambda share: shape(share) * (-1.0, 1.0) + (-1.6, 0.0)
+
+
+def test_the_same_gesture_has_no_difference() -> None:
+    assert told(recording(hook, jitter=0.005)) == ()
+    assert told(recording(circle, jitter=0.005), circle) == ()
+
+
+def test_the_other_way_round_is_a_difference_of_direction() -> None:
+    query = recording(lambda share: hook(1 - share))
+    first = told(query)[0]
+    assert first.kind == "direction"
+    assert first.share > 0.9
+    assert (first.start, first.landmark) == (START, "right_wrist")
+
+
+def test_to_voters_that_see_drawings_both_ways_round_are_the_same() -> None:
+    query = recording(lambda share: hook(1 - share))
+    assert "direction" not in {each.kind for each in told(query, sees_direction=False)}
+
+
+@pytest.mark.parametrize(
+    ("query", "kind"),
+    [
+        (recording(mirrored(hook)), "side"),
+        (recording(hook, hand="left_wrist"), "hand"),
+        (recording(mirrored(hook), hand="left_wrist"), "hand"),
+    ],
+)
+def test_the_wrong_side_is_named(query: PoseSequence, kind: str) -> None:
+    first = told(query)[0]
+    assert first.kind == kind
+    assert first.share > 0.9
+
+
+def test_a_last_side_that_is_missing_is_missing_after_the_end() -> None:
+    query = recording(corners(*HOOK[:3]), frames=45)
+    first = told(query)[0]
+    assert first.kind == "missing"
+    assert first.start == first.end == pytest.approx(START + 44 / 30, abs=0.1)
+    assert "the last" in first.words
+    # The third of three sides is shown in the last third of the demonstration, 2 s long.
+    begins = float(first.words.split("(")[1].split(" to ")[0])
+    assert begins == pytest.approx(4 / 3, abs=0.3)
+
+
+def test_a_first_side_that_is_missing_is_missing_before_the_start() -> None:
+    first = told(recording(corners(*HOOK[1:]), frames=45))[0]
+    assert (first.kind, first.start) == ("missing", START)
+    assert "before 5.0 s" in first.words
+
+
+def test_what_is_too_much_is_told_with_its_time() -> None:
+    query = recording(corners((-0.2, 1.2), (-0.7, 1.0), *HOOK), frames=90)
+    first = told(query)[0]
+    assert first.kind == "extra"
+    assert first.start == START
+    assert first.end == pytest.approx(START + 2 / 5 * 90 / 30, abs=0.5)
+
+
+def test_another_course_is_told_with_its_time_joint_and_directions() -> None:
+    query = recording(corners(*HOOK[:3], (0.1, 0.4)))
+    (first, *_) = told(query)
+    assert (first.kind, first.landmark) == ("shape", "right_wrist")
+    assert first.start is not None
+    assert first.end is not None
+    assert START + 1 < first.start < first.end <= START + 2
+    assert "the right wrist goes right where 'hook' goes left" in first.words
+
+
+def exchanged(poses: PoseSequence, frames: list[slice]) -> PoseSequence:
+    xy = poses.xy.copy()
+    names = poses.landmarks
+    others = [names.index(other_side(name)) for name in names]
+    for span in frames:
+        xy[span] = xy[span][:, others]
+    return PoseSequence(landmarks=names, xy=xy, time=poses.time, frame_size=poses.frame_size)
+
+
+def test_exchanged_sides_are_told_with_the_moments() -> None:
+    query = exchanged(recording(hook), [slice(20, 26), slice(34, 40)])
+    first = told(query)[0]
+    assert first.kind == "exchanged_sides"
+    assert first.start == pytest.approx(START + 20 / 30, abs=0.07)
+    assert first.end == pytest.approx(START + 39 / 30, abs=0.07)
+    assert "12 of 60 moments" in first.words
+    assert f"between {first.start:.1f} and {first.end:.1f} s" in first.words
+
+
+def scaled(factor: float, shift: tuple[float, float] = (0.0, 0.0)) -> Shape:
+    return lambda share: (hook(share) - (-0.7, 0.0)) * factor + (-0.7, 0.0) + shift
+
+
+@pytest.mark.parametrize(
+    ("query", "kind", "words"),
+    [
+        (recording(hook, frames=180), "tempo", "3.0 times slower"),
+        (recording(hook, frames=20), "tempo", "3.1 times quicker"),
+        (recording(scaled(1.0, (0.0, -0.8))), "place", "0.8 torso lengths higher"),
+        (recording(scaled(1.0, (1.3, 0.0))), "place", "to the image's right"),
+        (recording(scaled(2.5)), "size", "2.5 times larger"),
+    ],
+)
+def test_what_changes_no_path_is_told_beside_it(query: PoseSequence, kind: str, words: str) -> None:
+    (only,) = told(query)
+    assert (only.kind, only.share) == (kind, 0.0)
+    assert words in only.words
+
+
+def test_a_joint_that_was_not_seen_is_told_with_the_time() -> None:
+    query = recording(hook)
+    xy = query.xy.copy()
+    xy[15:40, query.landmarks.index("right_wrist")] = np.nan
+    hidden = PoseSequence(
+        landmarks=POSE_LANDMARKS, xy=xy, time=query.time, frame_size=query.frame_size
+    )
+    (unseen,) = [each for each in told(hidden) if each.kind == "unseen"]
+    assert (unseen.start, unseen.end) == pytest.approx((START + 14 / 30, START + 40 / 30), abs=0.01)
+    assert "right wrist" in unseen.words
+
+
+@pytest.mark.parametrize("shape", [circle, line, square, wedge])
+def test_every_difference_is_plain_and_lies_within_the_query(shape: Shape) -> None:
+    query = recording(shape, jitter=0.01)
+    for difference in told(query):
+        assert 0.0 <= difference.share <= 1.0
+        assert difference.to_dict()["words"] == difference.words
+        if difference.start is not None and difference.end is not None:
+            assert START <= difference.start <= difference.end <= START + 2
