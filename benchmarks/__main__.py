@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks import extraction, memory, recognition
+from benchmarks import extraction, memory, recognition, speed
 
-PARTS = {"extraction": extraction.main, "recognition": recognition.main, "memory": memory.main}
+PARTS = {
+    "extraction": extraction.main,
+    "recognition": recognition.main,
+    "speed": speed.main,
+    "memory": memory.main,
+}
 
 
 def main() -> None:

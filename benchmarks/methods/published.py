@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import cv2
@@ -111,10 +110,12 @@ def _paths(poses: PoseSequence, salient: Sequence[str]) -> Image:
     if not np.isfinite(shares).any():
         return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.uint8)
     pixels = (shares - np.nanmean(shares, axis=(0, 1)) + 0.5) * SIZE
-    for before, after in pairwise(pixels):
-        for start, end in zip(before, after, strict=True):
-            if np.isfinite([start, end]).all():
-                cv2.line(image, start.astype(int).tolist(), end.astype(int).tolist(), (0, 0, 255))
+    seen = np.isfinite(pixels).all(axis=2)
+    corners = np.where(seen[..., None], pixels, 0.0).astype(int)
+    for path, known in zip(np.moveaxis(corners, 1, 0), seen.T, strict=True):
+        both = known[:-1] & known[1:]
+        for start, end in zip(path[:-1][both].tolist(), path[1:][both].tolist(), strict=True):
+            cv2.line(image, start, end, (0, 0, 255))
     return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.uint8)
 
 

@@ -1,0 +1,122 @@
+"""What recognition by profile ``full`` costs, beside what it has to keep up with.
+
+A language of twenty gestures, recordings of three seconds and 33 landmarks. Compared are one frame
+of pose estimation (body and hands of a sample clip), the published implementation's steps (draw,
+describe and compare once for each gesture, without the picture that it writes to the disk each
+time), and the paper's steps done once for each gesture by our own code. Processor time of all
+threads, so that other programs do not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from itertools import islice
+from statistics import median
+from time import process_time
+
+import numpy as np
+
+from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.estimation import create_estimator
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.video import read_frames
+from app.resources import samples_dir
+from benchmarks.methods.base import Method
+from benchmarks.recognition import wander
+
+GESTURES = 20
+ROUNDS = 9
+FRAMES = 60
+
+ARM = {"elbow": 0.5, "wrist": 1.0, "index": 1.15, "pinky": 1.15, "thumb": 1.1}
+"""How far out along the right arm a landmark lies, in lengths from shoulder to wrist."""
+
+
+def whole_body(seed: int) -> PoseSequence:
+    """Let a standing diver draw a smooth random figure with the right arm; all 33 landmarks."""
+    drawn, random = wander(seed), np.random.default_rng(seed)
+    xy = random.normal(0, 0.7, (len(drawn), len(POSE_LANDMARKS), 2))
+    xy += np.stack([np.full(len(POSE_LANDMARKS), 320.0), np.linspace(80, 460, 33)], axis=1)
+    for name in drawn.landmarks:
+        xy[:, POSE_LANDMARKS.index(name)] = drawn.column(name)
+    shoulder, wrist = drawn.column("right_shoulder"), drawn.column("right_wrist")
+    for part, share in ARM.items():
+        xy[:, POSE_LANDMARKS.index(f"right_{part}")] = shoulder + share * (wrist - shoulder)
+    return PoseSequence(
+        landmarks=POSE_LANDMARKS,
+        xy=xy + random.normal(0, 0.5, xy.shape),
+        time=drawn.time,
+        frame_size=drawn.frame_size,
+    )
+
+
+def seconds(work: Callable[[], object], rounds: int = ROUNDS) -> float:
+    """Return the median processor time of some work, done once before it counts."""
+    work()
+    times = []
+    for _ in range(rounds):
+        start = process_time()
+        work()
+        times.append(process_time() - start)
+    return median(times)
+
+
+def seconds_a_frame() -> float:
+    """Return the median processor time of finding body and hands in a frame of a sample clip."""
+    clip = samples_dir() / "clips" / "circle-demonstration.mp4"
+    times = []
+    with read_frames(clip) as reader, closing(create_estimator()) as estimator:
+        for frame in islice(reader, FRAMES):
+            start = process_time()
+            estimator.estimate(frame.image, frame.time)
+            times.append(process_time() - start)
+    return median(times)
+
+
+def seconds_as_published(demonstrations: list[PoseSequence], query: PoseSequence) -> float | None:
+    """Return the time of the published steps, or None where mahotas is not installed."""
+    try:
+        from benchmarks.methods.published import PublishedCode
+    except ModuleNotFoundError:
+        return None
+    method: Method = PublishedCode()
+    for number, demonstration in enumerate(demonstrations):
+        method.add(f"figure {number}", demonstration)
+    return seconds(lambda: method.answer(query))
+
+
+def main() -> None:
+    """Print the ratios."""
+    demonstrations = [whole_body(seed) for seed in range(GESTURES)]
+    gestures = [
+        Gesture.from_demonstration(f"figure {number}", poses)
+        for number, poses in enumerate(demonstrations)
+    ]
+    language, query = Language("bench", gestures), whole_body(GESTURES)
+    recognizer = Recognizer(language, "full")
+    alone = [Recognizer(Language("one", [gesture]), "paper") for gesture in gestures]
+    recognition = seconds(lambda: recognizer.recognize(query))
+    once_each = seconds(lambda: [one.recognize(query) for one in alone])
+    frame = seconds_a_frame()
+    published = seconds_as_published(demonstrations, query)
+
+    def add() -> Recognizer:
+        added = Gesture.from_demonstration("one more", query)
+        return Recognizer(language.with_gesture(added), "full")
+
+    adding = seconds(add, rounds=3)
+    head = f"profile full, {GESTURES} gestures, {len(POSE_LANDMARKS)} landmarks: "
+    print(f"{head}a recognition takes {recognition / frame:.2f} of one frame of pose estimation")
+    if published is None:
+        print(f"{head}the published steps need mahotas, which has no wheel for this platform")
+    else:
+        print(f"{head}a recognition takes {recognition / published:.2f} of the published steps")
+    print(
+        f"{head}a recognition takes {recognition / once_each:.2f} of the paper's steps done once "
+        "a gesture by our own code"
+    )
+    print(
+        f"{head}adding a gesture and calibrating takes {adding / recognition:.0f} recognitions, "
+        f"{adding / frame:.0f} frames of pose estimation"
+    )
