@@ -48,6 +48,25 @@ TEMPO_SAY = 0.3
 distance of two takes (0.1), less than that of two gestures (1)."""
 
 
+def with_mirror_images(
+    gestures: Sequence[Gesture],
+) -> tuple[tuple[Gesture, ...], npt.NDArray[np.intp]]:
+    """Add the mirror images of gestures that either hand may show.
+
+    Returns
+    -------
+    The G gestures and then the images; and for each of them the index of its gesture.
+
+    """
+    mirrored = [
+        index
+        for index, gesture in enumerate(gestures)
+        if gesture.switches.mirror == "on" and gesture.trajectory is not None
+    ]
+    images = [gestures[index].mirrored() for index in mirrored]
+    return (*gestures, *images), np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
+
+
 class CalibratedVote:
     """Fuses the distances of all voters, after asking the language what each can tell apart.
 
@@ -67,13 +86,7 @@ class CalibratedVote:
 
     def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
-        mirrored = [
-            index
-            for index, gesture in enumerate(gestures)
-            if gesture.switches.mirror == "on" and gesture.trajectory is not None
-        ]
-        sides = [*gestures, *(gestures[index].mirrored() for index in mirrored)]
-        self._owners = np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
+        sides, self._owners = with_mirror_images(gestures)
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])

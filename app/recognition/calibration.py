@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.recognition.calibrated_vote import VOTERS, CalibratedVote
+from app.recognition.calibrated_vote import VOTERS, with_mirror_images
 from app.recognition.fusion import TYPICAL
 from app.recognition.gesture import Gesture
 from app.recognition.motion_references import (
@@ -51,7 +51,8 @@ def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
         Of one language, at least one.
 
     """
-    references = CalibratedVote(gestures).references
+    sides, _ = with_mirror_images(gestures)
+    references = MotionReferences.of(sides, only_as_shown=True)
     spreads = _spreads(gestures, references)
     return tuple(
         replace(gesture, thresholds=_thresholds(spread))
