@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -156,15 +157,7 @@ class PoseSequence:
         ``(T, 2)`` pixels without NaN, or None when no frame shows shoulders.
 
         """
-        shoulders, hips = self._middle(SHOULDERS), self._middle(HIPS)
-        if not np.isfinite(shoulders).any():
-            return None
-        torso = hips - shoulders
-        both = _all_finite(torso)
-        half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
-        centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
-        centre = np.where(np.isfinite(centre), centre, hips - half)
-        return _interpolated(centre, self.time)
+        return self._torso_centre
 
     def torso_length(self) -> float | None:
         """Return the distance from mid-shoulders to mid-hips, the median over the recording.
@@ -178,6 +171,24 @@ class PoseSequence:
         Pixels, or None when no frame shows both shoulders.
 
         """
+        return self._torso_length
+
+    @cached_property
+    def _torso_centre(self) -> FloatArray | None:
+        shoulders, hips = self._middle(SHOULDERS), self._middle(HIPS)
+        if not np.isfinite(shoulders).any():
+            return None
+        torso = hips - shoulders
+        both = _all_finite(torso)
+        half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
+        centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
+        centre = np.where(np.isfinite(centre), centre, hips - half)
+        centre = _interpolated(centre, self.time)
+        centre.setflags(write=False)
+        return centre
+
+    @cached_property
+    def _torso_length(self) -> float | None:
         lengths = np.linalg.norm(self._middle(HIPS) - self._middle(SHOULDERS), axis=1)
         if not np.isfinite(lengths).any():
             if not set(SHOULDERS) <= set(self.landmarks):

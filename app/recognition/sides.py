@@ -9,6 +9,7 @@ path through the frames (Viterbi 1967).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -63,15 +64,16 @@ class Sides:
     blended: Mask
 
 
-def sides_of(landmarks: tuple[str, ...]) -> tuple[list[int], list[int]]:
+@lru_cache(maxsize=64)
+def sides_of(landmarks: tuple[str, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the places of the landmarks of the left side, and of their counterparts."""
     parts = [part_of(name) for name in landmarks]
-    left = [
+    left = tuple(
         index
         for index, part in enumerate(parts)
         if "left" in part.split("_") and other_side(part) in parts
-    ]
-    return left, [parts.index(other_side(parts[index])) for index in left]
+    )
+    return left, tuple(parts.index(other_side(parts[index])) for index in left)
 
 
 def mistaken_sides(trajectory: Trajectory) -> Sides:

@@ -94,5 +94,5 @@ def test_one_side_cannot_be_exchanged() -> None:
 
 
 def test_sides_are_found_by_other_trackers_names() -> None:
-    assert sides_of(("WristRight", "Head", "WristLeft")) == ([2], [0])
+    assert sides_of(("WristRight", "Head", "WristLeft")) == ((2,), (0,))
     assert other_side("head") == "head"
