@@ -6,11 +6,11 @@ variants of the demonstration, or other further takes ("people": what chance mak
 
 models
     Kolmogorov and Smirnov's largest difference of cumulative distributions, averaged over the
-    voters and over the looks; the share of real takes whose score lies within 95 % of their
-    demonstration's variants; the area under the curve of a classifier that tells variants from
-    real takes by the voters' distances, and by the looks.
+    voters and over the looks, with a bootstrap interval; the area under the curve of a classifier
+    that tells variants from real takes by the voters' distances, and by the looks.
 voters
-    Quantiles per voter, of real takes and of our variants.
+    Quantiles per voter, of real takes and of our variants, and how many real takes lie within 95 %
+    of their demonstration's variants.
 confusion
     Accuracy of the recogniser on real takes and on variants of the demonstrations.
 scale
@@ -39,7 +39,7 @@ from app.recognition.variation import Person
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
-from benchmarks.take_comparison import FEATURES, LOOKS, SCORE, TakeComparison, demonstration_of
+from benchmarks.take_comparison import FEATURES, LOOKS, TakeComparison, demonstration_of
 from benchmarks.two_samples import coverage, kolmogorov_smirnov, told_apart
 from benchmarks.variation_models import MODELS, Model, ours, scaled
 
@@ -151,7 +151,7 @@ def compared(
 
 def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report how near each model comes to people."""
-    yield "set | model | voters differ | looks differ | score covered | told by voters | by looks"
+    yield "set | model | voters differ | looks differ | told by voters | by looks"
     voters = tuple(name for name in VOTERS if relation.measured[FEATURES.index(name)])
     seen = tuple(name for name in LOOKS if relation.measured[FEATURES.index(name)])
     for name, model in {"people": None, **MODELS}.items():
@@ -161,11 +161,9 @@ def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[st
             found.resampled(random.integers(0, pairs, pairs)).differences(voters)
             for _ in range(RESAMPLES)
         ]
-        score = FEATURES.index(SCORE)
         yield (
             f"{relation} | {name:8} | {found.differences(voters):.2f} "
             f"(+-{1.96 * np.std(resamples):.2f}) | {found.differences(seen):.2f} | "
-            f"{coverage(found.real[:, score], found.varied[..., score]):.0%} | "
             f"{found.told_apart(voters):.2f} | {found.told_apart(seen):.2f}"
         )
 
@@ -173,17 +171,17 @@ def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[st
 def voters(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report quantiles of real and varied takes, feature by feature."""
     found = compared(relation, ours, pairs, count, seed)
-    yield f"set | voter | real {QUANTILES} % | varied | differ"
+    yield f"set | voter | real {QUANTILES} % | varied | differ | covered"
     for index, name in enumerate(FEATURES):
-        real, varied = found.real[:, index], found.varied[..., index].ravel()
+        real, varied = found.real[:, index], found.varied[..., index]
         if np.isfinite(real).all() and np.ptp(real) > 0 and relation.measured[index]:
             cells = [
                 " ".join(f"{value:6.3f}" for value in np.percentile(sample, QUANTILES))
-                for sample in (real, varied)
+                for sample in (real, varied.ravel())
             ]
             yield (
                 f"{relation} | {name:16} | {cells[0]} | {cells[1]} | "
-                f"{kolmogorov_smirnov(real, varied):.2f}"
+                f"{kolmogorov_smirnov(real, varied.ravel()):.2f} | {coverage(real, varied):.0%}"
             )
 
 
