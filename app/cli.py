@@ -29,6 +29,7 @@ from app.clip_argument import (
 from app.evaluate_command import evaluate
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take, takes_in
 from app.recognition.errors import RecognitionError
+from app.recognition.estimation.water import WaterCorrection
 from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.recognizer import PROFILES
@@ -38,6 +39,11 @@ from app.terminal import describe, people, progress_bar, show_explanation, show_
 DEFAULT_PROFILE = "full"
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
+
+WaterOption = Annotated[
+    WaterCorrection,
+    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
+]
 
 command_line = typer.Typer(
     name="osg-studio",
@@ -117,11 +123,12 @@ def define(
     name: Annotated[str, typer.Option(help="Name of the language.")],
     output: Annotated[Path, typer.Option(help="Language file to write.")],
     author: Annotated[str, typer.Option(help="Who made it.")] = "",
+    water: WaterOption = "auto",
 ) -> None:
     """Make a language from one demonstration clip per gesture."""
     gestures = []
     for demonstration in [Demonstration.parse(text) for text in demonstrations]:
-        poses = demonstration_poses(demonstration)
+        poses = demonstration_poses(demonstration, water)
         gesture = Gesture.from_demonstration(demonstration.label, poses)
         people.print(
             f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
@@ -147,6 +154,7 @@ def recognize(
         typer.Option(metavar="LABEL", help="The gesture that was meant: explain every take by it."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    water: WaterOption = "auto",
 ) -> None:
     """Name the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
@@ -154,7 +162,7 @@ def recognize(
     if expected is not None:
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
-    recording = read_clip(path)
+    recording = read_clip(path, water)
     takes = [take_by_hand(recording, span)] if span else list(takes_in(recording))
     results = [(take, recognizer.recognize(take.poses)) for take in takes]
     explanations = [

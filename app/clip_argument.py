@@ -8,6 +8,7 @@ from pathlib import Path
 
 from app.recognition import PoseSequence, Recording, Take, record, takes_in
 from app.recognition.errors import GestureError
+from app.recognition.estimation.water import WaterCorrection
 from app.terminal import people, progress_bar
 
 
@@ -58,7 +59,9 @@ def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
     return Path(match[1]), (float(match[2]), float(match[3]))
 
 
-def demonstration_poses(demonstration: Demonstration) -> PoseSequence:
+def demonstration_poses(
+    demonstration: Demonstration, water: WaterCorrection = "auto"
+) -> PoseSequence:
     """Return the stroke of the only closed take of a clip, or of the range given by hand.
 
     Raises
@@ -68,7 +71,7 @@ def demonstration_poses(demonstration: Demonstration) -> PoseSequence:
 
     """
     clip = demonstration.clip
-    recording = read_clip(clip)
+    recording = read_clip(clip, water)
     if demonstration.span:
         return take_by_hand(recording, demonstration.span).poses
     takes = takes_in(recording)
@@ -110,10 +113,10 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
     )
 
 
-def read_clip(clip: Path) -> Recording:
+def read_clip(clip: Path, water: WaterCorrection = "auto") -> Recording:
     """Extract a clip's landmarks behind a progress bar, and print the recording's warnings."""
     with progress_bar(clip.name) as advance:
-        recording = record(clip, progress=advance)
+        recording = record(clip, progress=advance, water=water)
     for warning in recording.warnings:
         people.print(f"{clip}: {warning}")
     return recording

@@ -11,6 +11,7 @@ from pydantic import AfterValidator, Field, SecretStr, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app import resources
+from app.recognition.estimation.water import WaterCorrection
 
 MEBIBYTE = 1024 * 1024
 
@@ -78,6 +79,9 @@ class Settings(BaseSettings):
 
     upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
     """Seconds before the rate of an upload counts, and the longest silence within one."""
+
+    water: WaterCorrection = "auto"
+    """Whether colour and contrast of clips are corrected: of murky frames, of all, or of none."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
     """Clips extracted at the same time, each in its own process (the models use all cores)."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
+from app.recognition.estimation.water import WaterCorrection, corrected
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recording import Recording
@@ -33,6 +34,7 @@ def record(
     progress: Progress | None = None,
     observer: Observer | None = None,
     limits: VideoLimits | None = None,
+    water: WaterCorrection = "auto",
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -50,6 +52,9 @@ def record(
         Called with the landmarks of every frame, before `progress` counts it.
     limits
         What the clip may cost.
+    water
+        Whether colour and contrast are set right before the landmarks are looked for: where a
+        frame is murky, always, or never.
 
     Raises
     ------
@@ -61,9 +66,9 @@ def record(
     """
     with read_frames(clip, limits) as reader:
         if estimator is not None:
-            return _record(reader, estimator, progress, observer)
+            return _record(reader, estimator, progress, observer, water)
         with closing(create_estimator()) as own:
-            return _record(reader, own, progress, observer)
+            return _record(reader, own, progress, observer, water)
 
 
 def extract_poses(
@@ -71,9 +76,10 @@ def extract_poses(
     *,
     estimator: PoseEstimator | None = None,
     progress: Progress | None = None,
+    water: WaterCorrection = "auto",
 ) -> PoseSequence:
     """Find the body in every frame of a clip; see `record`, which also keeps the hands."""
-    return record(clip, estimator=estimator, progress=progress).poses
+    return record(clip, estimator=estimator, progress=progress, water=water).poses
 
 
 class _Collector:
@@ -142,12 +148,13 @@ def _record(
     estimator: PoseEstimator,
     progress: Progress | None,
     observer: Observer | None,
+    water: WaterCorrection,
 ) -> Recording:
     estimator.reset()
     collector = _Collector(reader.info)
     done = 0
     for frame in reader:
-        found = estimator.estimate(frame.image, frame.time)
+        found = estimator.estimate(corrected(frame.image, water), frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from app.recognition.errors import PoseError
 from app.recognition.estimation.base import PoseEstimator
+from app.recognition.estimation.water import WaterCorrection
 from app.recognition.extraction import Progress, record
 from app.recognition.poses import PoseSequence
 from app.recognition.recording import Recording
@@ -243,9 +244,11 @@ def find_takes(
     estimator: PoseEstimator | None = None,
     progress: Progress | None = None,
     trim: bool = True,
+    water: WaterCorrection = "auto",
 ) -> tuple[Take, ...]:
     """Find the takes of a clip; see `app.recognition.extraction.record` and `takes_in`."""
-    return takes_in(record(clip, estimator=estimator, progress=progress), trim=trim)
+    recording = record(clip, estimator=estimator, progress=progress, water=water)
+    return takes_in(recording, trim=trim)
 
 
 def take_from(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:

@@ -43,7 +43,8 @@ async def extract(
     clip: Path, recording: Path, poster: Path, filmstrip: Path, settings: Settings
 ) -> AsyncGenerator[Progressed | Finished | Failed, None]:
     """Extract a clip, in a process of its own; the last message says how it ended."""
-    command = ["extract", str(clip), str(recording), str(poster), str(filmstrip)]
+    files = [str(file) for file in (clip, recording, poster, filmstrip)]
+    command = ["extract", f"--water={settings.water}", *files]
     silence_seconds = settings.worker_silence_seconds
     async with aclosing(_messages(command, settings, silence_seconds)) as messages:
         async for message in messages:

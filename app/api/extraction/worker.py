@@ -22,6 +22,7 @@ from app.api.extraction.messages import Failed, Finished, Message, Pose, Probed,
 
 if TYPE_CHECKING:
     from app.recognition.estimation.base import Body, FrameLandmarks
+    from app.recognition.estimation.water import WaterCorrection
     from app.recognition.video import VideoFrame
 
 PROGRESS_SECONDS = 0.1
@@ -40,7 +41,14 @@ def probe(clip: Path, report: Report) -> None:
     report(Probed(**asdict(video.probe(clip))))
 
 
-def extract(clip: Path, recording: Path, poster: Path, filmstrip: Path, report: Report) -> None:
+def extract(
+    clip: Path,
+    recording: Path,
+    poster: Path,
+    filmstrip: Path,
+    water: WaterCorrection,
+    report: Report,
+) -> None:
     """Write the clip's pictures and recording, reporting progress and the newest pose."""
     from app.api.extraction.pictures import Thumbnails, write_poster
     from app.recognition import extraction, video
@@ -64,7 +72,7 @@ def extract(clip: Path, recording: Path, poster: Path, filmstrip: Path, report: 
             seconds = round(newest_time, 3)
             report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
 
-    recorded = extraction.record(clip, progress=progress, observer=observe)
+    recorded = extraction.record(clip, progress=progress, observer=observe, water=water)
     frames = len(recorded.poses)
     report(Progressed(stage="saving", done=frames, total=frames))
     thumbnails.write(filmstrip)
@@ -121,6 +129,7 @@ def main() -> None:
     extracting = commands.add_parser("extract")
     for name in ("clip", "recording", "poster", "filmstrip"):
         extracting.add_argument(name, type=Path)
+    extracting.add_argument("--water", default="auto")
     chosen = parser.parse_args()
 
     # Libraries that print must not write into the messages.
@@ -138,7 +147,8 @@ def main() -> None:
         if chosen.command == "probe":
             probe(chosen.clip, report)
         else:
-            extract(chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip, report)
+            files = (chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip)
+            extract(*files, chosen.water, report)
     except MemoryError:
         report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
     except ModelError as error:

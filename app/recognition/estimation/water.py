@@ -1,0 +1,111 @@
+"""Under water: colour and contrast of a frame set right before landmarks are looked for in it.
+
+Water takes away red first and, where it is turbid, blue; what floats in it lays one and the same
+colour over everything. The models were trained in air.
+"""
+
+from __future__ import annotations
+
+from typing import Final, Literal, get_args
+
+import cv2
+import numpy as np
+
+from app.recognition.errors import EstimatorError
+from app.recognition.estimation.base import Image, check_image
+from app.recognition.poses import FloatArray
+
+WaterCorrection = Literal["auto", "on", "off"]
+"""Whether frames are corrected: those that need it, all, or none."""
+
+RED, GREEN, BLUE = 0, 1, 2
+
+SAMPLING: Final = 4
+"""Every so many pixels each way are enough to tell a frame's colours from."""
+
+TAIL: Final = 1.0
+"""Per cent of the pixels at either end of the range that the stretch may clip: a lamp, a hole."""
+
+LEAST_RANGE: Final = 8.0
+"""Grey levels. An image with less of them shows nothing, and stretched nothing but noise."""
+
+MURKY_RANGE: Final = 64.0
+"""Grey levels between the `TAIL` darkest and lightest pixels below which ``"auto"`` corrects. A
+quarter of what there is: frames of clear water have 80 to 190, mixed with 75 % of murk they have
+30 to 50. Above it the models do as well on the frame as it is."""
+
+LUMA: Final = np.array([0.299, 0.587, 0.114])
+"""Weights of red, green and blue in brightness (ITU-R BT.601)."""
+
+
+def corrected(image: Image, water: WaterCorrection = "auto") -> Image:
+    """Return a frame as it would look in clear water, or the frame itself.
+
+    Three steps. What red lacks to green is added where the pixel is green, and so for blue where
+    the water is turbid (Ancuti et al. 2018, Sec. III, with a weight of 1).
+    All channels are brought to the same mean (grey world, Buchsbaum 1980). All are stretched
+    about it alike, until the widest fills its range. Their sharpening and fusion of several
+    images is left out: it adds nothing that the models could see.
+
+    Parameters
+    ----------
+    image
+        ``(height, width, 3)`` RGB of 8 bits; it is not written to.
+    water
+        ``"on"``, ``"off"``, or ``"auto"``: on where the brightness has less than `MURKY_RANGE`.
+
+    Returns
+    -------
+    A new image, or `image` itself where nothing is corrected.
+
+    Raises
+    ------
+    EstimatorError
+        When `water` is none of the three, or `image` is no RGB image of 8 bits.
+
+    """
+    if water not in get_args(WaterCorrection):
+        known = ", ".join(get_args(WaterCorrection))
+        raise EstimatorError(f"unknown water correction {water!r}; there are: {known}")
+    check_image(image)
+    if water == "off" or (water == "auto" and not is_murky(image)):
+        return image
+    compensated = _compensated(image)
+    table = _balance_and_stretch(_sampled(compensated))
+    return np.asarray(cv2.LUT(compensated, table), np.uint8)
+
+
+def is_murky(image: Image) -> bool:
+    """Tell whether so little of the range of brightness is left that correcting helps."""
+    darkest, lightest = np.percentile(_sampled(image) @ LUMA, [TAIL, 100 - TAIL])
+    return bool(lightest - darkest < MURKY_RANGE)
+
+
+def _sampled(image: Image) -> FloatArray:
+    """Return ``(N, 3)`` of the image's pixels."""
+    return image[::SAMPLING, ::SAMPLING].reshape(-1, 3).astype(np.float64)
+
+
+def _compensated(image: Image) -> Image:
+    """Add to red, and to blue, what it lacks to green on average, most where the pixel is green."""
+    means = _sampled(image).mean(axis=0)
+    channels = [np.ascontiguousarray(image[..., channel]) for channel in range(3)]
+    for weak in (RED, BLUE):
+        lack = (means[GREEN] - means[weak]) / 255
+        if lack > 0:
+            room = 255 - channels[weak]
+            gain = cv2.multiply(room, channels[GREEN], scale=lack / 255)
+            channels[weak] = np.asarray(cv2.add(channels[weak], gain), np.uint8)
+    return np.asarray(cv2.merge(channels), np.uint8)
+
+
+def _balance_and_stretch(pixels: FloatArray) -> Image:
+    """Return the ``(1, 256, 3)`` table by which each value of each channel is replaced."""
+    means = pixels.mean(axis=0)
+    gains = means.mean() / np.maximum(means, 1.0)
+    low, high = np.percentile(pixels * gains, [TAIL, 100 - TAIL], axis=0)
+    darkest, lightest = low.min(), high.max()
+    stretch = 255 / max(lightest - darkest, LEAST_RANGE)
+    values = np.arange(256.0)[:, None] * gains
+    stretched = np.clip((values - darkest) * stretch, 0, 255).round()
+    return np.asarray(stretched[None], np.uint8)
