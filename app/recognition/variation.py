@@ -4,8 +4,9 @@ A gesture is shown once; how it would have looked another time, or from another 
 random. As in Cabrera and Wachs (2017), the places that make up the figure are moved with a spread,
 and what lies between them follows smoothly. Their spreads were set by hand for each gesture; ours
 are measured on pairs of takes of one gesture (`SPREADS`), and no places are singled out: all of
-them are moved by a smooth random field along the way. That came nearer to people than stochastic
-resampling (Taranta et al. 2016), salient points, and varied strokes (`docs/results.md`).
+them are moved by a smooth random field along the way. By the voters' distances that is as near to
+people as salient points, stochastic resampling (Taranta et al. 2016) or varied strokes, or nearer
+(`docs/results.md`).
 
 1. **Habit**: size, slant, stretch and shear of each arm's movement about its own mean place.
 2. **Waver**: a displacement along the way, a sum of cosines with random coefficients.
@@ -104,7 +105,8 @@ habit enlarged by 1.3, such that the voters' distances between demonstration and
 between two takes: a fifth more or less fits worse (`docs/results.md`, Variants against people)."""
 
 WAVES = 12
-"""Cosines along the way: beyond the twelfth, real takes differ by less than 1.5 % of the size."""
+"""Cosines along the way: at the twelfth, real takes differ by 1.5 to 2.5 % of the size, and less
+beyond."""
 
 SLOW_WAVES = 6.0
 """Cosine about which the displacement between real takes falls off, as the inverse of its number;
