@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from app.recognition.alarm import Alarm, alarms
+from app.recognition.contrast import Contrast, contrast
 from app.recognition.finding import Finding, demonstration_findings, visible_share
 from app.recognition.forecast import Forecast
 from app.recognition.gesture import Gesture, condensed
@@ -110,7 +111,7 @@ def check_health(
     pairs.sort(key=_confusion_rate, reverse=True)
     searching = replace(rehearsing, advance=_counted(progress, "remedies", 0))
     findings = [
-        *_pair_findings(language, pairs, rehearsal, searching),
+        *_pair_findings(recognizer, pairs, rehearsal, searching),
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
@@ -197,27 +198,30 @@ def _confusion_rate(pair: PairHealth) -> tuple[float, float]:
 
 
 def _pair_findings(
-    language: Language, pairs: Sequence[PairHealth], rehearsal: Rehearsal, rehearsing: Rehearsing
+    recognizer: Recognizer,
+    pairs: Sequence[PairHealth],
+    rehearsal: Rehearsal,
+    rehearsing: Rehearsing,
 ) -> list[Finding]:
     """Warn of pairs that will be confused; `pairs` are sorted, the worst first."""
+    language = recognizer.language
     findings: list[Finding] = []
     for pair in pairs:
         confusion = pair.confusion
         if confusion is None or confusion.rate <= MOST_CONFUSION:
             break
         first, second = (language.labels.index(label) for label in pair.gestures)
+        contrasts = contrast(recognizer, first, second), contrast(recognizer, second, first)
         remedies: tuple[Remedy, ...] = ()
-        if (
-            len(findings) < MOST_REMEDIED
-            and pair.first_as_second is not None
-            and pair.second_as_first is not None
-        ):
-            remedies = pair_remedies(language, (first, second), rehearsal, rehearsing)
+        both_shown = pair.first_as_second is not None and pair.second_as_first is not None
+        if len(findings) < MOST_REMEDIED and both_shown:
+            strokes = tuple(None if each is None else each.stroke for each in contrasts)
+            remedies = pair_remedies(language, (first, second), rehearsal, rehearsing, strokes)
         findings.append(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
                 pair.gestures,
-                _confusion_message(pair),
+                _confusion_message(pair, contrasts),
                 below_bar=True,
                 remedies=remedies,
             )
@@ -229,18 +233,22 @@ def _is_duplicate(pair: PairHealth) -> bool:
     return pair.distance is not None and pair.distance < DUPLICATE
 
 
-def _confusion_message(pair: PairHealth) -> str:
+def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contrast | None]) -> str:
     first, second = pair.gestures
     if _is_duplicate(pair):
         return (
             f"{first} and {second} are the same movement: the robot can only guess which is meant"
         )
-    confusion = pair.confusion
+    confusion, forth = pair.confusion, pair.confusion is pair.first_as_second
     assert confusion is not None  # asked before
-    one, other = (first, second) if confusion is pair.first_as_second else (second, first)
+    one, other = (first, second) if forth else (second, first)
+    differing = contrasts[0 if forth else 1]
+    where = ""
+    if differing is not None and differing.words:
+        where = f"; the demonstration of {one} differs in this: {differing.words}"
     return (
         f"{confusion.rate:.0%} of all takes of {one} ({confusion.low:.0%} to {confusion.high:.0%}) "
-        f"would be nearer to {other}"
+        f"would be nearer to {other}{where}"
     )
 
 

@@ -6,7 +6,7 @@ ones are then rehearsed within the whole language, and proposed only where they 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,8 +22,9 @@ TRIAL_TAKES = 5
 """Takes of each of the two gestures with which a change is tried: enough to order changes whose
 effects differ by a spread of the margins or more."""
 
-MOST_PROPOSED = 3
-"""Changes rehearsed within the whole language: a choice that can be surveyed."""
+MOST_PROPOSED = 4
+"""Changes rehearsed within the whole language, each of another kind: a choice that can be surveyed,
+for the most effective one (mostly the other hand) may not suit the diver."""
 
 HELPS = 0.5
 """A remedy is proposed where it at least halves what it is against: smaller effects are within the
@@ -105,7 +106,7 @@ def pair_remedies(
     pair: tuple[int, int],
     before: Rehearsal,
     rehearsing: Rehearsing,
-    strokes: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
+    strokes: Sequence[tuple[float, float] | None] = (None, None),
 ) -> tuple[Remedy, ...]:
     """Find what keeps two gestures apart, the most effective first.
 
@@ -129,15 +130,14 @@ def pair_remedies(
         before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
     )
     misread = sum(before.misread(performer).rate for performer in performers)
-    tried = sorted(
-        (
-            (_tried(changed, rehearsing), change, changed)
-            for change, changed in _changed(two, strokes)
-        ),
-        key=lambda trial: (trial[0].rate, trial[0].high),
-    )
+    trials = [
+        (_tried(changed, rehearsing), change, changed) for change, changed in _changed(two, strokes)
+    ]
+    trials.sort(key=lambda trial: (trial[0].rate, trial[0].high))
+    best_of_kind = {change.kind: (change, changed) for _, change, changed in reversed(trials)}
+    kinds = list(dict.fromkeys(change.kind for _, change, _ in trials))
     proposed = []
-    for _, change, changed in tried[:MOST_PROPOSED]:
+    for change, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
         rehearsal = rehearsing(Recognizer(_with(language, pair, changed), "full"), pair)
         after = worse(rehearsal.confusion(0, pair[1]), rehearsal.confusion(1, pair[0]))
         elsewhere = rehearsal.misread(0).rate + rehearsal.misread(1).rate
@@ -148,7 +148,7 @@ def pair_remedies(
 
 def _changed(
     two: list[Gesture],
-    strokes: tuple[tuple[float, float] | None, tuple[float, float] | None],
+    strokes: Sequence[tuple[float, float] | None],
 ) -> Iterator[tuple[Alteration, list[Gesture]]]:
     """Apply every change that applies to either of the two."""
     changes = [(0, change) for change in switch_alterations(*two)]

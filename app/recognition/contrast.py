@@ -1,0 +1,59 @@
+"""A contrast: in what two demonstrations of a language differ, and when."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.recognition.course import course
+from app.recognition.difference import differences
+from app.recognition.gesture import condensed
+from app.recognition.pairing import Pairing
+from app.recognition.recognizer import Recognizer
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """How one demonstration differs from another.
+
+    Attributes
+    ----------
+    words
+        A clause for people; empty where nothing tells them apart.
+    stroke
+        Seconds of the first demonstration's clock between which the two part most.
+
+    """
+
+    words: str
+    stroke: tuple[float, float]
+
+
+def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
+    """Tell how the demonstration of one gesture differs from that of another.
+
+    Parameters
+    ----------
+    recognizer
+        Of the language, profile ``full``.
+    one, other
+        Indices of two gestures.
+
+    Returns
+    -------
+    None where the two cannot be compared.
+
+    """
+    shown, against = (recognizer.language.gestures[index] for index in (one, other))
+    if shown.trajectory is None:
+        return None
+    query = condensed(shown.trajectory)
+    compared = recognizer.compare(query)
+    reading = compared.readings[other]
+    if reading is None:
+        return None
+    pairing = Pairing.of(query, against, reading, mirrored=bool(compared.mirrored[other]))
+    if pairing is None:
+        return None
+    parted = course(pairing)
+    named = differences(pairing, sees_direction=True)
+    return Contrast(named[0].words if named else "", (parted.start, parted.end))

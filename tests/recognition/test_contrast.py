@@ -1,0 +1,33 @@
+"""Contrasts: in what two demonstrations differ, in words and in seconds."""
+
+import numpy as np
+
+from app.recognition import Gesture, Language, Recognizer
+from app.recognition.contrast import contrast
+from app.recognition.poses import FloatArray
+from tests.recognition.demonstrations import pool, shown
+from tests.recognition.strategies import circle, line
+
+
+def ell(share: FloatArray) -> FloatArray:
+    """Go right like a line, then down."""
+    corners = np.array([[-1.2, 0.0], [-0.2, 0.0], [-0.2, 0.8]])
+    at = np.array([0.0, 0.5, 1.0])
+    return np.stack([np.interp(share, at, corners[:, axis]) for axis in range(2)], axis=1)
+
+
+def test_what_only_one_of_them_does_is_told_with_its_time() -> None:
+    recognizer = Recognizer(pool(line=line, ell=ell, circle=circle), "full")
+    found = contrast(recognizer, 1, 0)
+    assert found is not None
+    assert "'line'" in found.words
+    start, end = found.stroke
+    assert start >= 0.4
+    assert end > start
+
+
+def test_without_a_demonstration_there_is_nothing_to_compare() -> None:
+    imported = Gesture(label="old", salient=("right_wrist",), image=shown("line", line).image)
+    recognizer = Recognizer(Language("mixed", [shown("circle", circle), imported]), "full")
+    assert contrast(recognizer, 1, 0) is None
+    assert contrast(recognizer, 0, 1) is None
