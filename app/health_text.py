@@ -41,7 +41,7 @@ def _gestures(report: HealthReport) -> Iterator[str]:
     if not report.gestures:
         return
     yield ""
-    head = ("gesture", "missed", "false alarms", "seconds", "depends on (visible)")
+    head = ("gesture", "missed", "of it refused", "false alarms", "seconds", "depends on (visible)")
     yield from _aligned([head, *(_gesture_row(gesture) for gesture in report.gestures)])
 
 
@@ -51,6 +51,7 @@ def _gesture_row(gesture: GestureHealth) -> tuple[str, ...]:
     return (
         gesture.label,
         percentage(gesture.missed),
+        "-" if gesture.refused is None else f"{gesture.refused.rate:.1%}",
         percentage(gesture.false_alarms),
         seconds,
         needed,

@@ -6,163 +6,185 @@ import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Language, Recognizer
+from app.recognition.calibrated_vote import SCORE_FLOOR
 from app.recognition.errors import PoseError
+from app.recognition.forecast import Forecast
+from app.recognition.health_report import MOST_CONFUSION
 from app.recognition.poses import FloatArray
-from app.recognition.rehearsal import rehearse
+from app.recognition.rehearsal import UNFORESEEN, rehearse
 from app.recognition.variation import Person
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 
-BAR = 0.05
-"""Predicted confusion above which the health report warns of a pair."""
-
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Ordered pairs of gestures, several languages' one after the other.
+    """N ordered pairs of gestures, several languages' one after the other.
 
     Attributes
     ----------
-    predicted
-        ``(N,)`` how often the first is expected to be read as the second.
-    observed
-        ``(N,)`` how often takes of the first were.
+    margins
+        ``(N, variants)`` of the rehearsed takes of the first against the second.
+    read
+        ``(N,)`` real takes of the first that were nearest to the second.
     takes
-        ``(N,)`` how many takes of the first there were.
+        ``(N,)`` real takes of the first.
+    nearness
+        ``(N,)`` mean over the real takes of the logarithm of own over other score: how near they
+        came to the second.
 
     """
 
-    predicted: FloatArray
-    observed: FloatArray
+    margins: FloatArray
+    read: FloatArray
     takes: FloatArray
+    nearness: FloatArray
 
-    def __add__(self, other: Pairs) -> Pairs:
-        joined = zip(vars(self).values(), vars(other).values(), strict=True)
-        return Pairs(*(np.concatenate(both) for both in joined))
+    @classmethod
+    def joined(cls, parts: Sequence[Pairs]) -> Pairs:
+        """Put several languages together."""
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(column) for column in columns))
 
-    @property
-    def rank_correlation(self) -> float:
-        """Spearman's, over all pairs."""
-        if np.ptp(self.observed) == 0:
-            return float("nan")
-        return float(np.corrcoef(_ranks(self.predicted), _ranks(self.observed))[0, 1])
 
-    @property
-    def discrimination(self) -> float:
-        """How probably a confused pair is predicted above one that was never confused (AUC)."""
-        ranks, confused = _ranks(self.predicted), self.observed > 0
-        count, rest = confused.sum(), (~confused).sum()
-        if not count or not rest:
-            return float("nan")
-        return float((ranks[confused].sum() - count * (count - 1) / 2) / (count * rest))
+@dataclass(frozen=True)
+class Study:
+    """How languages are drawn.
 
-    @property
-    def foreseen(self) -> tuple[int, int]:
-        """Misread takes of warned pairs, and all misread takes."""
-        misread = np.round(self.observed * self.takes)
-        return int(misread[self.predicted > BAR].sum()), int(misread.sum())
+    Attributes
+    ----------
+    draws
+        Languages per set.
+    takes
+        Real takes of each gesture.
+    variants
+        Rehearsed takes of each gesture.
+    seed
+        Of what is drawn.
 
-    @property
-    def warned(self) -> tuple[int, int]:
-        """Pairs warned of, and those of them that were confused."""
-        above = self.predicted > BAR
-        return int(above.sum()), int((above & (self.observed > 0)).sum())
+    """
+
+    draws: int
+    takes: int
+    variants: int
+    seed: int
+
+
+def studied(recorded: RecordedSet, person: Person, study: Study) -> Pairs:
+    """Teach takes of one person, rehearse, and let that person or the others perform."""
+    generator = np.random.default_rng(study.seed)
+    labels = np.unique(recorded.labels)
+    parts = []
+    for _ in range(study.draws):
+        own = recorded.people == generator.choice(np.unique(recorded.people))
+        templates = [
+            int(generator.choice(np.flatnonzero(own & (recorded.labels == label))))
+            for label in labels
+        ]
+        # Where people are not told apart, the others are among them.
+        alone = own.all() or person == "same"
+        pool = np.setdiff1d(np.flatnonzero(own if alone else ~own), templates)
+        recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)))
+        rehearsal = rehearse(recognizer, study.variants, person=person)
+        for performer, label in enumerate(labels):
+            mine = pool[recorded.labels[pool] == label]
+            chosen = generator.choice(mine, min(study.takes, len(mine)), replace=False)
+            scores = np.array(list(_scores(recognizer, recorded, chosen)))
+            logarithms = np.log(np.minimum(scores, 1e9) + SCORE_FLOOR)
+            near = np.bincount(scores.argmin(axis=1), minlength=len(labels))
+            nearness = (logarithms[:, [performer]] - logarithms).mean(axis=0)
+            others = np.delete(np.arange(len(labels)), performer)
+            parts.append(
+                Pairs(
+                    rehearsal.margins[performer][:, others].T,
+                    near[others].astype(np.float64),
+                    np.full(len(others), float(len(scores))),
+                    nearness[others],
+                )
+            )
+    return Pairs.joined(parts)
+
+
+def _scores(
+    recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
+) -> Iterator[FloatArray]:
+    for query in queries:
+        try:
+            yield recognizer.compare(recognizer.query(recorded.recordings[query])).scores
+        except PoseError:  # nothing moves
+            continue
+
+
+def report(name: str, pairs: Pairs, scale: float) -> str:
+    """Say in a line how forecasts with this scale fit what was observed."""
+    predicted = np.array([Forecast.of_margins(each, scale).rate for each in pairs.margins])
+    confused, warned = pairs.read > 0, predicted > MOST_CONFUSION
+    bounded = np.clip(predicted, 1e-6, 1 - 1e-6)
+    likelihood = pairs.read * np.log(bounded) + (pairs.takes - pairs.read) * np.log(1 - bounded)
+    return (
+        f"{name:18} {scale:5.2f} {len(predicted):6} {_rank_correlation(predicted, pairs):6.2f} "
+        f"{_discrimination(predicted, confused):6.2f} {predicted.mean():10.2%} "
+        f"{pairs.read.sum() / pairs.takes.sum():9.2%} {warned.sum():7} "
+        f"{(warned & confused).sum():9} {int(pairs.read[warned].sum()):5} of "
+        f"{int(pairs.read.sum()):4} {likelihood.sum():9.0f}"
+    )
+
+
+def _rank_correlation(predicted: FloatArray, pairs: Pairs) -> float:
+    """Spearman's, of predicted confusion and how near real takes came."""
+    return float(np.corrcoef(_ranks(predicted), _ranks(pairs.nearness))[0, 1])
+
+
+def _discrimination(predicted: FloatArray, confused: npt.NDArray[np.bool_]) -> float:
+    """How probably a confused pair is predicted above one that never was (area under the ROC)."""
+    count, rest = int(confused.sum()), int((~confused).sum())
+    if not count or not rest:
+        return float("nan")
+    lowest = count * (count - 1) / 2
+    return float((_ranks(predicted)[confused].sum() - lowest) / (count * rest))
 
 
 def _ranks(values: FloatArray) -> FloatArray:
     """Rank ``(N,)`` values from 0, equal ones with their mean rank."""
     _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
-    last = np.cumsum(counts)
-    return np.asarray((last - (counts + 1) / 2 - 0.5 + 0.0)[inverse], dtype=np.float64)
-
-
-def draws(
-    recorded: RecordedSet, person: Person, count: int, takes: int, variants: int, seed: int
-) -> Iterator[Pairs]:
-    """Teach one person's takes, predict, and let the same person or the others perform."""
-    generator = np.random.default_rng(seed)
-    for _ in range(count):
-        teacher = generator.choice(np.unique(recorded.people))
-        own = recorded.people == teacher
-        labels = np.unique(recorded.labels)
-        templates = [
-            int(generator.choice(np.flatnonzero(own & (recorded.labels == label))))
-            for label in labels
-        ]
-        pool = np.setdiff1d(np.flatnonzero(own if person == "same" else ~own), templates)
-        if not len(pool):
-            return
-        recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)), "full")
-        yield _pairs(recognizer, recorded, labels, pool, person, takes, variants, generator)
-
-
-def _pairs(
-    recognizer: Recognizer,
-    recorded: RecordedSet,
-    labels: npt.NDArray[np.str_],
-    pool: npt.NDArray[np.intp],
-    person: Person,
-    takes: int,
-    variants: int,
-    generator: np.random.Generator,
-) -> Pairs:
-    rehearsal = rehearse(recognizer, variants, person=person)
-    columns: list[Sequence[float]] = []
-    for performer, label in enumerate(labels):
-        mine = pool[recorded.labels[pool] == label]
-        chosen = generator.choice(mine, min(takes, len(mine)), replace=False)
-        read = [_nearest(recognizer, recorded, int(query)) for query in chosen]
-        columns += [
-            (rehearsal.confusion(performer, other).rate, read.count(rival) / len(read), len(read))
-            for other, rival in enumerate(labels)
-            if other != performer and read
-        ]
-    return Pairs(*np.array(columns, dtype=np.float64).T)
-
-
-def _nearest(recognizer: Recognizer, recorded: RecordedSet, query: int) -> str | None:
-    try:
-        return recognizer.recognize(recorded.recordings[query]).nearest
-    except PoseError:
-        return None
+    return np.asarray((np.cumsum(counts) - (counts + 1) / 2)[inverse], dtype=np.float64)
 
 
 def main() -> None:
-    """Print one line a set and performer."""
+    """Print one line a set, kind of performer and scale."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
     parser.add_argument("--sets", nargs="+", help="names of sets; default: all")
     parser.add_argument("--draws", type=int, default=10, help="languages per set")
-    parser.add_argument("--takes", type=int, default=10, help="takes of each gesture")
-    parser.add_argument("--variants", type=int, default=24)
+    parser.add_argument("--takes", type=int, default=10, help="real takes of each gesture")
+    parser.add_argument("--variants", type=int, default=16)
+    parser.add_argument("--scales", type=float, nargs="*", default=[], help="further scales to try")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
+    study = Study(given.draws, given.takes, given.variants, given.seed)
     print(f"predicted against observed confusion of ordered pairs, seed {given.seed}")
+    print(
+        f"{'set':18} {'scale':>5} {'n':>6} {'rank':>6} {'AUC':>6} {'predicted':>10} "
+        f"{'observed':>9} {'warned':>7} {'confused':>9} {'misread foreseen':>13} {'likelihood':>10}"
+    )
+    everything: dict[Person, list[Pairs]] = {"same": [], "another": []}
     for recorded in recorded_sets(given.data / "trajectories"):
         if given.sets and recorded.name not in given.sets:
             continue
-        for person in get_args(Person):
-            found = list(
-                draws(recorded, person, given.draws, given.takes, given.variants, given.seed)
-            )
-            if not found:
-                continue
-            pairs = sum(found[1:], start=found[0])
-            warned, confused = pairs.warned
-            foreseen, misread = pairs.foreseen
-            print(
-                f"{recorded.name:10} {person:8} n {len(pairs.predicted):5} "
-                f"rank {pairs.rank_correlation:5.2f} auc {pairs.discrimination:5.2f} "
-                f"mean predicted {pairs.predicted.mean():.2%} observed {pairs.observed.mean():.2%} "
-                f"warned {warned} confused {confused} misread {misread} foreseen {foreseen}",
-                flush=True,
-            )
+        told_apart = len(np.unique(recorded.people)) > 1
+        for person, found in everything.items():
+            if person == "another" or told_apart:
+                found.append(studied(recorded, person, study))
+                name = f"{recorded.name} {person}"
+                print(report(name, found[-1], UNFORESEEN[person]), flush=True)
+    for person, found in everything.items():
+        for scale in [UNFORESEEN[person], *given.scales] if found else []:
+            print(report(f"all {person}", Pairs.joined(found), scale))
 
 
 if __name__ == "__main__":

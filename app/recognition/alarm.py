@@ -10,10 +10,6 @@ from app.recognition.errors import PoseError
 from app.recognition.gesture import condensed
 from app.recognition.recognizer import Recognizer
 
-MEANT = 0.5
-"""Confidence from which a movement that is read as a gesture is acted upon: it is more probably
-meant than not."""
-
 
 @dataclass(frozen=True)
 class Alarm:
@@ -25,8 +21,6 @@ class Alarm:
         Of the movement, in words.
     nearest
         Index of the nearest gesture; None where nothing that a gesture needs moved.
-    confidence
-        That the nearest one was meant.
     taken
         Whether it was taken for that gesture.
 
@@ -34,7 +28,6 @@ class Alarm:
 
     kind: str
     nearest: int | None
-    confidence: float
     taken: bool
 
 
@@ -54,10 +47,9 @@ def alarms(
         try:
             result = recognizer.recognize_trajectory(condensed(movement.trajectory))
         except PoseError:  # nothing that any gesture needs moves in it
-            found.append(Alarm(movement.kind, None, 0.0, taken=False))
+            found.append(Alarm(movement.kind, None, taken=False))
         else:
             nearest = recognizer.language.labels.index(result.nearest)
-            taken = result.label is not None and result.confidence >= MEANT
-            found.append(Alarm(movement.kind, nearest, result.confidence, taken))
+            found.append(Alarm(movement.kind, nearest, result.label is not None))
         advance()
     return tuple(found)

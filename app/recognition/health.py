@@ -169,7 +169,8 @@ def _gesture_health(
             for name in gesture.salient
             if shown is not None
         ),
-        missed=None if performer is None else rehearsal.misread(performer),
+        missed=None if performer is None else rehearsal.missed(performer),
+        refused=None if performer is None else rehearsal.refused(performer),
         false_alarms=Forecast.of_count(len(taken), len(read)) if comparable else None,
         set_off_by=tuple(dict.fromkeys(alarm.kind for alarm in taken)),
     )

@@ -63,7 +63,9 @@ class GestureHealth:
     landmarks
         What it depends on.
     missed
-        How often a take of it is read as another gesture, or as none; None without demonstration.
+        How often a take of it is read as another gesture, or refused; None without demonstration.
+    refused
+        How often it is read as no gesture at all.
     false_alarms
         How often an accidental movement is taken for it; None where the library does not show what
         it depends on.
@@ -76,6 +78,7 @@ class GestureHealth:
     seconds: float | None
     landmarks: tuple[LandmarkHealth, ...]
     missed: Forecast | None
+    refused: Forecast | None
     false_alarms: Forecast | None
     set_off_by: tuple[str, ...]
 
@@ -86,6 +89,7 @@ class GestureHealth:
             "seconds": None if self.seconds is None else round(self.seconds, DIGITS),
             "landmarks": [landmark.to_dict() for landmark in self.landmarks],
             "missed": self.missed and self.missed.to_dict(),
+            "refused": self.refused and self.refused.to_dict(),
             "false_alarms": self.false_alarms and self.false_alarms.to_dict(),
             "set_off_by": list(self.set_off_by),
         }

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.calibrated_vote import SCORE_FLOOR
-from app.recognition.errors import PoseError
 from app.recognition.forecast import Forecast
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
@@ -25,13 +24,10 @@ WIDEST_MARGIN = 4.0
 """Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
 compared at all needs to be."""
 
-UNFORESEEN: Final[Mapping[Person, float]] = MappingProxyType({"same": 0.15, "another": 0.3})
+UNFORESEEN: Final[Mapping[Person, float]] = MappingProxyType({"same": 0.15, "another": 0.2})
 """Scale by which margins of real takes differ from those of variants, by whose takes they are:
 others also draw a letter with other strokes, which no variant of one demonstration can know.
 Measured on other people's recordings (`docs/results.md`, Health)."""
-
-REFUSED = -1
-"""In `Rehearsal.read`: the take was read as no gesture."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,8 +41,9 @@ class Rehearsal:
     scores
         ``(P, N, G)``: of N takes each the score of every gesture, smaller = more alike; infinite
         where not comparable.
-    read
-        ``(P, N)`` index of the gesture each take was read as, or `REFUSED`.
+    novelty
+        ``(P, N)``: how much farther than its thresholds allow each take lies from its own gesture;
+        above 1 it is refused. NaN for a gesture without thresholds.
     unforeseen
         Of `UNFORESEEN` the one of whoever performed.
 
@@ -54,7 +51,7 @@ class Rehearsal:
 
     gestures: npt.NDArray[np.intp]
     scores: FloatArray
-    read: npt.NDArray[np.intp]
+    novelty: FloatArray
     unforeseen: float
 
     @property
@@ -73,9 +70,27 @@ class Rehearsal:
 
     def misread(self, performer: int) -> Forecast:
         """Forecast how often a gesture is nearer to any other one than to itself."""
-        own = int(self.gestures[performer])
-        rivals = np.delete(self.margins[performer], own, axis=1)
-        return Forecast.of_margins(rivals.min(axis=1, initial=WIDEST_MARGIN), self.unforeseen)
+        return Forecast.of_margins(self._to_rivals(performer), self.unforeseen)
+
+    def refused(self, performer: int) -> Forecast:
+        """Forecast how often a gesture is too far from itself to be recognised at all."""
+        return Forecast.of_margins(self._to_refusal(performer), self.unforeseen)
+
+    def missed(self, performer: int) -> Forecast:
+        """Forecast how often a gesture is misread, or refused."""
+        margins = np.minimum(self._to_rivals(performer), self._to_refusal(performer))
+        return Forecast.of_margins(margins, self.unforeseen)
+
+    def _to_rivals(self, performer: int) -> FloatArray:
+        """Return ``(N,)`` margins to the nearest other gesture."""
+        rivals = np.delete(self.margins[performer], int(self.gestures[performer]), axis=1)
+        return np.asarray(rivals.min(axis=1, initial=WIDEST_MARGIN))
+
+    def _to_refusal(self, performer: int) -> FloatArray:
+        """Return ``(N,)`` margins to the thresholds, as logarithms like those to the rivals."""
+        novelty = np.nan_to_num(self.novelty[performer], nan=0.0)
+        margins = -np.log(np.maximum(novelty, np.exp(-WIDEST_MARGIN)))
+        return np.asarray(np.maximum(margins, -WIDEST_MARGIN))
 
 
 def rehearse(
@@ -112,23 +127,18 @@ def rehearse(
         if language.gestures[index].trajectory is not None
     ]
     scores = np.full((len(performed), count, len(language.gestures)), np.inf)
-    read = np.full((len(performed), count), REFUSED, dtype=np.intp)
+    novelty = np.full((len(performed), count), np.nan)
     for row, index in enumerate(performed):
         demonstration = language.gestures[index].trajectory
         assert demonstration is not None  # chosen above
         for take, variant in enumerate(variants(demonstration, count, seed=seed, person=person)):
             compared = recognizer.compare(condensed(variant))
             scores[row, take] = compared.scores
-            try:
-                label = recognizer.decided(compared).label
-            except PoseError:  # nothing that any gesture needs moves in it
-                label = None
-            if label is not None:
-                read[row, take] = language.labels.index(label)
+            novelty[row, take] = compared.novelty[index]
             advance()
     return Rehearsal(
         gestures=np.array(performed, dtype=np.intp),
         scores=scores,
-        read=read,
+        novelty=novelty,
         unforeseen=UNFORESEEN[person],
     )

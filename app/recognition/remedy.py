@@ -129,7 +129,7 @@ def pair_remedies(
     confused = worse(
         before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
     )
-    misread = sum(before.misread(performer).rate for performer in performers)
+    missed = sum(before.missed(performer).rate for performer in performers)
     trials = [
         (_tried(changed, rehearsing), change, changed) for change, changed in _changed(two, strokes)
     ]
@@ -140,8 +140,8 @@ def pair_remedies(
     for change, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
         rehearsal = rehearsing(Recognizer(_with(language, pair, changed), "full"), pair)
         after = worse(rehearsal.confusion(0, pair[1]), rehearsal.confusion(1, pair[0]))
-        elsewhere = rehearsal.misread(0).rate + rehearsal.misread(1).rate
-        if after.rate <= HELPS * confused.rate and elsewhere < misread:
+        missed_then = rehearsal.missed(0).rate + rehearsal.missed(1).rate
+        if after.rate <= HELPS * confused.rate and missed_then < missed:
             proposed.append(Remedy(change.kind, change.label, change.text, confused, after))
     return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
 
@@ -162,7 +162,10 @@ def _changed(
 
 
 def _tried(two: list[Gesture], rehearsing: Rehearsing) -> Forecast:
-    rehearsal = rehearsing(Recognizer(Language("two", two), "full"), takes=TRIAL_TAKES)
+    language = Language("two", two)
+    # Only scores are compared: thresholds are not made for a language that nobody will speak.
+    uncalibrated = replace(language, thresholds_for=language.fingerprint)
+    rehearsal = rehearsing(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
     return worse(rehearsal.confusion(0, 1), rehearsal.confusion(1, 0))
 
 

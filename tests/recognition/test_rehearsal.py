@@ -12,7 +12,7 @@ from tests.recognition.strategies import circle, line, wedge
 def test_a_line_is_not_taken_for_a_circle() -> None:
     rehearsal = rehearse(Recognizer(pool(circle=circle, line=line), "full"), 8, person="same")
     assert rehearsal.scores.shape == (2, 8, 2)
-    assert rehearsal.read.tolist() == [[0] * 8, [1] * 8]
+    assert rehearsal.scores.argmin(axis=2).tolist() == [[0] * 8, [1] * 8]
     assert rehearsal.confusion(0, 1).rate < 0.05
     assert rehearsal.misread(1).rate < 0.05
 
@@ -22,6 +22,15 @@ def test_the_same_demonstration_twice_is_a_guess() -> None:
     rehearsal = rehearse(Recognizer(language, "full"), 4)
     assert rehearsal.confusion(0, 1).rate == pytest.approx(0.5)
     assert rehearsal.confusion(1, 0).rate == pytest.approx(0.5)
+
+
+def test_what_is_refused_or_misread_is_missed() -> None:
+    rehearsal = rehearse(Recognizer(pool(circle=circle, line=line), "full"), 6)
+    for performer in range(2):
+        missed = rehearsal.missed(performer).rate
+        assert missed >= rehearsal.refused(performer).rate
+        assert missed >= rehearsal.misread(performer).rate
+    assert 0 < rehearsal.refused(0).rate < 0.3
 
 
 def test_only_the_gestures_asked_for_are_performed() -> None:
