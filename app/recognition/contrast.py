@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.recognition.course import course
-from app.recognition.difference import differences
+from app.recognition.difference import differences, spoken
 from app.recognition.gesture import condensed
 from app.recognition.pairing import Pairing
 from app.recognition.recognizer import Recognizer
@@ -18,7 +18,7 @@ class Contrast:
     Attributes
     ----------
     words
-        A clause for people; empty where nothing tells them apart.
+        A clause for people, to be read after "differs in this: ".
     stroke
         Seconds of the first demonstration's clock between which the two part most.
 
@@ -56,4 +56,8 @@ def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
         return None
     parted = course(pairing)
     named = differences(pairing, sees_direction=True)
-    return Contrast(named[0].words if named else "", (parted.start, parted.end))
+    little = (
+        f"little, and most from {parted.start:.1f} to {parted.end:.1f} s, when the "
+        f"{spoken(parted.landmark)} {parted.shown}"
+    )
+    return Contrast(named[0].words if named else little, (parted.start, parted.end))

@@ -245,7 +245,7 @@ def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contr
     one, other = (first, second) if forth else (second, first)
     differing = contrasts[0 if forth else 1]
     where = ""
-    if differing is not None and differing.words:
+    if differing is not None:
         where = f"; the demonstration of {one} differs in this: {differing.words}"
     return (
         f"{confusion.rate:.0%} of all takes of {one} ({confusion.low:.0%} to {confusion.high:.0%}) "
