@@ -63,12 +63,20 @@ export const jobs = {
 export const samples = {
   list: () => request("GET", "/samples"),
   add: (name) => request("POST", "/samples", { body: { name } }),
+  languages: () => request("GET", "/samples/languages"),
+  addLanguage: (name) => request("POST", "/samples/languages", { body: { name } }),
 };
 
 export const languages = {
   list: () => request("GET", "/languages"),
   get: (language) => request("GET", `/languages/${id(language)}`),
   create: (name) => request("POST", "/languages", { body: { name } }),
+  change: (language, change) => request("PATCH", `/languages/${id(language.id)}`, { body: change, headers: matching(language) }),
+  duplicate: (language) => request("POST", `/languages/${id(language)}/duplicate`),
+  revisions: (language) => request("GET", `/languages/${id(language)}/revisions`),
+  compare: (language, older, newer) => request("GET", `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`),
+  check: (language, revision) => request("GET", `/languages/${id(language)}/check?revision=${revision}`),
+  image: (language, label, revision) => `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
   remove: (language) => request("DELETE", `/languages/${id(language.id)}`, "revision" in language ? { headers: matching(language) } : {}),
   import: (name, text) => request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),

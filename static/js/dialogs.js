@@ -35,6 +35,7 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
         answer = await submit(Object.fromEntries(fields.map((field, index) => [field.name, inputs[index].value.trim()])));
         dialog.close();
       } catch (error) {
+        if (error.code === "cancelled") return dialog.close();
         tell(error.message, inputs[0]);
       } finally {
         confirm.disabled = false;

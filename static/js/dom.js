@@ -2,6 +2,7 @@
 
 const ICONS = {
   back: "M15 4v12L7 10zM5 4v12",
+  chevron: "M12 4l-6 6 6 6",
   close: "M5 5l10 10M15 5L5 15",
   forth: "M5 4v12l8-6zM15 4v12",
   loop: "M6 6h8a3 3 0 0 1 3 3v1M14 14H6a3 3 0 0 1-3-3v-1M12 3.500l2.500 2.500L12 8.500M8 16.500L5.500 14 8 11.500",

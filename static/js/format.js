@@ -22,4 +22,17 @@ export function timeLeft(seconds) {
   return `${seconds < 60 ? `${Math.ceil(seconds)} s` : duration(seconds)} left`;
 }
 
+const RELATIVE = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
+const UNITS = [["year", 31536000], ["month", 2592000], ["day", 86400], ["hour", 3600], ["minute", 60]];
+
+/** How long ago a moment was. */
+export function ago(moment) {
+  const seconds = (new Date(moment) - Date.now()) / 1000;
+  const [unit, length] = UNITS.find(([, each]) => Math.abs(seconds) >= each) ?? [];
+  return unit ? RELATIVE.format(Math.round(seconds / length), unit) : "just now";
+}
+
+/** A moment in full, as the reader's own system writes it. */
+export const dateAndTime = (moment) => new Date(moment).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

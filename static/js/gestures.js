@@ -9,26 +9,31 @@ import { complain } from "./toasts.js";
 import { did, tellDone } from "./undo.js";
 
 /**
- * Change the language; it can be taken back under `title`. When someone else was faster, show
- * theirs and say so.
+ * Change the language by `change(base)`, which calls the API with the revision `base`; it can be
+ * taken back under `title`. `from` is what the user saw when beginning, `mine` what it would be
+ * like then: both are shown when someone else was faster, and the user picks.
  */
-export async function edit(doing, title, change) {
-  const before = state.gestures;
+export async function edit(doing, title, change, { from = state.gestures, mine = from } = {}) {
+  let made;
   try {
-    const language = await change(before);
-    update({ gestures: language });
-    did({ title, kind: "edit", language: language.id, before: before.revision, after: language.revision });
-    return language;
+    made = { before: from.revision, language: await change(from) };
   } catch (error) {
     if (error.status !== 412) throw error;
+    const { settleRace } = await import("./race.js");
     await reloadLanguage();
-    throw Object.assign(new Error("The language was changed in another tab meanwhile. Its newest state is on display now; please try again."), { title: `${doing} failed`, status: 412 });
+    made = await settleRace({ doing, title, from, mine, change });
   }
+  const { before, language } = made;
+  if (state.language === language.id) update({ gestures: language });
+  did({ title, kind: "edit", language: language.id, before, after: language.revision });
+  return language;
 }
 
 const readable = (name) => name.replaceAll("_", " ");
 
 function rename(gesture) {
+  const from = state.gestures;
+  const mine = (change) => ({ ...from, gestures: from.gestures.map((each) => (each.label === gesture.label ? { ...each, ...change } : each)) });
   return ask({
     title: "Change gesture",
     fields: [
@@ -37,21 +42,28 @@ function rename(gesture) {
       { name: "command", label: "Command", value: typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, ""), hint: "What the robot should do." },
     ],
     action: "Save",
-    submit: (values) => edit("Changing the gesture", `Change of ${gesture.label}`, (language) => api.languages.changeGesture(language, gesture.label, changesOf(gesture, values))),
+    submit: (values) => {
+      const change = changesOf(gesture, values);
+      if (!Object.keys(change).length) return from;
+      return edit("Changing the gesture", `Change of ${gesture.label}`, (language) => api.languages.changeGesture(language, gesture.label, change), { from, mine: mine(change) });
+    },
   });
 }
 
-/** Only what was changed: a command that is an object stays one unless it was retyped. */
+/** Only what was changed: the rest may meanwhile be another's, and a command stays an object. */
 function changesOf(gesture, values) {
-  const change = { label: values.label, description: values.description };
+  const change = {};
+  for (const name of ["label", "description"]) if (values[name] !== gesture[name]) change[name] = values[name];
   const shown = typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, "");
   if (values.command !== shown) change.command = values.command || null;
   return change;
 }
 
 async function remove(gesture) {
+  const from = state.gestures;
+  const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
   try {
-    await edit("Deleting the gesture", `Deletion of ${gesture.label}`, (language) => api.languages.removeGesture(language, gesture.label));
+    await edit("Deleting the gesture", `Deletion of ${gesture.label}`, (language) => api.languages.removeGesture(language, gesture.label), { from, mine });
     tellDone("Gesture deleted", gesture.label);
   } catch (error) {
     complain(error, "Deleting the gesture");

@@ -24,7 +24,7 @@ function written(event) {
 }
 
 function pressed(event) {
-  if (event.defaultPrevented || byId("dialog").open) return;
+  if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
   // An element of a frame is no Element of this window.
   const at = event.target?.closest ? event.target : null;
   if (at?.closest(TYPED_IN)) return;
@@ -48,7 +48,9 @@ export function showKeys() {
     groups.map((group) => h("section", {},
       h("h3", {}, group),
       h("dl", {}, bound.filter((each) => each.group === group).map((each) => h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)))))),
-    h("div", { className: "dialog-actions" }, h("button", { type: "button", className: "primary", onclick: () => dialog.close() }, "Close"))));
+    h("div", { className: "dialog-actions" },
+      h("button", { type: "button", onclick: () => { dialog.close(); import("./tour.js").then(({ startTour }) => startTour()); } }, "Tour"),
+      h("button", { type: "button", className: "primary", onclick: () => dialog.close() }, "Close"))));
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;
   dialog.showModal();

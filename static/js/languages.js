@@ -5,7 +5,8 @@ import { ask } from "./dialogs.js";
 import { byId, h } from "./dom.js";
 import { plural } from "./format.js";
 import { state, update } from "./state.js";
-import { attempt, toast } from "./toasts.js";
+import { attempt } from "./toasts.js";
+import { did, tellDone } from "./undo.js";
 
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 
@@ -32,9 +33,18 @@ export async function reloadLanguage() {
   return undefined;
 }
 
-function show(id) {
-  update({ language: id, recognition: null });
+/** Work on another language. */
+export function choose(id) {
+  if (id !== state.language) update({ language: id, recognition: null });
   return reloadLanguage();
+}
+
+/** Work on a language that was just made; it can be taken back. */
+export async function begin(language, title, words) {
+  did({ title, kind: "created", id: language.id });
+  update({ languages: await api.languages.list() });
+  await choose(language.id);
+  tellDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
 }
 
 /** Ask for a name and make an empty language; resolves to it, or null. */
@@ -42,12 +52,11 @@ export function newLanguage() {
   return ask({
     title: "New language",
     text: "A language is a set of gestures that one robot understands.",
-    fields: [{ name: "name", label: "Name", required: true, most: 200, value: "My gestures" }],
+    fields: [{ name: "name", label: "Name", required: true, most: 80, value: "My gestures" }],
     action: "Create",
     submit: async ({ name }) => {
       const language = await api.languages.create(name);
-      update({ languages: await api.languages.list() });
-      await show(language.id);
+      await begin(language, `Creation of ${name}`, "Language made");
       return language;
     },
   });
@@ -56,10 +65,7 @@ export function newLanguage() {
 /** Import a language file, ours or the published format. */
 export async function importLanguage(file) {
   const language = await attempt(`Importing ${file.name}`, async () => api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()));
-  if (!language) return;
-  update({ languages: await api.languages.list() });
-  await show(language.id);
-  toast("Language imported", `${language.name}, ${plural(language.gestures.length, "gesture")}`);
+  if (language) await begin(language, `Import of ${file.name}`, "Language imported");
 }
 
 export function drawPicker({ languages, language }) {
@@ -89,7 +95,7 @@ export function drawExport({ gestures }) {
 
 /** Wire what the header offers. */
 export function manageLanguages() {
-  byId("language").onchange = (event) => show(event.target.value);
+  byId("language").onchange = (event) => choose(event.target.value);
   byId("new-language").onclick = newLanguage;
   const menu = byId("export");
   addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });

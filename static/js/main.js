@@ -11,6 +11,7 @@ import { rememberFrame } from "./playback.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
 import { drawNow } from "./timeline.js";
 import { attempt } from "./toasts.js";
+import { offerTour } from "./tour.js";
 import { drawTransport } from "./transport.js";
 import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
@@ -81,6 +82,7 @@ function loadWithSelection() {
 
 async function start() {
   byId("new-language").append(icon("plus"));
+  const linked = location.search !== "";
   update(readUrl());
   rememberFrame(state.frame);
   followHistory();
@@ -105,6 +107,8 @@ async function start() {
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();
   followServer();
+  // Whoever comes by a link came to see what it shows.
+  if (!linked) offerTour();
 }
 
 start();

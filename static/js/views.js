@@ -8,34 +8,45 @@ const FIRST = "studio";
 
 const VIEWS = [
   { name: FIRST, title: "Studio" },
+  { name: "languages", title: "Languages", load: () => import("./languages/view.js") },
 ];
 
 const opened = new Map();
 
-const nameOf = (view) => (VIEWS.some((each) => each.name === view) ? view : FIRST);
+const nameOf = (view) => (knows(view) ? view : FIRST);
 
 /** Show another view; `change` says what else is selected with it. */
 export function go(view, change = {}) {
   update({ ...change, view: view === FIRST ? null : view });
 }
 
+/** Whether there is a view of that name. */
+export const knows = (view) => VIEWS.some((each) => each.name === view);
+
 /** The address of a view, for a link that can be copied or opened in another tab. */
-function address(view) {
+export function address(view, change = {}) {
   const query = new URLSearchParams(location.search);
+  for (const [name, value] of Object.entries(change)) {
+    if (value === null) query.delete(name);
+    else query.set(name, value);
+  }
   if (view === FIRST) query.delete("view");
   else query.set("view", view);
   return `?${query}`;
 }
 
+/** What a link does when it is clicked here; another tab or window is left to the browser. */
+export const here = (run) => (event) => {
+  if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+  event.preventDefault();
+  run();
+};
+
 function drawTabs(current) {
   byId("views").replaceChildren(...VIEWS.map(({ name, title }) => h("a", {
     href: address(name),
     "aria-current": name === current ? "page" : null,
-    onclick: (event) => {
-      if (event.ctrlKey || event.metaKey || event.shiftKey) return;
-      event.preventDefault();
-      go(name);
-    },
+    onclick: here(() => go(name)),
   }, title)));
 }
 

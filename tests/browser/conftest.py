@@ -81,7 +81,8 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
     """Return a function that opens the app in a browser context of its own.
 
     It takes the query of the address as a mapping, the width and height of the window, the colour
-    scheme, and whether viser's frame is loaded: drawing WebGL in software is what takes longest.
+    scheme, whether viser's frame is loaded (drawing WebGL in software is what takes longest), and
+    whether this browser has never been here.
     No page may raise an error or break its content security policy.
     """
     contexts: list[BrowserContext] = []
@@ -93,6 +94,7 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         size: tuple[int, int] = (1280, 800),
         scheme: str = "dark",
         scene: bool = True,
+        first_visit: bool = False,
     ) -> Page:
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]},
@@ -104,6 +106,8 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         if not scene:
             context.route("**/viser/**", _empty_frame)
         page = context.new_page()
+        if not first_visit:
+            page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.add_init_script(WATCH_POLICY)
         page.goto(f"{server.address}/?{urlencode(query or {})}")

@@ -1,0 +1,57 @@
+// What can be done with a language as a whole; each can be taken back.
+
+import * as api from "../api.js";
+import { ask } from "../dialogs.js";
+import { edit } from "../gestures.js";
+import { begin, choose, reloadLanguages } from "../languages.js";
+import { state, update } from "../state.js";
+import { attempt } from "../toasts.js";
+import { did, tellDone } from "../undo.js";
+
+/** Ask for another name and author. */
+export async function rename({ id }) {
+  const language = await attempt("Loading the language", () => api.languages.get(id));
+  if (!language) return null;
+  return ask({
+    title: "Rename language",
+    fields: [
+      { name: "name", label: "Name", value: language.name, required: true, most: 80 },
+      { name: "author", label: "Author", value: language.author, most: 200, hint: "Who made it; written into the file and the history." },
+    ],
+    action: "Save",
+    submit: async (values) => {
+      const change = Object.fromEntries(Object.entries(values).filter(([name, value]) => value !== language[name]));
+      if (!Object.keys(change).length) return language;
+      const mine = { ...language, ...change };
+      return edit("Renaming the language", `Renaming of ${language.name}`, (base) => api.languages.change(base, change), { from: language, mine });
+    },
+  });
+}
+
+/** Make a copy and work on it. */
+export async function duplicate({ id, name }) {
+  const copy = await attempt("Duplicating the language", () => api.languages.duplicate(id));
+  if (copy) await begin(copy, `Copy of ${name}`, "Language duplicated");
+}
+
+/** Delete a language, unless it changed since it was shown. */
+export async function remove(language) {
+  const done = await attempt("Deleting the language", async () => { await api.languages.remove(language); return true; });
+  if (!done) return reloadLanguages();
+  did({ title: `Deletion of ${language.name}`, kind: "language", id: language.id });
+  if (state.language === language.id) update({ language: null, recognition: null });
+  await reloadLanguages();
+  return tellDone("Language deleted", language.name);
+}
+
+/** Show a language's history, compared with what was before its newest change. */
+export async function openHistory({ id }) {
+  await choose(id);
+  update({ panel: "history", older: null, newer: null });
+}
+
+/** Bring a sample language, also one that was deleted. */
+export async function addSample({ name, title }) {
+  const language = await attempt("Adding the sample", () => api.samples.addLanguage(name));
+  if (language) await begin(language, `Sample ${title}`, "Sample language added");
+}

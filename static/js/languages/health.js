@@ -1,0 +1,59 @@
+// The health of the languages on the cards: asked for when a card is seen, one after the other,
+// since the first answer about a revision takes the server seconds.
+
+import * as api from "../api.js";
+import { plural } from "../format.js";
+
+const reports = new Map(); // by language and revision; null while it is not known
+const waiting = [];
+let offered = true; // false once the server turned out to have no such report
+let asking = false;
+
+const keyOf = ({ id, revision }) => `${id} ${revision}`;
+
+/** The line under a card: what was found, in words and with a mark of its own. */
+function write(line, report) {
+  if (!report) return;
+  const warnings = report.warnings ?? [];
+  line.hidden = false;
+  line.className = `health ${report.ok ? "well" : "unwell"}`;
+  const below = warnings.filter((warning) => warning.below_bar);
+  const told = below.length ? plural(below.length, "warning") : warnings.length ? plural(warnings.length, "remark") : "ready for the robot";
+  line.textContent = [`Health: ${told}`, below[0]?.message].filter(Boolean).join(". ");
+  line.title = warnings.map((warning) => warning.message).join("\n");
+}
+
+async function next() {
+  const { language, line } = waiting.shift() ?? {};
+  if (!language || !offered) return;
+  asking = true;
+  try {
+    if (line.isConnected && !reports.has(keyOf(language))) reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
+    write(line, reports.get(keyOf(language)));
+  } catch (error) {
+    // A card without a report is no worse than before; one that is deleted is not shown any more.
+    if (error.status === 404) offered = false;
+  }
+  asking = false;
+  next();
+}
+
+const seen = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    if (!isIntersecting) continue;
+    seen.unobserve(target);
+    const line = target.querySelector(".health");
+    if (line) waiting.push({ language: target.language, line });
+  }
+  if (!asking) next();
+});
+
+/** Fill a card's line once the card is seen. */
+export function showHealth(card, language) {
+  const line = card.querySelector(".health");
+  line.hidden = true;
+  if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
+  card.language = language;
+  seen.unobserve(card);
+  return seen.observe(card);
+}

@@ -1,0 +1,105 @@
+// A language's history: its revisions with names, and two of them side by side.
+
+import * as api from "../api.js";
+import { h, icon, reconcile } from "../dom.js";
+import { ago, dateAndTime } from "../format.js";
+import { edit } from "../gestures.js";
+import { follow, state, update } from "../state.js";
+import { attempt, complain } from "../toasts.js";
+import { tellDone } from "../undo.js";
+import { address, here } from "../views.js";
+import { drawComparison } from "./comparison.js";
+
+let revisions = []; // of `of`, newest first
+let of = null;
+
+const shown = () => state.view === "languages" && state.panel === "history" && state.gestures !== null && state.gestures.id === state.language;
+const before = (number) => revisions.find((each) => each.revision < number)?.revision ?? null;
+
+/** Show what a revision did: compared with the one before it, or with nothing. */
+const select = (number) => update({ newer: number, older: before(number) });
+
+async function goBack({ revision }) {
+  try {
+    await edit("Going back", `Going back to revision ${revision}`, (language) => api.languages.revert(language, revision));
+    tellDone(`Went back to revision ${revision}`, "The newer ones stay in the history.");
+  } catch (error) {
+    complain(error, "Going back");
+  }
+}
+
+function drawRevision(row, element) {
+  const newest = row === revisions[0];
+  const chosen = row.revision === state.newer;
+  const signature = JSON.stringify([row, newest, chosen, ago(row.created)]);
+  if (element?.dataset.signature === signature) return element;
+  const item = element ?? h("li", { className: "revision" });
+  const focused = element?.contains(document.activeElement);
+  item.dataset.signature = signature;
+  item.classList.toggle("chosen", chosen);
+  const what = h("button", { type: "button", className: "revision-open", "aria-pressed": String(chosen), onclick: () => select(row.revision) },
+    h("span", { className: "revision-number" }, `${row.revision}`),
+    h("span", { className: "revision-text" },
+      h("b", {}, row.change),
+      h("span", { className: "dim", title: dateAndTime(row.created) }, [newest ? "newest" : null, ago(row.created), row.author].filter(Boolean).join(" \u00b7 "))));
+  item.replaceChildren(what, newest ? "" : h("button", { type: "button", className: "quiet", "aria-label": `Go back to revision ${row.revision}`, onclick: () => goBack(row) }, "Go back"));
+  if (focused) what.focus();
+  return item;
+}
+
+function options(picker, numbers, value) {
+  picker.replaceChildren(...numbers.map((number) => h("option", { value: number ?? "" }, number === null ? "nothing" : `revision ${number}`)));
+  picker.value = value ?? "";
+}
+
+/** Load the history of the language on display when it is another, or has a new revision. */
+async function load() {
+  const { id, revision } = state.gestures;
+  const [head, earlier] = [revisions[0]?.revision, of];
+  if (of !== id || head !== revision) {
+    const loaded = await attempt("Loading the history", () => api.languages.revisions(id));
+    if (!loaded || state.gestures?.id !== id) return;
+    [revisions, of] = [loaded, id];
+  }
+  const known = (number) => revisions.some((each) => each.revision === number);
+  const another = earlier !== null && earlier !== id;
+  const outgrown = earlier === id && state.newer === head && head !== revision;
+  if (another || outgrown || !known(state.newer) || (state.older !== null && !known(state.older))) select(revisions[0].revision);
+}
+
+/** Build the panel and keep it in step. */
+export function openHistoryPanel(panel) {
+  const list = h("ol", { className: "revisions", "aria-label": "Revisions" });
+  const title = h("h1", {});
+  const older = h("select", { id: "older", onchange: () => update({ older: older.value ? Number(older.value) : null }) });
+  const newer = h("select", { id: "newer", onchange: () => update({ newer: Number(newer.value) }) });
+  const result = h("div", { className: "comparison", "aria-live": "polite" });
+  panel.append(
+    h("div", { className: "page-head" },
+      h("a", { href: address("languages", { panel: null, older: null, newer: null }), className: "button quiet back", onclick: here(() => update({ panel: null, older: null, newer: null })) }, icon("chevron"), "All languages"),
+      title),
+    h("div", { className: "history-columns" },
+      h("section", { "aria-label": "History" }, h("h2", {}, "History"), list),
+      h("section", { "aria-label": "Comparison" },
+        h("div", { className: "compare-head" }, h("h2", {}, "Compare"), h("label", { for: "older" }, "from"), older, h("label", { for: "newer" }, "to"), newer),
+        result)));
+
+  let drawn = "";
+  const draw = async () => {
+    title.textContent = state.gestures.name;
+    reconcile(list, revisions, (row) => row.revision, drawRevision);
+    const numbers = revisions.map((row) => row.revision);
+    options(newer, numbers, state.newer);
+    options(older, [...numbers, null], state.older);
+    const wanted = `${of} ${state.older} ${state.newer}`;
+    if (wanted === drawn) return;
+    drawn = wanted;
+    const comparison = await attempt("Comparing", () => api.languages.compare(of, state.older, state.newer));
+    if (comparison && drawn === wanted) drawComparison(result, comparison);
+  };
+  follow(["view", "panel", "gestures", "older", "newer"], async () => {
+    if (!shown()) return;
+    await load();
+    if (shown() && of === state.gestures.id) draw();
+  });
+}

@@ -1,0 +1,32 @@
+// The sample languages that are not in the library, each with a button that brings it.
+
+import * as api from "../api.js";
+import { h } from "../dom.js";
+import { plural } from "../format.js";
+import { state } from "../state.js";
+import { attempt } from "../toasts.js";
+import { addSample } from "./actions.js";
+
+let samples = null;
+
+const present = (sample) => state.languages.some((language) => language.sample && language.name === sample.title);
+
+function offer(sample) {
+  const button = h("button", { type: "button", className: "sample-language" },
+    h("b", {}, sample.title),
+    h("span", { className: "dim" }, `${plural(sample.labels.length, "gesture")}: ${sample.labels.join(", ")}`));
+  button.onclick = async () => {
+    button.disabled = true;
+    await addSample(sample);
+    button.disabled = false;
+  };
+  return h("li", {}, button);
+}
+
+/** Draw the offer, or nothing where all are there. */
+export async function drawSamples(box) {
+  samples ??= await attempt("Loading the samples", api.samples.languages);
+  const missing = (samples ?? []).filter((sample) => !present(sample));
+  box.hidden = !missing.length;
+  box.replaceChildren(h("h2", {}, "Sample languages"), h("ul", { className: "sample-languages" }, missing.map(offer)));
+}

@@ -1,0 +1,280 @@
+"""The library of languages: cards, history, two tabs on one language, and the tour."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+
+pytestmark = pytest.mark.slow
+
+WITHIN_A_SECOND_MS = 1000
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, request.node.name.removeprefix("test_")[:40])
+
+
+@pytest.fixture
+def name(library: Library) -> str:
+    return str(library.client.get(f"/api/v1/languages/{library.language}").json()["name"])
+
+
+def card(page: Page, name: str) -> Locator:
+    cards = page.get_by_role("list", name="Languages", exact=True)
+    return cards.locator(":scope > li").filter(has=page.get_by_role("link", name=name, exact=True))
+
+
+def command(page: Page, name: str, text: str) -> None:
+    page.get_by_label(f"What to do with {name}", exact=True).click()
+    card(page, name).get_by_role("button", name=text).click()
+
+
+def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(
+    open_page: OpenPage, library: Library, name: str
+) -> None:
+    page = open_page({"view": "languages"}, scene=False)
+    expect(card(page, name).get_by_text("2 gestures")).to_be_visible()
+    command(page, name, "Rename")
+    page.get_by_label("Name", exact=True).fill("the reef")
+    page.get_by_label("Author").fill("Ada")
+    page.get_by_role("button", name="Save").click()
+    expect(card(page, "the reef").get_by_text("Rename to the reef")).to_be_visible()
+    command(page, "the reef", "Duplicate")
+    expect(card(page, "the reef (copy)").get_by_text("in use")).to_be_visible()
+    command(page, "the reef", "Delete")
+    expect(card(page, "the reef")).to_have_count(0)
+    toast = page.get_by_role("status").filter(has_text="Language deleted")
+    toast.get_by_role("button", name="Undo").click()
+    expect(page.get_by_text("Deletion of the reef", exact=True)).to_be_visible()
+    expect(card(page, "the reef")).to_have_count(1)
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("Copy of the reef", exact=True)).to_be_visible()
+    expect(card(page, "the reef (copy)")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(card(page, name)).to_have_count(1)
+
+
+def test_a_dropped_file_becomes_a_card_which_undo_takes_away(
+    open_page: OpenPage, library: Library, name: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    exported = library.client.get(f"/api/v1/languages/{library.language}/export")
+    file.write_bytes(exported.content)
+    library.client.delete(f"/api/v1/languages/{library.language}")
+    page = open_page({"view": "languages"}, scene=False)
+    page.get_by_label("Import a file").set_input_files(file)
+    expect(page.get_by_text("Language imported")).to_be_visible()
+    expect(card(page, name).get_by_text("2 gestures")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(card(page, name)).to_have_count(0)
+
+
+@pytest.mark.usefixtures("library")
+def test_a_language_is_found_by_a_gesture(open_page: OpenPage) -> None:
+    page = open_page({"view": "languages"}, scene=False)
+    page.get_by_label("Find languages").fill("infinity")
+    expect(card(page, "Table 2: eight signs")).to_be_visible()
+    expect(card(page, "Table 1: three signs")).to_have_count(0)
+    page.get_by_label("Find languages").fill("no such gesture")
+    expect(page.get_by_text("No language is called")).to_be_visible()
+
+
+def test_the_keyboard_reaches_every_command_of_a_card(
+    open_page: OpenPage, library: Library, name: str
+) -> None:
+    page = open_page({"view": "languages"}, scene=False)
+    page.get_by_label(f"What to do with {name}", exact=True).focus()
+    page.keyboard.press("Enter")
+    for text in ("Rename\u2026", "Duplicate", "History", "Export", "Delete"):
+        page.keyboard.press("ArrowDown")
+        assert page.evaluate("document.activeElement.textContent") == text
+    page.keyboard.press("Escape")
+    expect(card(page, name).get_by_text("Duplicate")).to_be_hidden()
+    page.keyboard.press("Enter")
+    expect(card(page, name).get_by_text("Duplicate")).to_be_visible()
+
+
+def test_two_revisions_are_compared_under_an_address_of_their_own(
+    open_page: OpenPage, library: Library, name: str
+) -> None:
+    library.client.delete(f"/api/v1/languages/{library.language}/gestures/line")
+    page = open_page({"view": "languages"}, scene=False)
+    command(page, name, "History")
+    expect(page.get_by_role("heading", name=name)).to_be_visible()
+    changes = page.get_by_role("list", name="What changed")
+    expect(changes.get_by_role("listitem")).to_contain_text(["removed"])
+    expect(changes.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    page.get_by_label("from", exact=True).select_option("nothing")
+    page.get_by_label("to", exact=True).select_option("revision 3")
+    expect(changes.locator(":scope > li")).to_have_count(2)
+    colleague = open_page(scene=False)
+    colleague.goto(page.url)
+    expect(colleague.get_by_text("Gestures: 2 added.")).to_be_visible()
+    colleague.get_by_role("link", name="All languages").click()
+    expect(card(colleague, name)).to_be_visible()
+
+
+def test_going_back_to_a_revision_can_itself_be_taken_back(
+    open_page: OpenPage, library: Library
+) -> None:
+    query = {"view": "languages", "language": library.language, "panel": "history"}
+    page = open_page(query, scene=False)
+    page.get_by_role("button", name="Go back to revision 2").click()
+    newest = page.get_by_role("list", name="Revisions").get_by_role("listitem").first
+    expect(newest).to_contain_text("Go back to revision 2")
+    expect(page.get_by_text("1 removed")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(newest).to_contain_text("Go back to revision 3")
+    expect(page.get_by_text("1 added")).to_be_visible()
+
+
+def test_a_second_tab_sees_a_change_within_a_second(open_page: OpenPage, library: Library) -> None:
+    watching = open_page(library.address, scene=False)
+    expect(watching.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    library.client.delete(f"/api/v1/languages/{library.language}/gestures/line")
+    gone = watching.get_by_role("img", name="Trajectory of line")
+    expect(gone).to_have_count(0, timeout=WITHIN_A_SECOND_MS)
+
+
+@pytest.fixture
+def lose_race(open_page: OpenPage, library: Library) -> Callable[[], Page]:
+    """Return a function that relabels the line while somebody else describes it."""
+
+    def lose_race() -> Page:
+        page = open_page(library.address, scene=False)
+        line = page.get_by_role("list", name="Gestures").get_by_role("listitem")
+        line.filter(has_text="line").hover()
+        page.get_by_role("button", name="Change line", exact=True).click()
+        change = {"description": "a long line"}
+        place = f"/api/v1/languages/{library.language}/gestures/line"
+        assert library.client.patch(place, json=change).status_code == 200
+        page.get_by_label("Label").fill("stroke")
+        page.get_by_role("button", name="Save", exact=True).click()
+        expect(page.get_by_role("dialog", name="Changed in two places")).to_be_visible()
+        return page
+
+    return lose_race
+
+
+def gestures(library: Library) -> dict[str, str]:
+    """Return the language's gestures with their descriptions."""
+    language = library.client.get(f"/api/v1/languages/{library.language}").json()
+    return {gesture["label"]: gesture["description"] for gesture in language["gestures"]}
+
+
+def test_a_lost_race_shows_both_versions_and_can_keep_both(
+    lose_race: Callable[[], Page], library: Library
+) -> None:
+    page = lose_race()
+    theirs = page.get_by_role("region", name="Theirs, saved")
+    expect(theirs).to_contain_text("line: description was empty, is “a long line”")
+    expect(page.get_by_role("region", name="Yours, not saved yet")).to_contain_text("stroke")
+    page.get_by_role("button", name="Keep both").click()
+    expect(page.get_by_role("img", name="Trajectory of stroke")).to_be_visible()
+    assert gestures(library) == {"circle": "", "stroke": "a long line"}
+    page.keyboard.press("Control+z")
+    expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    assert gestures(library) == {"circle": "", "line": "a long line"}
+
+
+def test_of_a_lost_race_one_version_can_be_kept(
+    lose_race: Callable[[], Page], library: Library
+) -> None:
+    page = lose_race()
+    page.get_by_role("button", name="Keep yours").click()
+    expect(page.get_by_role("img", name="Trajectory of stroke")).to_be_visible()
+    assert gestures(library) == {"circle": "", "stroke": ""}
+
+
+def test_of_a_lost_race_theirs_can_be_kept_and_nothing_is_saved(
+    lose_race: Callable[[], Page], library: Library
+) -> None:
+    page = lose_race()
+    page.get_by_role("button", name="Decide later").click()
+    expect(page.get_by_role("alert")).to_contain_text("Nothing was saved")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("button", name="Keep theirs").click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    assert gestures(library) == {"circle": "", "line": "a long line"}
+
+
+def test_the_tour_comes_once_and_again_when_asked_for(open_page: OpenPage) -> None:
+    page = open_page(scene=False, first_visit=True)
+    tour = page.locator(".tour")
+    expect(tour).to_contain_text("1 of 5")
+    # The page stays usable meanwhile.
+    page.get_by_role("link", name="Languages", exact=True).click()
+    page.get_by_role("link", name="Studio", exact=True).click()
+    tour.get_by_role("button", name="Skip").click()
+    expect(tour).to_have_count(0)
+    page.reload()
+    expect(page.get_by_text("Connected")).to_be_visible()
+    expect(tour).to_have_count(0)
+    page.keyboard.press("?")
+    page.get_by_role("button", name="Tour").click()
+    for number in range(1, 5):
+        expect(tour).to_contain_text(f"{number} of 5")
+        page.keyboard.press("Enter")
+    expect(tour).to_contain_text("5 of 5")
+    expect(tour.get_by_role("button", name="Skip")).to_have_count(0)
+    page.keyboard.press("Escape")
+    expect(tour).to_have_count(0)
+
+
+def test_who_comes_by_a_link_is_not_shown_around(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False, first_visit=True)
+    expect(page.get_by_role("img", name="Trajectory of line")).to_be_visible()
+    expect(page.locator(".tour")).to_have_count(0)
+
+
+def test_on_a_phone_cards_history_and_comparison_fit(
+    open_page: OpenPage, library: Library, name: str
+) -> None:
+    page = open_page({"view": "languages"}, scene=False, size=(390, 844))
+    expect(card(page, name)).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    command(page, name, "History")
+    expect(page.get_by_role("list", name="What changed").get_by_role("img")).to_have_count(1)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+def test_pictures_of_the_library(
+    open_page: OpenPage, library: Library, picture: Callable[[Page, str], Path]
+) -> None:
+    languages = library.client.get("/api/v1/languages").json()
+    for language in languages:
+        if not language["sample"]:
+            library.client.delete(f"/api/v1/languages/{language['id']}")
+    library.client.post(f"/api/v1/languages/{library.language}/restore")
+    place = f"/api/v1/languages/{library.language}"
+    library.client.patch(place, json={"name": "Reef survey", "author": "Ada"})
+    library.client.delete(f"{place}/gestures/line")
+    page = open_page({"view": "languages"}, scene=False)
+    expect(card(page, "Reef survey").get_by_role("img")).to_have_count(1)
+    picture(page, "library")
+    compared = {"language": library.language, "older": "2", "newer": "5"}
+    page = open_page({"view": "languages", "panel": "history", **compared}, scene=False)
+    expect(page.get_by_text("name was")).to_be_visible()
+    picture(page, "history")
+
+
+def test_without_languages_the_samples_are_offered(open_page: OpenPage, server: Running) -> None:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        for language in client.get("/api/v1/languages").json():
+            client.delete(f"/api/v1/languages/{language['id']}")
+    page = open_page({"view": "languages"}, scene=False)
+    expect(page.get_by_text("No languages yet")).to_be_visible()
+    page.get_by_role("button", name="Table 1: three signs").click()
+    expect(card(page, "Table 1: three signs").get_by_role("img")).to_have_count(3)
+    expect(page.get_by_role("button", name="Table 1: three signs")).to_have_count(0)
+    expect(page.get_by_role("button", name="Table 2: eight signs")).to_be_visible()
