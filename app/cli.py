@@ -24,6 +24,7 @@ from app.clip_argument import (
     clip_and_span,
     demonstration_poses,
     read_clip,
+    spotted_takes,
     take_by_hand,
 )
 from app.evaluate_command import evaluate
@@ -34,6 +35,7 @@ from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
+from app.recognition.spotting import Spotter
 from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
 DEFAULT_PROFILE = "full"
@@ -153,6 +155,9 @@ def recognize(
         str | None,
         typer.Option(metavar="LABEL", help="The gesture that was meant: explain every take by it."),
     ] = None,
+    without_salutes: Annotated[
+        bool, typer.Option("--without-salutes", help="Find gestures anywhere in the clip.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     water: WaterOption = "auto",
 ) -> None:
@@ -162,9 +167,14 @@ def recognize(
     if expected is not None:
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
+    spotter = Spotter(recognizer) if without_salutes else None
     recording = read_clip(path, water)
-    takes = [take_by_hand(recording, span)] if span else list(takes_in(recording))
-    results = [(take, recognizer.recognize(take.poses)) for take in takes]
+    if spotter is not None:
+        results = spotted_takes(spotter, recording, span)
+    else:
+        chosen = [take_by_hand(recording, span)] if span else takes_in(recording)
+        results = [(take, recognizer.recognize(take.poses)) for take in chosen]
+    takes = [take for take, _ in results]
     explanations = [
         explain(Situation.of_take(recognizer, take), expected)
         for take in takes
@@ -186,7 +196,12 @@ def recognize(
             show_recognition(take, result)
             if explanation is not None:
                 show_explanation(explanation)
-    if not takes:
+    if not takes and without_salutes:
+        people.print(
+            f"{path}: no gesture of {spoken.name!r} found in {recording.poses.duration:.1f} s; "
+            f"pause before and after a gesture, or give the range by hand: {path}@START-END"
+        )
+    elif not takes:
         people.print(
             f"{path}: no salute found in {recording.poses.duration:.1f} s, so no take; hold the "
             f"salute for at least 0.3 s, or give the range by hand: {path}@START-END"

@@ -6,9 +6,10 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.recognition import PoseSequence, Recording, Take, record, takes_in
+from app.recognition import PoseSequence, Recognition, Recording, Take, record, takes_in
 from app.recognition.errors import GestureError
 from app.recognition.estimation.water import WaterCorrection
+from app.recognition.spotting import Spotter
 from app.terminal import people, progress_bar
 
 
@@ -111,6 +112,17 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
         stroke_end=end,
         untrimmed=poses,
     )
+
+
+def spotted_takes(
+    spotter: Spotter, recording: Recording, span: tuple[float, float] | None
+) -> list[tuple[Take, Recognition]]:
+    """Find the gestures in a recording, or in a range of it, without salutes around them."""
+    poses = recording.poses.between(*span) if span else recording.poses
+    return [
+        (take_by_hand(recording, (found.start, found.end)), found.recognition)
+        for found in spotter.listen(poses)
+    ]
 
 
 def read_clip(clip: Path, water: WaterCorrection = "auto") -> Recording:

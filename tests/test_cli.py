@@ -143,6 +143,21 @@ def test_a_clip_without_salute_ends_with_one_and_says_how_to_go_on(
     assert ended.code == 1
     assert json.loads(ended.out)["takes"] == []
     assert "@START-END" in " ".join(ended.error.split())
+    ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--without-salutes", "--json")
+    assert ended.code == 1
+    assert json.loads(ended.out)["takes"] == []
+
+
+@pytest.mark.slow
+def test_a_gesture_is_found_without_looking_for_salutes(
+    osg_studio: OsgStudio, sample_clips: Path
+) -> None:
+    clip = sample_clips / "circle-test-1.mp4"
+    ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--without-salutes", "--json")
+    assert ended.code == 0
+    (take,) = json.loads(ended.out)["takes"]
+    assert take["label"] == "circle"
+    assert take["closed"] is True
 
 
 @pytest.mark.slow

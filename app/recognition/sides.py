@@ -28,6 +28,10 @@ hands that cross and meet among them, one in 500 is changed at all; from 1 on, a
 exchanged frames are no longer found.
 """
 
+TREMBLES = 3.0
+"""How many times the usual acceleration a change of sides must save at least: where landmarks
+tremble, two hands beside each other seem steadier exchanged now and then."""
+
 MOST_EXCHANGED = 0.5
 """Share of the frames beyond which it is the others that are mistaken."""
 
@@ -100,6 +104,7 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     both = np.stack([np.stack([here, there], 1), np.stack([there, here], 1)])
     accelerations = _Accelerations.between(both, trajectory.time[clear], speed)
     kept = accelerations.of(0, 0, 0)
+    toll = max(toll, TREMBLES * float(np.median(kept)))
     # A change of sides spares at most the two accelerations around it.
     if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
         return none

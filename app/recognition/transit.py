@@ -13,6 +13,7 @@ recognised, half a stroke is not.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -99,12 +100,20 @@ class Span:
 
 
 @dataclass(frozen=True, eq=False)
-class _Motion:
-    """The moving wrists on an even grid of G moments.
+class Motion:
+    """Moving landmarks on an even grid of G moments, `GRID_STEP` apart.
 
-    ``time`` (G,) seconds in the recording's clock; ``xy`` (G, 2 * wrists) torso lengths, smoothed;
-    ``speed`` (G,) torso lengths a second, of all wrists together; ``known`` (G,) whether all of
-    them were seen.
+    Attributes
+    ----------
+    time
+        ``(G,)`` seconds in the recording's clock.
+    xy
+        ``(G, 2 * landmarks)`` torso lengths, smoothed.
+    speed
+        ``(G,)`` torso lengths a second, of all landmarks together.
+    known
+        ``(G,)``: whether all of them were seen.
+
     """
 
     time: FloatArray
@@ -112,9 +121,10 @@ class _Motion:
     speed: FloatArray
     known: npt.NDArray[np.bool_]
 
-    def between(self, start: float, end: float) -> _Motion:
+    def between(self, start: float, end: float) -> Motion:
+        """Keep the moments from `start` to `end` seconds."""
         inside = (self.time >= start) & (self.time <= end)
-        return _Motion(self.time[inside], self.xy[inside], self.speed[inside], self.known[inside])
+        return Motion(self.time[inside], self.xy[inside], self.speed[inside], self.known[inside])
 
     def slowest(self, span: Span) -> float:
         """Return the moment of least speed in `span`."""
@@ -125,7 +135,7 @@ class _Motion:
 
 
 @dataclass(frozen=True)
-class _Piece:
+class Piece:
     """One movement between two minima of speed: first and last grid index, pauses left out."""
 
     first: int
@@ -161,7 +171,7 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     motion = motion.between(
         motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
     )
-    pieces = _pieces(motion)
+    pieces = pieces_of(motion)
     if len(pieces) < 2:
         return whole
     if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):
@@ -176,7 +186,7 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     )
 
 
-def _hand_motion(poses: PoseSequence) -> _Motion | None:
+def _hand_motion(poses: PoseSequence) -> Motion | None:
     """Follow the wrists that move, or return None where none does or none is seen."""
     count = int(np.ceil(poses.duration / GRID_STEP)) + 1
     wrists = [name for name in WRISTS if name in poses.landmarks]
@@ -185,18 +195,36 @@ def _hand_motion(poses: PoseSequence) -> _Motion | None:
         return None
     trajectory = Trajectory.from_poses(seen).select(wrists).filled().resampled_in_time(count)
     moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
-    if not moving:
+    return motion_along(moving, trajectory.time + poses.time[0])
+
+
+def motion_along(paths: Sequence[FloatArray], time: FloatArray) -> Motion | None:
+    """Smooth paths on an even grid, and measure their speed.
+
+    Parameters
+    ----------
+    paths
+        Each ``(G, 2)`` in torso lengths, NaN where not seen.
+    time
+        ``(G,)`` seconds, `GRID_STEP` apart.
+
+    Returns
+    -------
+    None without paths, or where no moment shows all of them.
+
+    """
+    if not paths:
         return None
-    xy = np.concatenate(moving, axis=1)
-    known = np.isfinite(xy).all(axis=1)
+    xy = np.concatenate(paths, axis=1)
+    known: npt.NDArray[np.bool_] = np.asarray(np.isfinite(xy).all(axis=1))
     if not known.any():
         return None
-    moments = np.arange(count)
+    moments = np.arange(len(time))
     smooth = np.stack(
         [_smoothed(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
     )
-    speed = np.linalg.norm(np.gradient(smooth, trajectory.time, axis=0), axis=1)
-    return _Motion(time=trajectory.time + poses.time[0], xy=smooth, speed=speed, known=known)
+    speed = np.linalg.norm(np.gradient(smooth, time, axis=0), axis=1)
+    return Motion(time=time, xy=smooth, speed=speed, known=known)
 
 
 def _without_exchanged_sides(poses: PoseSequence) -> PoseSequence:
@@ -233,7 +261,7 @@ def _smoothed(values: FloatArray) -> FloatArray:
     return np.convolve(padded, weights / weights.sum(), mode="valid")
 
 
-def _pieces(motion: _Motion) -> list[_Piece]:
+def pieces_of(motion: Motion) -> list[Piece]:
     """Cut where speed has a clear minimum, and drop the pauses between the pieces."""
     speed = motion.speed
     if len(speed) < 3 or speed.max() <= 0:
@@ -259,7 +287,7 @@ def _pieces(motion: _Motion) -> list[_Piece]:
     return [piece for piece in pieces if _extent(motion.xy[piece.first : piece.last + 1]) > TREMOR]
 
 
-def _allowed(motion: _Motion, valley: int) -> float:
+def _allowed(motion: Motion, valley: int) -> float:
     """Return how deep a minimum of speed must be to cut there, as a share of its peaks."""
     reach = round(CORNER_REACH / GRID_STEP)
     before = motion.xy[valley] - motion.xy[max(valley - reach, 0)]
@@ -287,12 +315,12 @@ def _turning_points(values: FloatArray) -> tuple[list[int], list[int]]:
     return middles[peaks].tolist(), valleys
 
 
-def _without_pauses(speed: FloatArray, first: int, last: int, pause: float) -> _Piece:
+def _without_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piece:
     fast = np.flatnonzero(speed[first : last + 1] > pause)
-    return _Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else _Piece(first, last)
+    return Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else Piece(first, last)
 
 
-def _is_reach(motion: _Motion, piece: _Piece, moving: float) -> bool:
+def _is_reach(motion: Motion, piece: Piece, moving: float) -> bool:
     """Tell whether a piece is a straight, short movement of hands in view.
 
     `moving` is how many seconds all movement between the salutes takes.
@@ -305,7 +333,7 @@ def _is_reach(motion: _Motion, piece: _Piece, moving: float) -> bool:
     )
 
 
-def _is_straight(motion: _Motion, piece: _Piece) -> bool:
+def _is_straight(motion: Motion, piece: Piece) -> bool:
     path = motion.xy[piece.first : piece.last + 1]
     way = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     return bool(0 < STRAIGHT_REACH * way <= np.linalg.norm(path[-1] - path[0]))

@@ -1,0 +1,286 @@
+"""Spotting: gestures found in a continuous stream, without salutes around them.
+
+A robot that waits for no trigger has to find out where a gesture begins and ends. People move in
+strokes with a bell-shaped speed (Flash and Hogan 1985), so a gesture begins and ends at minima of
+the hands' speed. Every stretch between two of them that may be as long as a gesture is put to the
+recogniser; of those that overlap the best one is kept, and reported once the hands have paused.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.recognition.errors import PoseError, RecognitionError
+from app.recognition.jumps import body_unit
+from app.recognition.movement import followed_landmarks
+from app.recognition.poses import PoseSequence
+from app.recognition.recognition_result import Recognition
+from app.recognition.recognizer import Recognizer
+from app.recognition.salience import MIN_DISPLACEMENT, displacements
+from app.recognition.trajectory import Trajectory
+from app.recognition.transit import GRID_STEP, Motion, Span, motion_along, pieces_of
+
+CONFIDENT = 0.9
+"""Least confidence of a spotted gesture. Confidence is calibrated for takes of which half mean
+something; of the stretches of a stream almost none do."""
+
+FASTER, SLOWER = 0.4, 2.2
+"""How much shorter or longer than its demonstration a gesture may take: two people's takes differ
+by half a doubling, rarely by more than one."""
+
+LOOK_EVERY = 0.2
+"""Seconds between two looks for strokes: a tenth of a gesture, a few frames of a camera."""
+
+SETTLED = 0.15
+"""Seconds after which a stroke's end is believed: the smoothing of positions reaches so far."""
+
+PAUSE = 0.6
+"""Seconds without a stroke after which a gesture is reported: a hand that turns a corner is
+slower than a stroke for up to 0.4 s, and a side of a square is a good line."""
+
+MOST_STROKES = 8
+"""Strokes that a gesture may consist of, at most; a square has four, a hesitant eight six."""
+
+MOST_WAITING = 64
+"""Stretches that may wait to be recognised; the oldest are forgotten first."""
+
+LONGEST_MEMORY = 20.0
+"""Seconds kept at most, whatever the demonstrations: what takes longer is no gesture."""
+
+RANK_PER_SECOND = 2.0
+"""Logarithm of odds that one second more explained is worth."""
+
+BEAT = 1e-6
+"""Seconds that make no difference between two moments."""
+
+
+@dataclass(frozen=True)
+class Spotted:
+    """A gesture found in a stream.
+
+    Attributes
+    ----------
+    start, end
+        Seconds in the stream's clock between which it was shown.
+    recognition
+        What the recogniser says of that stretch.
+
+    """
+
+    start: float
+    end: float
+    recognition: Recognition
+
+    @property
+    def rank(self) -> float:
+        """What decides between two that overlap: the odds of being right, and how much it explains.
+
+        A side of a square is a good line; the square is preferred since it leaves less unexplained.
+        """
+        sure = min(max(self.recognition.confidence, 1e-6), 1 - 1e-6)
+        return float(np.log(sure / (1 - sure))) + RANK_PER_SECOND * (self.end - self.start)
+
+    def overlaps(self, start: float, end: float) -> bool:
+        """Tell whether it shares more than an instant with a stretch."""
+        return self.start < end - BEAT and start < self.end - BEAT
+
+
+class Spotter:
+    """Listens to a stream of poses; one recogniser, bounded memory and bounded work a frame.
+
+    Parameters
+    ----------
+    recognizer
+        Of profile ``full``.
+    confident
+        Least confidence of what is reported.
+
+    Raises
+    ------
+    RecognitionError
+        When the profile is another one, whose confidence tells nothing about movements that mean
+        nothing, or when no gesture of the language has a demonstration.
+
+    """
+
+    def __init__(self, recognizer: Recognizer, *, confident: float = CONFIDENT) -> None:
+        if recognizer.profile != "full":
+            raise RecognitionError(
+                f"profile {recognizer.profile!r} names every movement, also those that mean "
+                f"nothing; listen without salutes by profile full"
+            )
+        gestures = recognizer.language.gestures
+        lasts = [each.trajectory.time[-1] for each in gestures if each.trajectory is not None]
+        if not lasts:
+            raise RecognitionError(
+                f"language {recognizer.language.name!r} has only images and no demonstrations, so "
+                f"nobody knows how long its gestures take: define one from a clip"
+            )
+        self._recognizer = recognizer
+        self._confident = confident
+        self._landmarks = followed_landmarks([gesture.salient for gesture in gestures])
+        self._shortest = FASTER * float(min(lasts))
+        self._longest = min(SLOWER * float(max(lasts)), LONGEST_MEMORY)
+        self._seen: deque[PoseSequence] = deque()
+        self._looked = -np.inf
+        self._believed = -np.inf  # the end of the last stroke whose stretches were taken up
+        self._reported = -np.inf  # the end of the last gesture reported
+        self._moving = -np.inf  # when the last stroke was seen
+        self._waiting: deque[Span] = deque(maxlen=MOST_WAITING)
+        self._candidates: list[Spotted] = []
+
+    def __len__(self) -> int:
+        """Count the frames that are remembered."""
+        return sum(len(moment) for moment in self._seen)
+
+    def feed(self, moment: PoseSequence) -> tuple[Spotted, ...]:
+        """Take the next frame, or a few.
+
+        At most one stretch is recognised in a call.
+
+        Parameters
+        ----------
+        moment
+            Later than everything before, with the same landmarks.
+
+        Returns
+        -------
+        The gestures that are now certain to have ended, mostly none.
+
+        Raises
+        ------
+        PoseError
+            When the time does not go on.
+
+        """
+        if not len(moment):
+            return ()
+        now = float(moment.time[-1])
+        if self._seen and moment.time[0] <= self._seen[-1].time[-1]:
+            raise PoseError(
+                f"a stream's time must go on: {moment.time[0]:g} s after "
+                f"{self._seen[-1].time[-1]:g} s"
+            )
+        self._seen.append(moment)
+        while now - self._seen[0].time[-1] > self._longest + PAUSE + 2 * LOOK_EVERY:
+            self._seen.popleft()
+        if now - self._looked >= LOOK_EVERY - BEAT:
+            self._looked = now
+            self._look(now)
+        self._recognize_one()
+        return self._ended(now)
+
+    def listen(self, poses: PoseSequence) -> tuple[Spotted, ...]:
+        """Take a whole recording frame by frame, as a robot would, and end the stream."""
+        found: list[Spotted] = []
+        for moment in poses.time.tolist():
+            found += self.feed(poses.between(moment, moment))
+        return (*found, *self.finish())
+
+    def finish(self) -> tuple[Spotted, ...]:
+        """End the stream: return what was still awaited."""
+        if self._seen:
+            self._look(np.inf)
+        while self._waiting:
+            self._recognize_one()
+        return self._ended(np.inf)
+
+    def _look(self, now: float) -> None:
+        """Cut what is remembered into strokes, and take up what ends with a new one."""
+        motion = self._motion()
+        if motion is None:
+            return
+        strokes = [
+            Span(float(motion.time[piece.first]), float(motion.time[piece.last]))
+            for piece in pieces_of(motion)
+        ]
+        if strokes:
+            self._moving = strokes[-1].end
+        for index, last in enumerate(strokes):
+            if last.end <= self._believed + SETTLED or last.end > now - SETTLED:
+                continue
+            self._believed = last.end
+            for first in strokes[max(0, index + 1 - MOST_STROKES) : index + 1]:
+                lasts = last.end - first.start
+                if first.start >= self._reported and self._shortest <= lasts <= self._longest:
+                    self._waiting.append(Span(first.start, last.end))
+
+    def _motion(self) -> Motion | None:
+        """Follow the language's landmarks through what is remembered."""
+        poses = joined(self._seen)
+        names = [name for name in self._landmarks if name in poses.landmarks]
+        count = int(np.ceil(poses.duration / GRID_STEP)) + 1
+        if count < 3 or not names or not poses.select(names).seen.any():
+            return None
+        trajectory = Trajectory.from_poses(poses)
+        even = trajectory.select(names).filled().resampled_in_time(count)
+        paths = np.moveaxis(even.xy / body_unit(trajectory), 1, 0)
+        shown = [path for path in paths if np.isfinite(path).any()]
+        return motion_along(shown, even.time + poses.time[0])
+
+    def _recognize_one(self) -> None:
+        """Put the stretch that waits longest to the recogniser."""
+        while self._waiting:
+            span = self._waiting.popleft()
+            poses = joined(self._seen).between(span.start - BEAT, span.end + BEAT)
+            if span.start < self._reported or len(poses) < 2:
+                continue
+            try:
+                result = self._recognizer.recognize(poses)
+            except PoseError:
+                return
+            spotted = Spotted(span.start, span.end, result)
+            if self._is_gesture(spotted, poses):
+                self._candidates.append(spotted)
+            return
+
+    def _is_gesture(self, spotted: Spotted, poses: PoseSequence) -> bool:
+        """Tell whether a stretch is a gesture: sure, large enough, and about as long."""
+        result = spotted.recognition
+        if result.label is None or result.confidence < self._confident:
+            return False
+        gesture = self._recognizer.language.gesture(result.label)
+        if gesture.trajectory is None:
+            return False
+        usual = float(gesture.trajectory.time[-1])
+        if not FASTER * usual <= spotted.end - spotted.start <= SLOWER * usual:
+            return False
+        trajectory = Trajectory.from_poses(joined(self._seen))
+        part = trajectory.between(
+            spotted.start - self._seen[0].time[0], spotted.end - self._seen[0].time[0]
+        )
+        moved = max(displacements(part).get(name, 0.0) for name in gesture.salient)
+        return moved >= MIN_DISPLACEMENT * body_unit(trajectory)
+
+    def _ended(self, now: float) -> tuple[Spotted, ...]:
+        """Report the best candidates that nothing better can replace any more."""
+        found: list[Spotted] = []
+        while self._candidates:
+            best = max(self._candidates, key=lambda each: each.rank)
+            resting = now - max(self._moving, best.end) > PAUSE
+            late = now - best.end > self._longest / SLOWER
+            if (self._waiting and not late) or not (resting or late):
+                break
+            found.append(best)
+            self._reported = max(self._reported, best.end)
+            self._candidates = [
+                each for each in self._candidates if not each.overlaps(best.start, best.end)
+            ]
+        return tuple(found)
+
+
+def joined(moments: deque[PoseSequence]) -> PoseSequence:
+    """Put the frames of a stream together; at least one."""
+    first = moments[0]
+    confidences = [each.confidence for each in moments]
+    known = [each for each in confidences if each is not None]
+    return PoseSequence(
+        landmarks=first.landmarks,
+        xy=np.concatenate([each.xy for each in moments]),
+        confidence=np.concatenate(known) if len(known) == len(moments) else None,
+        time=np.concatenate([each.time for each in moments]),
+        frame_size=first.frame_size,
+    )
