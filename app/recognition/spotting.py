@@ -34,8 +34,11 @@ by half a doubling, rarely by more than one."""
 LOOK_EVERY = 0.2
 """Seconds between two looks for strokes: a tenth of a gesture, a few frames of a camera."""
 
-SETTLED = 0.15
-"""Seconds after which a stroke's end is believed: the smoothing of positions reaches so far."""
+SLOW_EDGE = 0.2
+"""Seconds at either end of a stroke in which the hand hardly moves yet, or any more."""
+
+SETTLED = 0.25
+"""Seconds after which a stroke's end is believed: its slow edge, and what smoothing looks ahead."""
 
 PAUSE = 0.6
 """Seconds without a stroke after which a gesture is reported: a hand that turns a corner is
@@ -193,10 +196,7 @@ class Spotter:
         motion = self._motion()
         if motion is None:
             return
-        strokes = [
-            Span(float(motion.time[piece.first]), float(motion.time[piece.last]))
-            for piece in pieces_of(motion)
-        ]
+        strokes = strokes_in(motion)
         if strokes:
             self._moving = strokes[-1].end
         for index, last in enumerate(strokes):
@@ -270,6 +270,18 @@ class Spotter:
                 each for each in self._candidates if not each.overlaps(best.start, best.end)
             ]
         return tuple(found)
+
+
+def strokes_in(motion: Motion) -> list[Span]:
+    """Return the strokes of a motion in order, each with its slow beginning and end."""
+    pieces = pieces_of(motion)
+    firsts = np.array([motion.time[piece.first] for piece in pieces])
+    lasts = np.array([motion.time[piece.last] for piece in pieces])
+    halves = np.concatenate([motion.time[:1], (firsts[1:] + lasts[:-1]) / 2, motion.time[-1:]])
+    return [
+        Span(float(max(first - SLOW_EDGE, before)), float(min(last + SLOW_EDGE, after)))
+        for first, last, before, after in zip(firsts, lasts, halves, halves[1:], strict=False)
+    ]
 
 
 def joined(moments: deque[PoseSequence]) -> PoseSequence:
