@@ -15,6 +15,7 @@ import numpy as np
 
 from app.recognition.errors import PoseError, RecognitionError
 from app.recognition.jumps import body_unit
+from app.recognition.landmarks import other_side
 from app.recognition.movement import followed_landmarks
 from app.recognition.poses import PoseSequence
 from app.recognition.recognition_result import Recognition
@@ -87,8 +88,8 @@ class Spotted:
         return float(np.log(sure / (1 - sure))) + RANK_PER_SECOND * (self.end - self.start)
 
     def overlaps(self, start: float, end: float) -> bool:
-        """Tell whether it shares more than an instant with a stretch."""
-        return self.start < end - BEAT and start < self.end - BEAT
+        """Tell whether it shares more with a stretch than a slow edge."""
+        return self.start < end - SLOW_EDGE and start < self.end - SLOW_EDGE
 
 
 class Spotter:
@@ -124,7 +125,13 @@ class Spotter:
             )
         self._recognizer = recognizer
         self._confident = confident
-        self._landmarks = followed_landmarks([gesture.salient for gesture in gestures])
+        mirrored = [
+            [other_side(name) for name in gesture.salient]
+            for gesture in gestures
+            if gesture.switches.mirror == "on"
+        ]
+        shown = [gesture.salient for gesture in gestures]
+        self._landmarks = followed_landmarks([*shown, *mirrored])
         self._shortest = FASTER * float(min(lasts))
         self._longest = min(SLOWER * float(max(lasts)), LONGEST_MEMORY)
         self._seen: deque[PoseSequence] = deque()
@@ -156,7 +163,7 @@ class Spotter:
         Raises
         ------
         PoseError
-            When the time does not go on.
+            When the time does not go on, or the landmarks are others.
 
         """
         if not len(moment):
@@ -166,6 +173,11 @@ class Spotter:
             raise PoseError(
                 f"a stream's time must go on: {moment.time[0]:g} s after "
                 f"{self._seen[-1].time[-1]:g} s"
+            )
+        if self._seen and moment.landmarks != self._seen[-1].landmarks:
+            raise PoseError(
+                f"a stream keeps its {len(self._seen[-1].landmarks)} landmarks, got "
+                f"{len(moment.landmarks)} others; begin a new Spotter for another camera"
             )
         self._seen.append(moment)
         while now - self._seen[0].time[-1] > self._longest + PAUSE + 2 * LOOK_EVERY:
@@ -204,8 +216,8 @@ class Spotter:
                 continue
             self._believed = last.end
             for first in strokes[max(0, index + 1 - MOST_STROKES) : index + 1]:
-                lasts = last.end - first.start
-                if first.start >= self._reported and self._shortest <= lasts <= self._longest:
+                is_free = first.start >= self._reported - SLOW_EDGE
+                if is_free and self._shortest <= last.end - first.start <= self._longest:
                     self._waiting.append(Span(first.start, last.end))
 
     def _motion(self) -> Motion | None:
@@ -226,18 +238,18 @@ class Spotter:
         while self._waiting:
             span = self._waiting.popleft()
             poses = joined(self._seen).between(span.start - BEAT, span.end + BEAT)
-            if span.start < self._reported or len(poses) < 2:
+            if span.start < self._reported - SLOW_EDGE or len(poses) < 2:
                 continue
             try:
                 result = self._recognizer.recognize(poses)
             except PoseError:
                 return
             spotted = Spotted(span.start, span.end, result)
-            if self._is_gesture(spotted, poses):
+            if self._is_gesture(spotted):
                 self._candidates.append(spotted)
             return
 
-    def _is_gesture(self, spotted: Spotted, poses: PoseSequence) -> bool:
+    def _is_gesture(self, spotted: Spotted) -> bool:
         """Tell whether a stretch is a gesture: sure, large enough, and about as long."""
         result = spotted.recognition
         if result.label is None or result.confidence < self._confident:
@@ -252,8 +264,9 @@ class Spotter:
         part = trajectory.between(
             spotted.start - self._seen[0].time[0], spotted.end - self._seen[0].time[0]
         )
-        moved = max(displacements(part).get(name, 0.0) for name in gesture.salient)
-        return moved >= MIN_DISPLACEMENT * body_unit(trajectory)
+        moved = displacements(part)
+        most = max(moved.get(name, 0.0) for name in self._landmarks)
+        return most >= MIN_DISPLACEMENT * body_unit(trajectory)
 
     def _ended(self, now: float) -> tuple[Spotted, ...]:
         """Report the best candidates that nothing better can replace any more."""

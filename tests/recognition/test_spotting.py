@@ -142,6 +142,8 @@ def test_time_must_go_on(recognizer: Recognizer) -> None:
     spotter.feed(poses.between(0, 1))
     with pytest.raises(PoseError, match="must go on"):
         spotter.feed(poses.between(0.5, 1.5))
+    with pytest.raises(PoseError, match="keeps its 6 landmarks"):
+        spotter.feed(poses.between(1.01, 1.5).select(["right_wrist"]))
 
 
 def test_profile_paper_cannot_listen(recognizer: Recognizer) -> None:
