@@ -7,7 +7,7 @@ from functools import partial
 
 from fastapi import APIRouter, Response
 
-from app.api.demonstrations import demonstration_in
+from app.api.demonstrations import Demonstration, demonstration_in
 from app.api.language_drafts import editing
 from app.api.languages import ExpectedRevision, Revision, announced
 from app.api.problems import Fault, ProblemError, documented
@@ -17,6 +17,11 @@ from app.recognition import Gesture, GestureError, Language
 from app.recognition.png import encode_png
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
+
+WORDS = frozenset({"label", "description", "command"})
+"""What of a gesture is for people and the robot, and does not change what is recognised."""
+
+SWITCHES = ("direction", "tempo", "mirror")
 
 
 @router.post("", status_code=201, responses=documented(404, 409, 412))
@@ -54,8 +59,14 @@ def change_gesture(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Change a gesture's label, description, command or salient keypoints."""
-    edit = editing(f"Change {label}", partial(_with_change, label=label, change=change))
+    """Change what a gesture says, what of it counts, or the demonstration that shows it."""
+    demonstration = None
+    if change.demonstration is not None:
+        where = change.demonstration
+        recording = studio.recording(where.clip_id)
+        demonstration = demonstration_in(recording, where.start, where.end)
+    changed = partial(_with_change, label=label, change=change, demonstration=demonstration)
+    edit = editing(f"Change {label}", changed)
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
@@ -95,21 +106,38 @@ def get_gesture_image(
     return Response(image, media_type="image/png", headers=headers)
 
 
-def _with_change(language: Language, *, label: str, change: GestureChange) -> Language:
+def _with_change(
+    language: Language, *, label: str, change: GestureChange, demonstration: Demonstration | None
+) -> Language:
     gesture = _found(language, label)
     if change.label is not None and change.label.strip() != gesture.label:
         _require_free(language, change.label.strip())
     # The command may be set to null on purpose; all else that is null was left out.
     fields = {
         name: getattr(change, name)
-        for name in change.model_fields_set - {"salient"}
+        for name in change.model_fields_set & WORDS
         if name == "command" or getattr(change, name) is not None
     }
-    changed = replace(gesture, **fields)
+    changed = _shown_anew(gesture, demonstration) if demonstration is not None else gesture
+    positions = {
+        name: position for name in SWITCHES if (position := getattr(change, name)) is not None
+    }
+    changed = replace(changed, switches=replace(changed.switches, **positions), **fields)
     if change.salient:
         changed = _with_salient(changed, change.salient)
     gestures = [changed if member is gesture else member for member in language.gestures]
     return replace(language, gestures=gestures)
+
+
+def _shown_anew(gesture: Gesture, demonstration: Demonstration) -> Gesture:
+    """Make a gesture from another demonstration; what it says and what counts stays."""
+    made = Gesture.from_demonstration(gesture.label, demonstration.poses)
+    return replace(
+        made,
+        description=gesture.description,
+        command=gesture.command,
+        switches=gesture.switches,
+    )
 
 
 def _with_salient(gesture: Gesture, names: list[str]) -> Gesture:

@@ -169,7 +169,11 @@ def gesture_view(state: LanguageState, gesture: Gesture) -> GestureView:
     """Return what to tell about a gesture of a revision."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
     place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
+    switches = gesture.switches
     return GestureView(
+        direction=switches.direction,
+        tempo=switches.tempo,
+        mirror=switches.mirror,
         label=gesture.label,
         description=gesture.description,
         command=gesture.command,

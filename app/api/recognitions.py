@@ -9,11 +9,19 @@ from fastapi import APIRouter, Query, Response
 
 from app.api.demonstrations import demonstration_in, surroundings_in
 from app.api.problems import ProblemError, documented
-from app.api.schemas import ExplanationView, Label, RecognitionRequest, RecognitionView
+from app.api.schemas import (
+    ExplanationView,
+    Label,
+    RecognitionRequest,
+    RecognitionView,
+    TuningChange,
+)
 from app.api.studio import CurrentStudio
-from app.recognition import Recognition
+from app.recognition import Recognition, Recognizer
 from app.recognition.explanation import explain
 from app.recognition.situation import Situation
+from app.recognition.trajectory_image import SIMPLIFICATION
+from app.recognition.tuning import Tuning
 from app.store import RecognitionRecord
 
 DEFAULT_PROFILE = "full"
@@ -32,7 +40,10 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     recording = studio.recording(request.clip_id)
     profile = request.profile or DEFAULT_PROFILE
     demonstration = demonstration_in(recording, request.start, request.end)
-    result = studio.recognizer(state, profile).recognize(demonstration.poses)
+    recognizer = _tuned(studio.recognizer(state, profile), request.tuning)
+    told = recognizer.recognize(demonstration.poses).to_dict()
+    if request.tuning is not None:
+        told["tuning"] = request.tuning.model_dump()
     record = studio.recognitions.add(
         RecognitionRecord(
             clip_id=request.clip_id,
@@ -42,7 +53,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
             end=demonstration.end,
             profile=profile,
             expected=request.expected,
-            result=json.dumps(result.to_dict(), allow_nan=False),
+            result=json.dumps(told, allow_nan=False),
         )
     )
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
@@ -86,14 +97,26 @@ def explain_recognition(
         raise ProblemError(422, "expected_missing", detail)
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id)
+    tuning = _view(record).tuning
     situation = Situation(
-        recognizer=studio.recognizer(state, record.profile),
+        recognizer=_tuned(studio.recognizer(state, record.profile), tuning),
         poses=demonstration_in(recording, record.start, record.end).poses,
         whole=surroundings_in(recording, record.start, record.end),
     )
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
     return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
+
+
+def _tuned(recognizer: Recognizer, change: TuningChange | None) -> Recognizer:
+    if change is None:
+        return recognizer
+    tuning = Tuning(
+        weights=change.weights,
+        simplification=SIMPLIFICATION if change.simplification is None else change.simplification,
+        keypoints_repaired=change.keypoints_repaired,
+    )
+    return Recognizer(recognizer.language, recognizer.profile, tuning=tuning)
 
 
 def kept_recognition(record: RecognitionRecord) -> Recognition:

@@ -138,10 +138,27 @@ class GestureDraft(Body):
     command: Command = None
 
 
+SwitchPosition = Literal["auto", "on", "off"]
+
+
+class NewDemonstration(Body):
+    """Where another demonstration of a gesture is."""
+
+    clip_id: Identifier
+    start: Seconds | None = None
+    end: Seconds | None = None
+
+
 class GestureChange(Body):
     """What to change about a gesture; what is left out stays."""
 
     label: Label | None = None
+    demonstration: NewDemonstration | None = Field(
+        default=None, description="Takes the place of the one that made the gesture"
+    )
+    direction: SwitchPosition | None = None
+    tempo: SwitchPosition | None = None
+    mirror: SwitchPosition | None = None
     salient: Landmarks | None = None
     description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | None = None
     command: Command = None
@@ -154,6 +171,9 @@ class GestureView(BaseModel):
     description: str
     command: str | dict[str, Any] | None
     salient: list[str]
+    direction: SwitchPosition
+    tempo: SwitchPosition
+    mirror: SwitchPosition
     thumbnail: str = Field(description="Path of its trajectory image, a PNG")
     has_trajectory: bool = Field(description="False when imported from a file that has none")
 
@@ -209,6 +229,24 @@ class RevisionComparison(BaseModel):
     )
 
 
+Voter = Annotated[str, Field(max_length=64)]
+Factor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+
+
+class TuningChange(Body):
+    """How to recognise otherwise than the profile does, to see what would come of it."""
+
+    weights: Annotated[dict[Voter, Factor], Field(max_length=64)] = Field(
+        default_factory=dict, description="Factor per voter on its say; 0: off"
+    )
+    simplification: Annotated[float, Field(ge=0, le=50, allow_inf_nan=False)] | None = Field(
+        default=None, description="Tolerance of the drawings, in pixels"
+    )
+    keypoints_repaired: bool | None = Field(
+        default=None, description="Whether bad keypoints are repaired; null: as the profile does"
+    )
+
+
 class RecognitionRequest(Body):
     """What to recognise."""
 
@@ -217,6 +255,7 @@ class RecognitionRequest(Body):
     start: Seconds | None = None
     end: Seconds | None = None
     profile: Annotated[str, Field(max_length=32)] | None = None
+    tuning: TuningChange | None = None
     expected: Label | None = None
 
 
@@ -232,6 +271,7 @@ class RecognitionView(BaseModel):
     start: float
     end: float
     profile: str
+    tuning: TuningChange | None = Field(default=None, description="Null: as the profile does")
     expected: str | None
     created: datetime
     label: str | None = Field(description="None when rejected")

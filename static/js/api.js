@@ -90,6 +90,7 @@ export const languages = {
 export const recognitions = {
   create: (query) => request("POST", "/recognitions", { body: query }),
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
+  explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
 };
 
 export const workspaces = {

@@ -17,6 +17,7 @@ import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
 import { followViews } from "./views.js";
 import { drawWelcome } from "./welcome.js";
+import { drawCosts, drawWhy, loadWhy } from "./why.js";
 import { followTheme, openWorkspace, restart } from "./workspace.js";
 
 /** Hear of every change on the server; after a break, load everything again. */
@@ -64,6 +65,8 @@ function drawEverything() {
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
   follow(["result"], drawOutcome);
+  follow(["why", "result", "trial"], drawWhy);
+  follow(["why", "timeline"], drawCosts);
 }
 
 /** What is loaded when something else is selected. */
@@ -77,6 +80,7 @@ function loadWithSelection() {
     loadTakes();
   });
   follow(["recognition"], loadResult);
+  follow(["result"], loadWhy);
   follow(["clips", "clip", "takes", "take", "start", "end", "recognition"], showSelection);
 }
 

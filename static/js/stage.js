@@ -70,6 +70,17 @@ async function saveGesture() {
   tellDone("Gesture saved", `${saved.gestures.at(-1).label}, in ${saved.name}`);
 }
 
+/** The range on which the buttons act, as the API takes it. */
+export const rangeOf = () => query();
+
+/** Recognise what is selected; `extra` says what is done otherwise. */
+export async function recogniseWith(extra = {}) {
+  const body = { ...query(), language_id: state.language, expected: byId("expected").value || null, ...extra };
+  const result = await attempt("Recognition", () => api.recognitions.create(body));
+  if (result) update({ result, recognition: result.id });
+  return result;
+}
+
 async function recognise() {
   if (!state.gestures?.gestures.length) {
     toast("Nothing to compare with", "The language has no gestures yet. Save one from a take, or choose another language above.", { kind: "error" });
@@ -77,9 +88,9 @@ async function recognise() {
   }
   const button = byId("recognise");
   button.disabled = true;
-  const result = await attempt("Recognition", () => api.recognitions.create({ ...query(), language_id: state.language, expected: byId("expected").value || null }));
+  update({ trial: null });
+  await recogniseWith();
   button.disabled = false;
-  if (result) update({ result, recognition: result.id });
 }
 
 /** Load the recognition that the URL names. */

@@ -6,7 +6,7 @@ const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 const values = {
   view: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
-  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, connected: null, loaded: false,
+  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, connected: null, loaded: false,
   clip: null, take: null, start: null, end: null, language: null, recognition: null,
   panel: null, older: null, newer: null,
 };

@@ -149,3 +149,27 @@ def test_an_imported_gesture_keeps_its_salient_keypoints(
     imported = client.post(f"{LANGUAGES}/import", content=exported).json()["id"]
     changed = client.patch(place(imported, "circle"), json={"salient": ["left_wrist"]})
     assert_problem(changed, 422, "gesture_unusable")
+
+
+def test_the_switches_of_a_gesture_can_be_set(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
+    assert [gesture[name] for name in ("direction", "tempo", "mirror")] == ["auto"] * 3
+    address = place(language_id, "circle")
+    (changed,) = client.patch(address, json={"direction": "off", "mirror": "on"}).json()["gestures"]
+    assert [changed[name] for name in ("direction", "tempo", "mirror")] == ["off", "auto", "on"]
+    assert client.patch(address, json={"tempo": "fast"}).status_code == 422
+
+
+def test_a_gesture_can_be_shown_anew_and_keeps_what_it_says(
+    client: httpx.Client, language_id: str, circle_clip: str, line_clip: str
+) -> None:
+    (before,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
+    address = place(language_id, "circle")
+    client.patch(address, json={"command": "Go", "direction": "on"})
+    body = {"demonstration": {"clip_id": line_clip}}
+    (after,) = client.patch(address, json=body).json()["gestures"]
+    assert (after["label"], after["command"], after["direction"]) == ("circle", "Go", "on")
+    pictures = [client.get(each["thumbnail"]).content for each in (before, after)]
+    assert pictures[0] != pictures[1]

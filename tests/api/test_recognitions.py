@@ -113,3 +113,20 @@ def test_what_was_not_meant_to_be_anything_cannot_be_explained(
     problem = assert_problem(client.get(url, params={"expected": "spiral"}), 422, "recognition")
     assert "circle, line" in str(problem["detail"])
     assert_problem(client.get(f"{RECOGNITIONS}/x/explanation"), 404, "not_found")
+
+
+def test_a_tuning_changes_this_recognition_alone_and_is_told_with_it(
+    client: httpx.Client, spoken: str, line_clip: str
+) -> None:
+    body = {"clip_id": line_clip, "language_id": spoken, "expected": "circle"}
+    plain = client.post(RECOGNITIONS, json=body).json()
+    tuned = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"path": 0.0}}}).json()
+    assert plain["tuning"] is None
+    assert tuned["tuning"]["weights"] == {"path": 0.0}
+    assert tuned["weights"]["path"] == 0.0 < plain["weights"]["path"]
+    why = client.get(f"{RECOGNITIONS}/{tuned['id']}/explanation").json()
+    (path,) = [verdict for verdict in why["verdicts"] if verdict["voter"] == "path"]
+    assert path["weight"] == 0.0
+    unknown = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"magic": 1.0}}})
+    assert unknown.status_code == 422
+    assert "no voter 'magic'" in unknown.json()["detail"]

@@ -1,7 +1,8 @@
-"""What every view shares: keys, undo and redo, and the browser's own history."""
+"""What every view shares: keys, undo and redo; and why, with changes on trial."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import httpx
@@ -70,3 +71,21 @@ def test_undo_does_not_take_back_what_another_tab_did(
     page.keyboard.press("Control+z")
     expect(page.get_by_role("alert").get_by_text("changed elsewhere")).to_be_visible()
     expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
+
+
+def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page({**library.address, "recognition": library.recognise("line")}, scene=False)
+    why = page.get_by_role("region", name="Why")
+    expect(why).to_contain_text("instead of 'line'")
+    expect(
+        page.get_by_role("img", name="Difference of the right wrist along the clip")
+    ).to_be_visible()
+    why.get_by_role("listitem").first.get_by_role("button").click()
+    trial = why.get_by_role("status")
+    expect(trial).to_contain_text("It is read as line")
+    expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
+    trial.get_by_role("button", name=re.compile("Discard|Back to as it was")).click()
+    expect(page.locator("#outcome")).to_contain_text("Taken for circle, expected line")
+    expect(why).to_contain_text("instead of 'line'")

@@ -1,0 +1,137 @@
+// Why a recognition came out as it did, where the difference lies, and what would have helped.
+
+import * as api from "./api.js";
+import { byId, h, svg } from "./dom.js";
+import { edit } from "./gestures.js";
+import { recogniseWith, rangeOf } from "./stage.js";
+import { state, update } from "./state.js";
+import { attempt, complain, toast } from "./toasts.js";
+import { undo } from "./undo.js";
+
+const MOST_PARTS = 3; // Joints shown over time: those that cost most.
+const LANE = 14; // Height of a joint's lane, in the drawing's own units.
+
+const readable = (name) => name.replaceAll("_", " ");
+
+/** Load why, as soon as it is known what was meant. */
+export async function loadWhy({ result }) {
+  if (!result || result.expected === null) return update({ why: null });
+  if (state.why?.id === result.id) return undefined;
+  const why = await attempt("Explaining", () => api.recognitions.explain(result.id));
+  return update({ why: state.result?.id === result.id ? why : null });
+}
+
+/** What each step of the take costs, joint by joint, for the expected gesture's paths. */
+function costs({ alignments, expected }) {
+  const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
+  if (!alignment) return null;
+  const steps = alignment.time.map(() => alignment.parts.map(() => 0));
+  alignment.pairs.forEach(([step], index) => alignment.costs[index].forEach((cost, part) => { steps[step][part] += cost; }));
+  const totals = alignment.parts.map((_, part) => steps.reduce((sum, step) => sum + step[part], 0));
+  const shown = totals.map((total, part) => ({ total, part })).sort((one, other) => other.total - one.total).filter(({ total }) => total > 0).slice(0, MOST_PARTS);
+  return { time: alignment.time, steps, lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })), label: expected };
+}
+
+/** Draw the costs along the clip's time; height and shade both say how much. */
+function lane({ time, steps }, { part, name }, most, last) {
+  const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
+  const bars = steps.map((step, index) => {
+    const from = index ? (time[index - 1] + time[index]) / 2 : time[index];
+    const to = index + 1 < time.length ? (time[index] + time[index + 1]) / 2 : time[index];
+    const amount = Math.sqrt(step[part] / most);
+    return svg("rect", { x: share(from), width: Math.max(0.5, share(to) - share(from)), y: LANE * (1 - amount), height: LANE * amount, "fill-opacity": (0.35 + 0.65 * amount).toFixed(2) });
+  });
+  return h("div", { className: "cost-lane" },
+    svg("svg", { viewBox: `0 0 1000 ${LANE}`, preserveAspectRatio: "none", role: "img", "aria-label": `Difference of the ${readable(name)} along the clip` }, ...bars),
+    h("span", {}, readable(name)));
+}
+
+/** Under the curves: where along the take it differs from what was expected, and in which joint. */
+export function drawCosts({ why, timeline }) {
+  const box = byId("costs");
+  const found = why && timeline && !why.right ? costs(why) : null;
+  if (!found?.lanes.length) return box.replaceChildren();
+  const most = Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
+  return box.replaceChildren(
+    h("p", { className: "cost-title" }, "Where it differs from ", h("b", { className: "expected" }, found.label)),
+    ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)));
+}
+
+const APPLY = {
+  trim: (change) => { update({ take: null, start: change.start, end: change.end }); return {}; },
+  voter_weight: (change) => ({ tuning: { weights: { [change.voter]: change.factor } } }),
+  simplification: (change) => ({ tuning: { simplification: change.tolerance } }),
+  keypoint_repair: (change) => ({ tuning: { keypoints_repaired: change.on } }),
+  profile: (change) => ({ profile: change.profile }),
+  salient: (change) => changeGesture(change, { salient: change.salient }),
+  switch: (change) => changeGesture(change, { [change.switch]: change.position }),
+  demonstration: (change) => changeGesture(change, { demonstration: rangeOf() }),
+};
+
+async function changeGesture(change, body) {
+  await edit("Trying the change", `Change of ${change.label}`, (language) => api.languages.changeGesture(language, change.label, body));
+  return { edited: true };
+}
+
+/** Apply a change and recognise again; until it is kept, one press takes it back. */
+async function tryOut({ change }) {
+  const base = { recognition: state.recognition, take: state.take, start: state.start, end: state.end };
+  try {
+    const { edited = false, ...extra } = await APPLY[change.kind](change);
+    const result = await recogniseWith(extra);
+    if (result) update({ trial: { change, base, edited, result: result.id } });
+  } catch (error) {
+    complain(error, "Trying the change");
+  }
+}
+
+function discard({ base, edited }) {
+  if (edited) undo();
+  update({ trial: null, ...base });
+}
+
+function keep({ change, edited }) {
+  update({ trial: null });
+  if (edited) toast("Change kept", `${change.words}, in ${state.gestures.name}`);
+  else if (change.kind === "trim") toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
+}
+
+/** What a change of the language does to its other gestures, in words. */
+function effectOf(effect) {
+  if (!effect) return null;
+  if (effect.right_after < effect.right_before) return h("small", { className: "expected" }, `but costs ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")}`);
+  return h("small", { className: "dim" }, `the others stay right (${effect.right_after} of ${effect.takes})`);
+}
+
+function remedy(found) {
+  return h("li", {},
+    h("button", { type: "button", onclick: () => tryOut(found) }, h("span", {}, found.change.words)),
+    h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
+    effectOf(found.effect));
+}
+
+function trialBar(trial, result) {
+  const lasting = trial.edited || trial.change.kind === "trim";
+  return h("div", { className: "trial", role: "status" },
+    h("p", {}, h("b", {}, "On trial: "), `${trial.change.words}. It is read as ${result.label ?? `nothing; nearest is ${result.nearest}`}.`),
+    h("span", { className: "joined" },
+      lasting ? h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep") : null,
+      h("button", { type: "button", onclick: () => discard(trial) }, lasting ? "Discard" : "Back to as it was")));
+}
+
+/** Draw why, under the take. */
+export function drawWhy({ why, result, trial }) {
+  const box = byId("why");
+  const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
+  const asks = result && result.expected === null;
+  box.hidden = !result || (!why && !asks && !trying);
+  if (box.hidden) return box.replaceChildren();
+  if (asks && !trying) return box.replaceChildren(h("p", { className: "dim" }, "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help."));
+  const remedies = why && !why.right ? why.counterfactuals : [];
+  return box.replaceChildren(...[
+    trying,
+    why ? h("p", { className: "why-sentence" }, why.sentence) : null,
+    remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
+    why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
+  ].filter(Boolean));
+}
