@@ -42,6 +42,11 @@ class Explanation:
     score, other_score
         Of the expected gesture and of the other, see `Comparison.scores`; infinite where not
         comparable.
+    novelty
+        How much farther than its thresholds allow the query lies from the expected gesture: above
+        1 it is rejected; NaN without thresholds, as in profile ``paper``.
+    fault
+        What makes the recording too poor to judge; None: nothing.
     votes
         Per label how many voters with weight took it.
     verdicts
@@ -67,6 +72,8 @@ class Explanation:
     other: str | None
     score: float
     other_score: float
+    novelty: float
+    fault: str | None
     votes: Mapping[str, int]
     verdicts: tuple[Verdict, ...]
     turned: float
@@ -102,6 +109,8 @@ class Explanation:
             "score": _finite(self.score),
             "other_score": _finite(self.other_score),
             "margin": _finite(self.margin),
+            "novelty": _finite(self.novelty),
+            "fault": self.fault,
             "votes": dict(self.votes),
             "verdicts": [verdict.to_dict() for verdict in self.verdicts],
             "turned": _finite(self.turned),
@@ -154,8 +163,12 @@ def explain(
         other=None if other is None else result.gestures[other],
         score=float(comparison.scores[at]),
         other_score=math.inf if other is None else float(comparison.scores[other]),
+        novelty=float(comparison.novelty[at]),
+        fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
-        verdicts=verdicts(comparison, result, at, other),
+        verdicts=verdicts(
+            comparison, result, situation.language.gestures[at].thresholds, at, other
+        ),
         turned=_difference(comparison, at, other),
         alignments=tuple(
             alignment

@@ -10,6 +10,7 @@ import numpy as np
 from app.recognition.calibrated_vote import CalibratedVote
 from app.recognition.comparison import Comparison
 from app.recognition.errors import LanguageError, PoseError, RecognitionError
+from app.recognition.examination import Examination
 from app.recognition.gesture import condensed
 from app.recognition.landmarks import other_side
 from app.recognition.language import Language
@@ -90,17 +91,26 @@ class Recognizer:
             When the recording shows nothing, or no landmark that a gesture needs moves in it.
 
         """
-        if not self.repairs:
-            return self.recognize_trajectory(self.query(poses))
-        repair = repaired(poses)
-        result = self.recognize_trajectory(condensed(Trajectory.from_poses(repair.poses)))
-        poor = self._fault(repair.poses, result.nearest)
-        return replace(
-            result,
-            label=None if poor else result.label,
-            findings=repair.findings,
-            fault=poor,
-        )
+        return self.examine(poses).result
+
+    def examine(self, poses: PoseSequence) -> Examination:
+        """Recognise as `recognize` does, and keep what led to the answer.
+
+        Raises
+        ------
+        PoseError
+            As `recognize`.
+
+        """
+        repair = repaired(poses) if self.repairs else None
+        query = condensed(Trajectory.from_poses(repair.poses if repair else poses))
+        comparison = self.compare(query)
+        result = self.decided(comparison)
+        if repair:
+            poor = self._fault(repair.poses, result.nearest)
+            label = None if poor else result.label
+            result = replace(result, label=label, findings=repair.findings, fault=poor)
+        return Examination(query=query, comparison=comparison, result=result)
 
     def _fault(self, poses: PoseSequence, nearest: str) -> str | None:
         """Tell why a recording is too poor to be the nearest gesture, whichever hand shows it."""

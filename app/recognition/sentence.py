@@ -49,10 +49,17 @@ def _farther(explanation: Explanation) -> str:
 
 
 def _outcome(explanation: Explanation) -> str:
-    if explanation.label is None:
-        return f"Nothing was recognised, though {explanation.nearest!r} was nearest"
-    wrong = _voters(explanation, explanation.nearest)
-    return f"{wrong} took {explanation.nearest!r} instead of {explanation.expected!r}"
+    if explanation.fault is not None:
+        return f"Nothing was recognised, for the recording is too poor: {explanation.fault}"
+    if explanation.label is not None:
+        wrong = _voters(explanation, explanation.nearest)
+        return f"{wrong} took {explanation.nearest!r} instead of {explanation.expected!r}"
+    if explanation.nearest != explanation.expected:
+        return f"Nothing was recognised; {explanation.nearest!r} was nearest"
+    return (
+        f"Nothing was recognised: {explanation.expected!r} was nearest, but lies "
+        f"{explanation.novelty:.1f} times as far as its thresholds allow"
+    )
 
 
 def _voters(explanation: Explanation, label: str) -> str:
@@ -65,16 +72,31 @@ def _number(count: int) -> str:
 
 
 def _reason(explanation: Explanation) -> str:
+    if explanation.fault is not None:
+        return "."
     if not math.isfinite(explanation.score):
         return f": a keypoint that {explanation.expected!r} needs is missing or does not move."
     cause = _cause(explanation)
-    against = [verdict.voter for verdict in explanation.verdicts if verdict.against > 0]
-    named = _listed(against[:MOST_VOTERS_NAMED])
+    named = _listed(_witnesses(explanation)[:MOST_VOTERS_NAMED])
+    spoke = f"{named} spoke most against {explanation.expected!r}" if named else ""
     if cause is not None:
-        return f" because {cause.words}" + (f", which {named} saw most." if named else ".")
-    if not explanation.differences:
-        return f"; {named} spoke most against it." if named else "."
-    return f"; its path is that of {explanation.expected!r}, but {named} spoke against it."
+        return f" because {cause.words}" + (f" ({spoke})." if spoke else ".")
+    return f"; {spoke}." if spoke else "."
+
+
+def _witnesses(explanation: Explanation) -> list[str]:
+    """Name the voters that spoke against the expected gesture, the loudest first.
+
+    Where it was nearest and rejected all the same, those that are farthest beyond their limits.
+    """
+    if explanation.nearest != explanation.expected:
+        return [verdict.voter for verdict in explanation.verdicts if verdict.against > 0]
+    beyond = {
+        verdict.voter: verdict.distance / verdict.limit
+        for verdict in explanation.verdicts
+        if verdict.limit and verdict.distance > verdict.limit
+    }
+    return sorted(beyond, key=lambda voter: -beyond[voter])
 
 
 def _cause(explanation: Explanation) -> Difference | None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from app.recognition.comparison import Comparison
+from app.recognition.examination import Examination
 from app.recognition.gesture import Gesture
 from app.recognition.language import Language
 from app.recognition.poses import PoseSequence
@@ -56,25 +57,8 @@ class Situation:
         return self.recognizer.tuning
 
     @cached_property
-    def trajectory(self) -> Trajectory:
-        """The stroke as the recogniser's voters see it.
-
-        Raises
-        ------
-        PoseError
-            When it shows nothing.
-
-        """
-        return self.recognizer.query(self.poses)
-
-    @cached_property
-    def comparison(self) -> Comparison:
-        """The stroke beside every gesture."""
-        return self.recognizer.compare(self.trajectory)
-
-    @cached_property
-    def result(self) -> Recognition:
-        """What is recognised.
+    def examination(self) -> Examination:
+        """What is seen, compared and decided.
 
         Raises
         ------
@@ -82,7 +66,22 @@ class Situation:
             When the stroke shows nothing that a gesture needs.
 
         """
-        return self.recognizer.decided(self.comparison)
+        return self.recognizer.examine(self.poses)
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The stroke as the voters see it."""
+        return self.examination.query
+
+    @property
+    def comparison(self) -> Comparison:
+        """The stroke beside every gesture."""
+        return self.examination.comparison
+
+    @property
+    def result(self) -> Recognition:
+        """What is recognised."""
+        return self.examination.result
 
     def with_tuning(self, tuning: Tuning) -> Situation:
         """Tune the recogniser otherwise."""

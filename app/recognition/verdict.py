@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,8 @@ class Verdict:
         Whether it takes another gesture than the expected one, and has weight.
     distance, other_distance
         To the expected gesture and to the other, in its unit; infinite where not comparable.
+    limit
+        Its threshold for the expected gesture, in its unit (`rejection`); None where it has none.
     against
         What it adds to the expected gesture's score minus what it adds to the other's: positive
         where it speaks against the expected one. Over all voters, with `Explanation.turned`,
@@ -41,6 +44,7 @@ class Verdict:
     wrong: bool
     distance: float
     other_distance: float
+    limit: float | None
     against: float
 
     def to_dict(self) -> dict[str, Any]:
@@ -52,7 +56,11 @@ class Verdict:
 
 
 def verdicts(
-    comparison: Comparison, result: Recognition, expected: int, other: int | None
+    comparison: Comparison,
+    result: Recognition,
+    thresholds: Mapping[str, float],
+    expected: int,
+    other: int | None,
 ) -> tuple[Verdict, ...]:
     """Gather what every voter said, those that spoke most against the expected gesture first.
 
@@ -60,6 +68,8 @@ def verdicts(
     ----------
     comparison, result
         What was compared, and what was decided.
+    thresholds
+        Of the expected gesture, see `Gesture.thresholds`.
     expected, other
         Indices of the two gestures; without another one nothing speaks against the expected.
 
@@ -80,6 +90,7 @@ def verdicts(
                 wrong=voter in result.counted and vote != label,
                 distance=float(distances[expected]),
                 other_distance=math.inf if other is None else float(distances[other]),
+                limit=thresholds.get(voter),
                 against=0.0 if math.isnan(against) else against,
             )
         )

@@ -11,7 +11,9 @@ from app.recognition import Gesture, Language, PoseSequence, RecognitionError, R
 from app.recognition.explanation import Explanation, explain
 from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
+from app.recognition.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
+from tests.recognition.test_difference import corners, exchanged
 
 LANGUAGE = Language(
     "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
@@ -129,3 +131,55 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
     with pytest.raises(RecognitionError, match=r"no gesture 'spiral'.*circle, wedge"):
         explain(situation(recording(circle), RECOGNIZERS["full"]), "spiral")
+
+
+def test_who_was_rejected_is_told_by_how_much() -> None:
+    zigzag = corners((-1.2, -0.4), (-0.3, -0.3), (-1.2, -0.2), (-0.3, -0.1), (-1.2, 0.0))
+    examined = situation(recording(zigzag), RECOGNIZERS["full"])
+    assert examined.result.label is None
+    nearest = examined.result.nearest
+    explanation = explain(examined, nearest, with_counterfactuals=False)
+    assert (explanation.label, explanation.other != nearest) == (None, True)
+    assert explanation.novelty > 1.0
+    assert f"{explanation.novelty:.1f} times as far as its thresholds allow" in explanation.sentence
+    limits = {verdict.voter: verdict.limit for verdict in explanation.verdicts}
+    assert limits["path"] == LANGUAGE.calibrated().gesture(nearest).thresholds["path"]
+    assert limits["hu"] is None
+
+
+def test_a_recording_too_poor_to_judge_is_told_so() -> None:
+    query = recording(circle)
+    xy = query.xy.copy()
+    xy[10:50, query.landmarks.index("right_wrist")] = np.nan
+    poor = PoseSequence(
+        landmarks=query.landmarks, xy=xy, time=query.time, frame_size=query.frame_size
+    )
+    explanation = explain(situation(poor, RECOGNIZERS["full"]), "circle")
+    assert explanation.label is None
+    assert explanation.fault is not None
+    assert explanation.fault in explanation.sentence
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
+    mistaken = exchanged(recording(wedge), [slice(20, 26), slice(34, 40)])
+    unrepaired = Recognizer(LANGUAGE, profile, tuning=Tuning(keypoints_repaired=False))
+    explanation = explain(situation(mistaken, unrepaired), "wedge")
+    assert not explanation.right
+    cause = explanation.differences[0]
+    assert (cause.kind, cause.words in explanation.sentence) == ("exchanged_sides", True)
+    first = explanation.counterfactuals.found[0]
+    assert explanation.sentence.endswith(
+        f"It would have been read as 'wedge' {first.change.words}."
+    )
+    loudest = explanation.verdicts[0].voter
+    assert loudest in explanation.sentence
+
+
+def test_votes_without_weight_are_not_counted() -> None:
+    tuning = Tuning(weights={"hu": 0.0, "zernike": 0.0})
+    silent = Recognizer(LANGUAGE, "paper", tuning=tuning)
+    explanation = explain(situation(recording(circle, jitter=0.01), silent), "circle")
+    assert sum(explanation.votes.values()) == 5
+    assert "of five voters" in explanation.sentence
+    assert not any(each.wrong for each in explanation.verdicts if each.voter in tuning.weights)

@@ -1,0 +1,29 @@
+"""An examination: a recognition together with what led to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.recognition.comparison import Comparison
+from app.recognition.recognition_result import Recognition
+from app.recognition.trajectory import Trajectory
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Examination:
+    """What a recogniser saw, compared and decided.
+
+    Attributes
+    ----------
+    query
+        The recording as the voters see it.
+    comparison
+        It, beside every gesture.
+    result
+        The answer.
+
+    """
+
+    query: Trajectory
+    comparison: Comparison
+    result: Recognition
