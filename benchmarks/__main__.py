@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks import extraction, memory, recognition, speed
+from benchmarks import explanation, extraction, memory, recognition, speed
 
 PARTS = {
     "extraction": extraction.main,
     "recognition": recognition.main,
     "speed": speed.main,
     "memory": memory.main,
+    "explanation": explanation.main,
 }
 
 

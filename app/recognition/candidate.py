@@ -20,6 +20,7 @@ from app.recognition.change import (
     VoterWeight,
 )
 from app.recognition.gesture import Gesture
+from app.recognition.motion_references import CLEARLY_SLOWER
 from app.recognition.recognizer import PROFILES
 from app.recognition.repair import repaired
 from app.recognition.salience import salient_landmarks
@@ -157,7 +158,7 @@ def _gestures(situation: Situation, expected: str) -> Iterator[Series]:
             continue
         yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
         if situation.profile == "full":
-            yield from _switches(gesture, expected=label == expected)
+            yield from _switches(situation, label, expected=label == expected)
     yield [NewDemonstration(size=1.0, label=expected)]
 
 
@@ -176,16 +177,21 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
     ]
 
 
-def _switches(gesture: Gesture, *, expected: bool) -> Iterator[Series]:
-    """Let less count of the expected gesture, and more of the one it was taken for."""
+def _switches(situation: Situation, label: str, *, expected: bool) -> Iterator[Series]:
+    """Let less count of the expected gesture, and more of the one it was taken for.
+
+    Only where it can matter: which way round, from which side or how fast the other one was read.
+    """
+    comparison, at = situation.comparison, situation.language.labels.index(label)
+    reading = comparison.readings[at]
+    slower = comparison.distances[comparison.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
-    positions: dict[SwitchName, Switch] = {
-        "direction": strict,
-        "tempo": strict,
-        "mirror": "on" if expected else "off",
+    positions: dict[SwitchName, tuple[Switch, bool]] = {
+        "direction": (strict, reading is not None and reading.backward != expected),
+        "tempo": (strict, bool(slower)),
+        "mirror": ("on" if expected else "off", bool(comparison.mirrored[at]) != expected),
     }
-    for switch, position in positions.items():
-        if getattr(gesture.switches, switch) != position:
-            yield [
-                SwitchPosition(size=1 / 3, label=gesture.label, switch=switch, position=position)
-            ]
+    switches = situation.language.gesture(label).switches
+    for switch, (position, matters) in positions.items():
+        if matters and getattr(switches, switch) != position:
+            yield [SwitchPosition(size=1 / 3, label=label, switch=switch, position=position)]

@@ -1,0 +1,67 @@
+"""What an explanation costs, in recognitions by the same recogniser.
+
+Of each gesture of the larger sample language a plausible take by another person is explained as if
+the next gesture had been meant: nothing but large changes help, so nearly all are tried.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from statistics import median
+
+from app.recognition import Language, PoseSequence, Recognizer
+from app.recognition.explanation import explain
+from app.recognition.recognizer import PROFILES
+from app.recognition.situation import Situation
+from app.recognition.trajectory import Trajectory
+from app.recognition.variation import variants
+from app.resources import samples_dir
+
+TORSO_PIXELS = 120.0
+"""Any size: it is taken out again."""
+
+
+def main() -> None:
+    """Print the ratios for both profiles."""
+    language = Language.load(samples_dir() / "osg-table-2.json")
+    for profile in PROFILES:
+        recognizer = Recognizer(language, profile)
+        without, whole, tried = [], [], []
+        for index, gesture in enumerate(language.gestures):
+            assert gesture.trajectory is not None
+            poses = _filmed(variants(gesture.trajectory, 1, seed=index, person="another")[0])
+            meant = language.labels[(index + 1) % len(language.labels)]
+            anew = partial(Situation, recognizer=recognizer, poses=poses, whole=poses)
+            alone = min(_seconds(partial(recognizer.recognize, poses)) for _ in range(5))
+            short, full = (
+                partial(explain, anew(), meant, with_counterfactuals=c) for c in (False, True)
+            )
+            without.append(_seconds(short) / alone)
+            whole.append(_seconds(full) / alone)
+            tried.append(explain(anew(), meant).counterfactuals.tried)
+        print(
+            f"explanation, {profile}: {median(without):.1f} recognitions "
+            f"({min(without):.1f} to {max(without):.1f}); with {median(tried):.0f} changes tried "
+            f"{median(whole):.0f} ({min(whole):.0f} to {max(whole):.0f})"
+        )
+
+
+def _filmed(trajectory: Trajectory) -> PoseSequence:
+    return PoseSequence(
+        landmarks=trajectory.landmarks,
+        xy=trajectory.xy * TORSO_PIXELS + (320.0, 240.0),
+        time=trajectory.time,
+        frame_size=(640, 480),
+    )
+
+
+def _seconds(run: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    run()
+    return time.perf_counter() - start
+
+
+if __name__ == "__main__":
+    main()
