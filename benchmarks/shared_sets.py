@@ -4,7 +4,8 @@ Per draw, one template of each class comes from one person, and queries from the
 (UD, user-dependent) or from everyone else (UI, user-independent), through the public interface:
 `Gesture.from_demonstration` and `Recognizer.recognize`. Where a set does not tell its people apart,
 everything is in the first column, whoever it comes from. Draws are random with a fixed seed, the
-same for every method; the interval is Wilson's.
+same for every method; the interval is Wilson's. What profile ``full`` would refuse counts by its
+nearest gesture here; `reliability` measures what is refused.
 
     python -m benchmarks.shared_sets ../shared/data --methods paper dtw full
 """
@@ -66,7 +67,7 @@ def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer
 
     def answer(poses: PoseSequence) -> str | None:
         try:
-            return recognizer.recognize(poses).label
+            return recognizer.recognize(poses).nearest
         except PoseError:
             return None
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,13 @@ from app.recognition.motion_references import (
 )
 from app.recognition.poses import FloatArray
 from app.recognition.recognition_result import Recognition
-from app.recognition.rejection import is_rejected, novelty, thresholds_of
+from app.recognition.rejection import (
+    calibrated_confidence,
+    is_rejected,
+    novelty,
+    novelty_weights,
+    thresholds_of,
+)
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import AS_THE_PROFILE, Tuning
@@ -33,15 +39,6 @@ VOTERS = (
 )
 _SHAPES = len(PAPER_VOTERS)
 
-
-SCORE_FLOOR = 0.02
-"""Added to scores before their logarithm: the score of two takes by the same careful person."""
-
-CONFIDENCE_AT_ONE = -5.26
-CONFIDENCE_PER_SCORE = -2.83
-CONFIDENCE_PER_SHARE = -1.84
-"""Coefficients of `calibrated_confidence`, fitted on 6000 queries of five sets, each set and
-people's relation weighing the same."""
 
 TEMPO_SAY = 0.3
 """What a doubling of the duration adds to the score of a gesture whose tempo counts: more than the
@@ -146,9 +143,18 @@ class CalibratedVote:
         """The gestures as movements, in the readings that the language leaves open."""
         return self._motions
 
-    def compare(self, trajectory: Trajectory) -> Comparison:
-        """Compare a condensed query with every gesture, from its better side."""
-        distances, rows = self._compared(trajectory)
+    def with_thresholds(self, thresholds: FloatArray) -> CalibratedVote:
+        """Return the same vote with other thresholds ``(V, G)`` than the gestures have."""
+        other = copy(self)
+        other._thresholds = thresholds[:, self._owners]
+        return other
+
+    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> Comparison:
+        """Compare a condensed query with every gesture, from its better side.
+
+        `drawn`: also as a drawing, which takes most of the time and rarely decides.
+        """
+        distances, rows = self._compared(trajectory, drawn)
         shares = contributions(distances, self._say, self._between)
         readings = [self._motions.readings[row] if row >= 0 else None for row in rows]
         factors = np.array([reading.penalty if reading else 1.0 for reading in readings])
@@ -166,8 +172,11 @@ class CalibratedVote:
             turned=turned[chosen],
             readings=tuple(readings[side] for side in chosen),
             mirrored=chosen >= len(self._labels),
-            novelty=(factors * novelty(distances, self._thresholds, self._weights))[chosen],
+            novelty=(factors * self._novelty(distances))[chosen],
         )
+
+    def _novelty(self, distances: FloatArray) -> FloatArray:
+        return novelty(distances, self._thresholds, self._weights * novelty_weights(VOTERS))
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
@@ -191,7 +200,9 @@ class CalibratedVote:
             label=None if is_rejected(float(compared.novelty[winner])) else nearest,
             nearest=nearest,
             confidence=calibrated_confidence(
-                float(scores[winner]), float(np.delete(scores, winner).min(initial=np.inf))
+                float(compared.novelty[winner]),
+                float(scores[winner]),
+                float(np.delete(scores, winner).min(initial=np.inf)),
             ),
             profile="full",
             voters=VOTERS,
@@ -203,12 +214,19 @@ class CalibratedVote:
             novelty=compared.novelty,
         )
 
-    def _compared(self, trajectory: Trajectory) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+    def _compared(
+        self, trajectory: Trajectory, drawn: bool
+    ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
         """Return ``(V, sides)`` distances and ``(sides,)`` rows of the readings, -1: none."""
-        shape = self._shapes.distances(trajectory)
+        shape = np.full((_SHAPES, len(self._owners)), np.inf)
+        comparable: npt.NDArray[np.bool_] = np.ones(len(self._owners), dtype=bool)
+        if drawn:
+            shape = self._shapes.distances(trajectory)
+            comparable = np.asarray(np.isfinite(shape).any(axis=0))
+        elif not set(self.needed) & set(trajectory.landmarks):
+            comparable[:] = False
         motion = np.full((len(MOTION_VOTERS), len(self._owners)), np.inf)
         rows = np.full(len(self._owners), -1, dtype=np.intp)
-        comparable = np.isfinite(shape).any(axis=0)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
             measured = self._motions.distances(query)
@@ -223,25 +241,3 @@ class CalibratedVote:
         order = np.argsort(-scores, kind="stable")
         chosen[self._owners[order]] = order  # the best is written last and stays
         return chosen
-
-
-def calibrated_confidence(nearest: float, second: float) -> float:
-    """Estimate the probability that the nearest gesture is the one meant.
-
-    ``1 / (1 + exp(-(b0 + b1 ln s + b2 ln(s / t))))`` for the scores s of the nearest and t of the
-    second gesture, 0.02 added to each: a small score says that it is this gesture at all, a small
-    share that it is no other one. The coefficients are a logistic regression on other people's
-    recordings, half of them of gestures that the language did not have; the reliability table is
-    in `docs/results.md`.
-
-    Parameters
-    ----------
-    nearest, second
-        Scores as `fusion.fused` gives them; infinite where there is no second gesture, which then
-        counts as one at the typical distance 1.
-
-    """
-    here = math.log(nearest + SCORE_FLOOR)
-    there = math.log((second if math.isfinite(second) else 1.0) + SCORE_FLOOR)
-    odds = CONFIDENCE_AT_ONE + CONFIDENCE_PER_SCORE * here + CONFIDENCE_PER_SHARE * (here - there)
-    return 1.0 / (1.0 + math.exp(min(-odds, 700.0)))

@@ -86,6 +86,23 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
 made anew."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Rates:
+    """How often a gesture's thresholds are expected to err.
+
+    Attributes
+    ----------
+    miss
+        Share of other people's takes of the gesture that are refused.
+    false_alarm
+        Share of the movements that mean nothing (`foreign`) that are taken for the gesture.
+
+    """
+
+    miss: float
+    false_alarm: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Gesture:
     """A labelled gesture as it stands in a language.
@@ -107,6 +124,8 @@ class Gesture:
     thresholds
         Per voter's name the distance at which the gesture is rejected, the others being as far
         beyond theirs (`rejection`); empty until its language is calibrated.
+    rates
+        How often the thresholds are expected to err; None where that is not known.
     description
         What the gesture looks like or means, for people.
     command
@@ -127,6 +146,7 @@ class Gesture:
     trajectory: Trajectory | None = None
     descriptors: Mapping[str, FloatArray] = field(default_factory=dict)
     thresholds: Mapping[str, float] = field(default_factory=dict)
+    rates: Rates | None = None
     description: str = ""
     command: str | dict[str, Any] | None = None
     switches: Switches = AUTOMATIC

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gesture import Gesture, checked_command, checked_label
-from app.recognition.language_schema import GestureEntry, PathEntry, TrajectoryEntry
+from app.recognition.gesture import Gesture, Rates, checked_command, checked_label
+from app.recognition.language_schema import GestureEntry, PathEntry, RatesEntry, TrajectoryEntry
 from app.recognition.outline import BinaryImage
 from app.recognition.png import decode_png, encode_png
 from app.recognition.poses import FloatArray
@@ -23,7 +23,7 @@ from app.recognition.voters import PAPER_VOTERS
 
 def entry_of(gesture: Gesture) -> GestureEntry:
     """Return the file's entry of a gesture."""
-    trajectory = gesture.trajectory
+    trajectory, rates = gesture.trajectory, gesture.rates
     return GestureEntry(
         label=gesture.label,
         description=gesture.description,
@@ -33,6 +33,7 @@ def entry_of(gesture: Gesture) -> GestureEntry:
         image=base64.b64encode(encode_png(gesture.image)).decode("ascii"),
         descriptors={name: values.tolist() for name, values in gesture.descriptors.items()},
         thresholds=dict(gesture.thresholds),
+        rates=None if rates is None else RatesEntry(miss=rates.miss, false_alarm=rates.false_alarm),
         direction=gesture.switches.direction,
         tempo=gesture.switches.tempo,
         mirror=gesture.switches.mirror,
@@ -63,6 +64,7 @@ def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
     if len(set(entry.salient)) < len(entry.salient):
         raise LanguageError("a landmark occurs twice", pointer + "/salient")
     _check_words(entry, pointer)
+    rates = entry.rates
     return Gesture(
         label=entry.label,
         salient=tuple(entry.salient),
@@ -70,6 +72,7 @@ def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
         trajectory=trajectory,
         descriptors=_descriptors(entry, image, pointer + "/descriptors"),
         thresholds=entry.thresholds,
+        rates=None if rates is None else Rates(miss=rates.miss, false_alarm=rates.false_alarm),
         description=entry.description,
         command=entry.command,
         switches=Switches(direction=entry.direction, tempo=entry.tempo, mirror=entry.mirror),

@@ -74,6 +74,19 @@ class TrajectoryEntry(_Model):
     paths: Annotated[list[PathEntry], Field(min_length=1)]
 
 
+class RatesEntry(_Model):
+    """How often a gesture's thresholds are expected to err."""
+
+    miss: Annotated[
+        FiniteFloat,
+        Field(ge=0, le=1, description="Share of other people's takes that are refused."),
+    ]
+    false_alarm: Annotated[
+        FiniteFloat,
+        Field(ge=0, le=1, description="Share of movements that mean nothing that are accepted."),
+    ]
+
+
 class GestureEntry(_Model):
     """One gesture: its demonstration, and what the recogniser derived from it."""
 
@@ -109,6 +122,10 @@ class GestureEntry(_Model):
             "as far beyond theirs; empty until calibrated."
         ),
     ]
+    rates: Annotated[
+        RatesEntry | None,
+        Field(description="What to expect of the thresholds. Left out when not known."),
+    ] = None
     direction: Annotated[
         Switch,
         Field(

@@ -13,11 +13,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.calibrated_vote import SCORE_FLOOR
 from app.recognition.forecast import Forecast
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.recognizer import Recognizer
+from app.recognition.rejection import SCORE_FLOOR
 from app.recognition.variation import Person, variants
 
 WIDEST_MARGIN = 4.0

@@ -15,7 +15,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.calibrated_vote import VOTERS, calibrated_confidence
+from app.recognition.calibrated_vote import VOTERS
 from app.recognition.landmarks import other_side
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE
 from app.recognition.poses import FloatArray
@@ -326,16 +326,6 @@ def test_switches_are_kept_in_the_file_and_left_out_when_automatic() -> None:
 def test_a_switch_has_three_positions() -> None:
     with pytest.raises(GestureError, match="tempo must be auto, on or off, got 'fast'"):
         with_switches(circle, tempo="fast")
-
-
-def test_confidence_falls_with_the_score_and_with_a_second_gesture_near() -> None:
-    alone = [calibrated_confidence(score, np.inf) for score in (0.0, 0.1, 0.3, 1.0, 5.0)]
-    assert alone == sorted(alone, reverse=True)
-    assert alone[0] > 0.99
-    assert alone[-1] < 0.01
-    beside = [calibrated_confidence(0.1, second) for second in (0.1, 0.3, 1.0)]
-    assert beside == sorted(beside)
-    assert 0.0 <= calibrated_confidence(1e300, 1e300) < 1e-9
 
 
 def test_another_movement_is_not_believed(recognizer: Recognizer) -> None:

@@ -1,0 +1,60 @@
+"""Foreign movements: what a language's gestures must not be taken for, without recording any.
+
+Accidental movements (`accidental`), and splices: the first half of one gesture that goes on as the
+second half of another one, as a diver who changes his mind, or a robot that missed the start, would
+have it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.recognition.accidental import accidental_movements
+from app.recognition.gesture import Gesture
+from app.recognition.trajectory import Trajectory
+
+MOST_SPLICES = 16
+"""Splices made of a language, as many as there are kinds of accidental movements."""
+
+
+def foreign_movements(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
+    """Make movements that are no gesture of the language: accidental ones, then splices."""
+    accidental = tuple(movement.trajectory for movement in accidental_movements(1))
+    return accidental + splices([g.trajectory for g in gestures if g.trajectory is not None])
+
+
+def splices(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:
+    """Splice each demonstration with the next one, at most `MOST_SPLICES` of them."""
+    following = (*demonstrations[1:], *demonstrations[:1])
+    return tuple(
+        spliced(before, after)
+        for before, after in zip(demonstrations, following, strict=True)
+        if before is not after
+        and min(len(before), len(after)) > 1
+        and set(before.landmarks) & set(after.landmarks)
+    )[:MOST_SPLICES]
+
+
+def spliced(before: Trajectory, after: Trajectory) -> Trajectory:
+    """Go on from the middle of one movement as another one does from its own.
+
+    Parameters
+    ----------
+    before, after
+        Of at least two moments each, with landmarks in common, which are kept. The second half is
+        moved so that nothing jumps; a landmark not seen at the seam stays where it was.
+
+    """
+    common = [name for name in before.landmarks if name in after.landmarks]
+    head = before.select(common).between(0.0, before.time[-1] / 2)
+    tail = after.select(common)
+    tail = tail.between(tail.time[-1] / 2, tail.time[-1])
+    step = (before.time[-1] - before.time[0]) / (len(before) - 1)
+    return Trajectory(
+        landmarks=tuple(common),
+        xy=np.concatenate([head.xy, tail.xy + np.nan_to_num(head.xy[-1] - tail.xy[0])]),
+        time=np.concatenate([head.time, tail.time - tail.time[0] + head.time[-1] + step]),
+        unit=before.unit,
+    )
