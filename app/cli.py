@@ -137,7 +137,7 @@ def define(
             f"salient: {', '.join(gesture.salient)}"
         )
         gestures.append(gesture)
-    language = Language(name=name, gestures=gestures, author=author)
+    language = Language(name=name, gestures=gestures, author=author).calibrated()
     language.save(output)
     people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 

@@ -62,7 +62,7 @@ def main() -> None:
             author="OSG Studio, after Joshi and Sattar 2025",
             created=CREATED,
         )
-        language.save(FOLDER / f"{stem}.json")
+        language.calibrated().save(FOLDER / f"{stem}.json")
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ def editing(
     """Return what `LanguageStore.edit` wants: how a revision's document becomes the next one's."""
 
     def draft(head: LanguageRevision, number: int) -> Draft:
-        language = edited(Language.from_json(head.document))
+        language = edited(Language.from_json(head.document)).calibrated()
         return draft_of(replace(language, revision=number), change)
 
     return draft

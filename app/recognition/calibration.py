@@ -33,9 +33,9 @@ OWN = 0.75
 (`fusion.TYPICAL`), geometrically: twelve takes of one demonstration know more than the average
 over other gestures, but not all. From 0.7 to 1 the result is the same."""
 
-REACH = 4.0
+REACH = 5.0
 """Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded
-sets, 4 % of the takes lie beyond, of other people's 5 % (`docs/results.md`)."""
+sets, one in twenty of the takes lies beyond."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: where only one landmark is followed,
@@ -49,9 +49,9 @@ UNFORESEEN = 0.3
 """Scale by which real takes differ from variants beyond that, see `Forecast.of_margins`; the same
 as in the health report."""
 
-LEAST_SHARE = 0.75
-"""How far foreign movements pull a threshold in, at most. At three quarters, twice as many of
-other people's takes are refused."""
+LEAST_SHARE = 0.8
+"""How far foreign movements pull a threshold in, at most: below, another person's takes are refused
+more often than foreign movements are."""
 
 DIGITS = 4
 """Significant decimal digits kept of a threshold: far more than it is known to."""

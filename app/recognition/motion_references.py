@@ -80,8 +80,8 @@ class MotionReferences:
     descriptors: dict[str, FloatArray]
 
     @classmethod
-    def of(cls, gestures: Sequence[Gesture], *, only_as_shown: bool = False) -> MotionReferences:
-        """Describe all gestures that have a demonstration, in all thinkable readings or in one."""
+    def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
+        """Describe all gestures that have a demonstration, in all thinkable readings."""
         landmarks = followed_landmarks([gesture.salient for gesture in gestures])
         rows: list[tuple[int, Reading, Movement]] = []
         for index, gesture in enumerate(gestures):
@@ -94,7 +94,7 @@ class MotionReferences:
                 both_ways=gesture.switches.direction != "on",
                 either_side=gesture.switches.mirror == "auto" and on_both_sides(gesture.salient),
             )
-            if only_as_shown or len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+            if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
                 open_readings = open_readings[:1]
             rows += [(index, each, each.of(shown, landmarks)) for each in open_readings]
         return cls(

@@ -1,0 +1,85 @@
+"""Rejection: what is no gesture of the language gets no label."""
+
+import numpy as np
+import pytest
+
+from app.recognition import Gesture, Language, Recognizer
+from app.recognition.calibrated_vote import VOTERS
+from app.recognition.poses import FloatArray
+from app.recognition.rejection import (
+    NOVELTY_WEIGHTS,
+    calibrated_confidence,
+    is_rejected,
+    novelty,
+    novelty_weights,
+    thresholds_of,
+)
+from tests.recognition.strategies import SHAPES, circle, line, recording
+
+TAUGHT = ("circle", "wedge", "infinity", "square")
+
+
+@pytest.fixture(scope="module")
+def recognizer() -> Recognizer:
+    gestures = [Gesture.from_demonstration(name, recording(SHAPES[name])) for name in TAUGHT]
+    return Recognizer(Language("pool", gestures))
+
+
+def zigzag(share: FloatArray) -> FloatArray:
+    height = 0.4 * np.abs((6 * share) % 2 - 1)
+    return np.stack([-1.2 + share, height], axis=1)
+
+
+def test_a_foreign_movement_has_no_label_but_a_nearest_gesture(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(zigzag, jitter=0.01))
+    assert result.label is None
+    nearest = result.gestures.index(result.nearest)
+    assert result.scores[nearest] == result.scores.min()
+    assert result.novelty[nearest] > 1
+
+
+@pytest.mark.parametrize("name", TAUGHT)
+def test_another_take_is_far_from_being_rejected(recognizer: Recognizer, name: str) -> None:
+    poses = recording(SHAPES[name], frames=95, rate=25, torso=60, centre=(200, 300), jitter=0.01)
+    result = recognizer.recognize(poses)
+    assert result.label == name
+    assert result.novelty[result.gestures.index(name)] < 0.5
+
+
+def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
+    result = Recognizer(recognizer.language, "paper").recognize(recording(zigzag))
+    assert result.label == result.nearest
+    assert np.isnan(result.novelty).all()
+
+
+def test_novelty_is_the_weighted_root_mean_square_of_distances_over_thresholds() -> None:
+    distances = np.array([[2.0, 1.0, 1.0], [9.0, 3.0, np.inf], [4.0, np.inf, 1.0]])
+    thresholds = np.array([[1.0, 2.0, np.inf], [np.inf, 2.0, 1.0], [4.0, 1.0, np.inf]])
+    measured = novelty(distances, thresholds, np.array([1.0, 3.0, 2.0]))
+    np.testing.assert_allclose(measured, [np.sqrt((4 + 2) / 3), np.sqrt((0.25 + 6.75) / 4), np.nan])
+    assert [is_rejected(each) for each in measured] == [True, True, False]
+
+
+def test_a_voter_with_weight_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
+    thresholds = thresholds_of(recognizer.language.gestures, VOTERS)
+    assert np.isfinite(thresholds[novelty_weights(VOTERS) > 0]).all()
+    assert set(NOVELTY_WEIGHTS) <= set(VOTERS)
+
+
+def test_an_imported_gesture_is_not_rejected() -> None:
+    drawn = Gesture.from_demonstration("circle", recording(circle))
+    imported = Gesture(label="circle", salient=drawn.salient, image=drawn.image)
+    result = Recognizer(Language("one", [imported])).recognize(recording(line))
+    assert result.label == "circle"
+    assert np.isnan(result.novelty).all()
+    assert 0.0 <= result.confidence <= 1.0
+
+
+def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
+    alone = [calibrated_confidence(far, far, np.inf) for far in (0.0, 0.1, 0.3, 1.0, 5.0)]
+    assert alone == sorted(alone, reverse=True)
+    assert alone[0] > 0.99
+    assert alone[-1] < 0.01
+    beside = [calibrated_confidence(0.3, 0.1, second) for second in (0.1, 0.3, 1.0)]
+    assert beside == sorted(beside)
+    assert 0.0 <= calibrated_confidence(1e300, 1e300, 1e300) < 1e-9
