@@ -11,12 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Language, Recognizer
-from app.recognition.calibrated_vote import SCORE_FLOOR
 from app.recognition.errors import PoseError
 from app.recognition.forecast import Forecast
 from app.recognition.health_report import MOST_CONFUSION
 from app.recognition.poses import FloatArray
 from app.recognition.rehearsal import UNFORESEEN, rehearse
+from app.recognition.rejection import SCORE_FLOOR
 from app.recognition.variation import Person
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated

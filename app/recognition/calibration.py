@@ -45,7 +45,7 @@ OTHERS = 2.0
 """How much farther other people's takes lie than the demonstrator's own: variants by 1.9 to 2.1
 times, recorded takes by 1.9 to 2.6."""
 
-UNFORESEEN = 0.3
+UNFORESEEN = 0.2
 """Scale by which real takes differ from variants beyond that, see `Forecast.of_margins`; the same
 as in the health report."""
 

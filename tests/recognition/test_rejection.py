@@ -36,6 +36,7 @@ def test_a_foreign_movement_has_no_label_but_a_nearest_gesture(recognizer: Recog
     nearest = result.gestures.index(result.nearest)
     assert result.scores[nearest] == result.scores.min()
     assert result.novelty[nearest] > 1
+    assert result.confidence < 0.5 < recognizer.recognize(recording(circle)).confidence
 
 
 @pytest.mark.parametrize("name", TAUGHT)
