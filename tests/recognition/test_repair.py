@@ -121,4 +121,4 @@ def test_jumps_cost_profile_full_no_confidence() -> None:
     assert result.nearest == "circle"
     assert result.confidence == pytest.approx(clean.confidence, abs=0.05)
     left_as_it_is = Recognizer(language, "full", tuning=Tuning(keypoints_repaired=False))
-    assert left_as_it_is.recognize(bad).confidence < 0.5
+    assert left_as_it_is.recognize(bad).confidence < result.confidence - 0.2
