@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks import explanation, extraction, memory, recognition, speed
+from benchmarks import explanation, extraction, library, memory, recognition, speed
 
 PARTS = {
     "extraction": extraction.main,
@@ -12,6 +12,7 @@ PARTS = {
     "speed": speed.main,
     "memory": memory.main,
     "explanation": explanation.main,
+    "library": library.main,
 }
 
 

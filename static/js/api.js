@@ -47,6 +47,7 @@ export const clips = {
   list: () => request("GET", "/clips"),
   timeline: (clip) => request("GET", `/clips/${id(clip)}/timeline`),
   filmstrip: (clip) => `${BASE}/clips/${id(clip)}/filmstrip`,
+  get: (clip) => request("GET", `/clips/${id(clip)}`),
   takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),

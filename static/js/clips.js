@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { duration, plural, timeLeft } from "./format.js";
+import { refresh } from "./refresh.js";
 import { state, update } from "./state.js";
 import { attempt } from "./toasts.js";
 import { did, tellDone } from "./undo.js";
@@ -15,6 +16,14 @@ export async function reloadClips() {
   if (clips) update({ clips });
 }
 
+/** Load one clip that changed. */
+export const reloadClip = (id) => refresh(id, {
+  load: api.clips.get,
+  current: () => state.clips,
+  order: (one, other) => other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
+  take: (clips) => update({ clips }),
+});
+
 /** Show another clip. */
 export function select(id) {
   update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
@@ -24,7 +33,7 @@ export function select(id) {
 export function followJob(job) {
   update({ jobs: new Map(state.jobs).set(job.id, job) });
   const clip = state.clips.find((each) => each.job_id === job.id);
-  if (!clip || clip.status !== job.status) reloadClips();
+  if (!clip || clip.status !== job.status) reloadClip(job.clip_id);
 }
 
 /** Say in words how far a clip is. */

@@ -4,6 +4,7 @@ import * as api from "./api.js";
 import { ask } from "./dialogs.js";
 import { byId, h } from "./dom.js";
 import { plural } from "./format.js";
+import { refresh } from "./refresh.js";
 import { state, update } from "./state.js";
 import { attempt } from "./toasts.js";
 import { did, tellDone } from "./undo.js";
@@ -17,6 +18,19 @@ export async function reloadLanguages() {
   update({ languages, language: wanted ?? richest(languages)?.id ?? null });
   await reloadLanguage();
 }
+
+/** Load one language that changed. */
+export const reloadOneLanguage = (id) => refresh(id, {
+  load: api.languages.get,
+  current: () => state.languages,
+  order: (one, other) => one.created.localeCompare(other.created) || one.id.localeCompare(other.id),
+  take: (languages, language) => {
+    update({ languages });
+    if (id !== state.language) return;
+    if (language) update({ gestures: language });
+    else reloadLanguages();
+  },
+});
 
 /** The language with most gestures: on a first visit it knows what every sample clip shows. */
 function richest(languages) {

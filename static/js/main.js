@@ -1,10 +1,10 @@
 // Start: load what there is, follow what changes, and keep every part of the page in step.
 
 import * as api from "./api.js";
-import { drawClips, drawSamples, followJob, reloadClips } from "./clips.js";
+import { drawClips, drawSamples, followJob, reloadClip, reloadClips } from "./clips.js";
 import { byId, icon } from "./dom.js";
 import { drawGestures } from "./gestures.js";
-import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
+import { drawExport, drawPicker, manageLanguages, reloadLanguages, reloadOneLanguage } from "./languages.js";
 import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
 import { listenToKeys, showKeys } from "./keys.js";
 import { rememberFrame } from "./playback.js";
@@ -37,8 +37,8 @@ function followServer() {
     lost = true;
     update({ connected: false });
   };
-  stream.addEventListener("clips", reloadClips);
-  stream.addEventListener("languages", reloadLanguages);
+  stream.addEventListener("clips", (event) => reloadClip(data(event).id));
+  stream.addEventListener("languages", (event) => reloadOneLanguage(data(event).id));
   stream.addEventListener("jobs", (event) => {
     const job = data(event);
     if (job.id) followJob(job);

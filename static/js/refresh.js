@@ -1,0 +1,36 @@
+// One member of a list loaded anew when the server says that it changed: a long list is not.
+
+import { attempt } from "./toasts.js";
+
+const newest = new Map(); // per id the request that was sent last
+
+/**
+ * Load a member by `load(id)`. Resolves to `{ member }`, null in it where it is gone, or to null
+ * where the answer came too late: a newer one is on its way.
+ */
+async function loaded(id, load) {
+  const request = Symbol(id);
+  newest.set(id, request);
+  const answer = await attempt("Loading what changed", async () => {
+    try {
+      return { member: await load(id) };
+    } catch (error) {
+      if (error.status === 404) return { member: null };
+      throw error;
+    }
+  });
+  if (newest.get(id) !== request) return null;
+  newest.delete(id);
+  return answer;
+}
+
+/**
+ * Refresh a member of a list. `current()` returns the list and `order(one, other)` sorts it;
+ * `take(list, member)` gets the new one.
+ */
+export async function refresh(id, { load, current, order, take }) {
+  const answer = await loaded(id, load);
+  if (!answer) return;
+  const others = current().filter((each) => each.id !== id);
+  take(answer.member ? [...others, answer.member].sort(order) : others, answer.member);
+}
