@@ -20,18 +20,18 @@ import { drawWelcome } from "./welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./why.js";
 import { followTheme, openWorkspace, restart } from "./workspace.js";
 
-/** Hear of every change on the server; after a break, load everything again. */
+/** Hear of every change on the server; when that begins, also after a break, load what was missed. */
 function followServer() {
   const stream = api.changes();
   let lost = false;
   const data = (event) => { try { return JSON.parse(event.data); } catch { return {}; } };
   stream.onopen = () => {
     update({ connected: true });
-    if (!lost) return;
-    lost = false;
+    // What changed since everything was loaded was not heard of; nothing is sent twice.
     reloadClips();
     reloadLanguages();
-    restart();
+    if (lost) restart();
+    lost = false;
   };
   stream.onerror = () => {
     lost = true;

@@ -15,9 +15,6 @@ from tests.browser.library import Library, library_of
 
 pytestmark = pytest.mark.slow
 
-WITHIN_A_SECOND_MS = 1000
-
-
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
     with httpx.Client(base_url=server.address, timeout=60) as client:
@@ -138,12 +135,11 @@ def test_going_back_to_a_revision_can_itself_be_taken_back(
     expect(page.get_by_text("1 added")).to_be_visible()
 
 
-def test_a_second_tab_sees_a_change_within_a_second(open_page: OpenPage, library: Library) -> None:
+def test_a_second_tab_sees_a_change_by_itself(open_page: OpenPage, library: Library) -> None:
     watching = open_page(library.address, scene=False)
     expect(watching.get_by_role("img", name="Trajectory of line")).to_be_visible()
     library.client.delete(f"/api/v1/languages/{library.language}/gestures/line")
-    gone = watching.get_by_role("img", name="Trajectory of line")
-    expect(gone).to_have_count(0, timeout=WITHIN_A_SECOND_MS)
+    expect(watching.get_by_role("img", name="Trajectory of line")).to_have_count(0)
 
 
 @pytest.fixture
@@ -259,12 +255,14 @@ def test_pictures_of_the_library(
     place = f"/api/v1/languages/{library.language}"
     library.client.patch(place, json={"name": "Reef survey", "author": "Ada"})
     library.client.delete(f"{place}/gestures/line")
+    change = {"label": "surface", "command": "come up"}
+    library.client.patch(f"{place}/gestures/circle", json=change)
     page = open_page({"view": "languages"}, scene=False)
-    expect(card(page, "Reef survey").get_by_role("img")).to_have_count(1)
+    expect(card(page, "Reef survey").get_by_text("Health")).to_be_visible()
     picture(page, "library")
-    compared = {"language": library.language, "older": "2", "newer": "5"}
+    compared = {"language": library.language, "older": "3", "newer": "6"}
     page = open_page({"view": "languages", "panel": "history", **compared}, scene=False)
-    expect(page.get_by_text("name was")).to_be_visible()
+    expect(page.get_by_text("label was")).to_be_visible()
     picture(page, "history")
 
 

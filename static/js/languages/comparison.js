@@ -32,7 +32,7 @@ export function drawComparison(box, { older, newer, words, gestures }) {
   box.replaceChildren(
     h("p", { className: "comparison-told" }, told ? `Gestures: ${told}.` : "The gestures are the same."),
     words.length ? h("ul", { className: "comparison-words" }, words.map((word) => h("li", {}, word))) : "",
-    h("div", { className: "comparison-heads", "aria-hidden": "true" }, h("span", {}, heading(older)), h("span", {}, heading(newer))),
-    h("ul", { className: "compared-list", "aria-label": "What changed" }, changed.map(row)),
+    changed.length ? h("div", { className: "comparison-heads", "aria-hidden": "true" }, h("span", {}, heading(older)), h("span", {}, heading(newer))) : "",
+    changed.length ? h("ul", { className: "compared-list", "aria-label": "What changed" }, changed.map(row)) : "",
     same.length ? h("details", { className: "unchanged" }, h("summary", {}, `${plural(same.length, "gesture")} unchanged`), h("ul", { className: "compared-list" }, same.map(row))) : "");
 }

@@ -18,8 +18,8 @@ function write(line, report) {
   line.hidden = false;
   line.className = `health ${report.ok ? "well" : "unwell"}`;
   const below = warnings.filter((warning) => warning.below_bar);
-  const told = below.length ? plural(below.length, "warning") : warnings.length ? plural(warnings.length, "remark") : "ready for the robot";
-  line.textContent = [`Health: ${told}`, below[0]?.message].filter(Boolean).join(". ");
+  if (below.length) line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
+  else line.textContent = warnings.length ? `Healthy, with ${plural(warnings.length, "remark")}` : "Healthy";
   line.title = warnings.map((warning) => warning.message).join("\n");
 }
 
@@ -40,10 +40,11 @@ async function next() {
 
 const seen = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
-    if (!isIntersecting) continue;
-    seen.unobserve(target);
     const line = target.querySelector(".health");
-    if (line) waiting.push({ language: target.language, line });
+    const at = waiting.findIndex((each) => each.card === target);
+    // Whoever scrolls past a hundred cards does not ask for a hundred reports.
+    if (at >= 0) waiting.splice(at, 1);
+    if (isIntersecting && line) waiting.push({ card: target, language: target.language, line });
   }
   if (!asking) next();
 });
@@ -52,8 +53,9 @@ const seen = new IntersectionObserver((entries) => {
 export function showHealth(card, language) {
   const line = card.querySelector(".health");
   line.hidden = true;
-  if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
-  card.language = language;
   seen.unobserve(card);
+  if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
+  if (!language.labels.length) return undefined;
+  card.language = language;
   return seen.observe(card);
 }
