@@ -15,6 +15,7 @@ from tests.browser.library import Library, library_of
 
 pytestmark = pytest.mark.slow
 
+
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
     with httpx.Client(base_url=server.address, timeout=60) as client:
