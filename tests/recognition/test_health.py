@@ -16,9 +16,12 @@ HEALTHY = pool(circle=circle, line=line)
 CONFUSED = pool(circle=circle, ring=circle, line=line)
 
 
-def test_a_language_of_distinct_figures_is_ready() -> None:
+CONFUSIONS = {"confused", "duplicate"}
+
+
+def test_distinct_figures_are_not_confused() -> None:
     report = check_health(HEALTHY, takes=6, person="same")
-    assert report.ok
+    assert not CONFUSIONS & {finding.code for finding in report.findings}
     assert [gesture.label for gesture in report.gestures] == ["circle", "line"]
     assert len(report.pairs) == 1
     assert report.places.shape == (2, 2)
@@ -40,10 +43,11 @@ def test_two_gestures_that_are_the_same_are_found_with_a_remedy(confused: Health
     assert report.pairs[0].gestures == ("circle", "ring")
 
 
-def test_a_remedy_that_is_followed_makes_the_language_ready() -> None:
+def test_a_remedy_that_is_followed_ends_the_confusion() -> None:
     circle_shown, ring, line_shown = CONFUSED.gestures
     mended = replace(CONFUSED, gestures=[circle_shown, ring.mirrored(), line_shown])
-    assert check_health(mended, takes=6, person="same").ok
+    report = check_health(mended, takes=6, person="same")
+    assert not CONFUSIONS & {finding.code for finding in report.findings}
 
 
 def test_the_same_file_gives_the_same_report(confused: HealthReport) -> None:
