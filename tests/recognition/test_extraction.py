@@ -1,16 +1,19 @@
 """From a clip to a recording: every frame counted, nothing invented, cancelled at once."""
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from app.recognition.errors import VideoError
 from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
+from app.recognition.estimation.water import WaterCorrection
 from app.recognition.extraction import extract_poses, record
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.takes import takes_in
 from app.recognition.video import VideoFrame
+from languages.render.encode import encode
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.recognition.parametric_hand import hand_xy, salute
 
@@ -55,6 +58,28 @@ class ScriptedEstimator:
         self.closed = True
 
 
+class SeeingEstimator(ScriptedEstimator):
+    """Notes the range of grey levels of every image it is shown."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.ranges: list[float] = []
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        self.ranges.append(float(np.ptp(image)))
+        return super().estimate(image, time)
+
+
+@pytest.fixture
+def murky_clip(tmp_path: Path) -> Path:
+    """Return a clip of a slope from one grey to another a little lighter one."""
+    slope = np.linspace(90, 120, WIDTH).astype(np.uint8)
+    image = np.tile(slope[None, :, None], (HEIGHT, 1, 3))
+    file = tmp_path / "murky.mp4"
+    file.write_bytes(encode([image] * 3, rate=25, rate_factor=18))
+    return file
+
+
 @pytest.fixture
 def clip(tmp_path: Path) -> Path:
     return write_clip(tmp_path / "clip.mp4", frames=20)
@@ -70,6 +95,17 @@ def test_every_frame_is_recorded_with_its_time(clip: Path) -> None:
     assert (recording.salute > 0.5).all()
     assert recording.warnings == ()
     assert not estimator.closed
+
+
+def test_murky_frames_are_corrected_before_anything_is_looked_for(murky_clip: Path) -> None:
+    ranges = {}
+    for water in get_args(WaterCorrection):
+        estimator = SeeingEstimator()
+        record(murky_clip, estimator=estimator, water=water)
+        ranges[water] = max(estimator.ranges)
+    assert ranges["off"] < 50
+    assert ranges["on"] > 200
+    assert ranges["auto"] == ranges["on"]
 
 
 def test_the_larger_hand_comes_first(clip: Path) -> None:
