@@ -7,6 +7,7 @@ from typing import Annotated
 from urllib.parse import quote
 
 from fastapi import APIRouter, Query, Request, Response
+from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.language_drafts import draft_of
@@ -15,7 +16,9 @@ from app.api.problems import documented
 from app.api.schemas import LanguageView, Name
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
+from app.recognition.language_schema import FORMAT, VERSION
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.requirements import requirements_of
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -76,6 +79,60 @@ def export_language(
         "ETag": tag_of(state),
     }
     return Response(document, media_type="application/json", headers=headers)
+
+
+class ExportedFile(BaseModel):
+    """One of the files a language can leave as."""
+
+    format: FileFormat
+    bytes: int
+    complete: bool = Field(description="Whether importing it again gives the same language")
+
+
+class ExportView(BaseModel):
+    """What leaves with a language, and what it takes to use it."""
+
+    name: str
+    revision: int
+    schema_format: str
+    schema_version: int
+    files: list[ExportedFile]
+    salient: list[str] = Field(description="Landmarks without which gestures are not recognised")
+    limbs: list[str] = Field(description="Landmarks that make recognition surer")
+    torso: list[str] = Field(description="Landmarks that distance and drift are taken out by")
+    models: list[str]
+    without_command: list[str] = Field(description="Gestures that tell a robot nothing to do")
+
+
+@router.get("/{language_id}/export/contents", responses=documented(404))
+def describe_export(
+    language_id: str, studio: CurrentStudio, revision: Revision = None
+) -> ExportView:
+    """Tell what the export holds, before it is taken to the robot."""
+    state = studio.languages.get(language_id, revision)
+    language = studio.language(state)
+    needed = requirements_of(language)
+    documents = {
+        FileFormat.OSG_STUDIO: state.revision.document,
+        FileFormat.OSG_REFERENCE: to_reference(language),
+    }
+    return ExportView(
+        name=language.name,
+        revision=state.revision.revision,
+        schema_format=FORMAT,
+        schema_version=VERSION,
+        files=[
+            ExportedFile(
+                format=file, bytes=len(text.encode()), complete=file is FileFormat.OSG_STUDIO
+            )
+            for file, text in documents.items()
+        ],
+        salient=list(needed.salient),
+        limbs=list(needed.limbs),
+        torso=list(needed.torso),
+        models=list(needed.models),
+        without_command=[gesture.label for gesture in language.gestures if not gesture.command],
+    )
 
 
 def _imported(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:

@@ -85,6 +85,7 @@ export const languages = {
   addGesture: (language, gesture) => request("POST", `/languages/${id(language.id)}/gestures`, { body: gesture, headers: matching(language) }),
   changeGesture: (language, label, change) => request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
   removeGesture: (language, label) => request("DELETE", gestureAt(language, label), { headers: matching(language) }),
+  exportContents: (language) => request("GET", `/languages/${id(language)}/export/contents`),
   exportUrl: (language, format) => `${BASE}/languages/${id(language)}/export?format=${format}`,
 };
 

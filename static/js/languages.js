@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { ask } from "./dialogs.js";
 import { byId, h } from "./dom.js";
+import { openExport } from "./export/dialog.js";
 import { plural } from "./format.js";
 import { refresh } from "./refresh.js";
 import { state, update } from "./state.js";
@@ -91,31 +92,12 @@ export function drawPicker({ languages, language }) {
 }
 
 export function drawExport({ gestures }) {
-  const menu = byId("export-menu");
-  const nothing = !gestures?.gestures.length;
-  if (nothing) {
-    menu.replaceChildren(h("p", { className: "dim" }, "The language has no gestures yet. Save one from a take first."));
-    return;
-  }
-  const entry = (format, title, text) =>
-    h("a", { href: api.languages.exportUrl(gestures.id, format), download: "", onclick: () => { byId("export").open = false; } }, h("b", {}, title), h("span", {}, text));
-  menu.replaceChildren(
-    h("p", { className: "dim" }, `${gestures.name}, revision ${gestures.revision}, ${plural(gestures.gestures.length, "gesture")}`),
-    entry("osg-studio", "OSG Studio language", "For osg-studio on a robot; can be imported again unchanged."),
-    entry("osg-reference", "Published OSG format", "For the ROS node of the paper: images and keypoints only."),
-    h("p", { className: "dim" }, "On the robot:"),
-    h("code", {}, "osg-studio robot --language FILE.json --source 0"));
+  byId("export").disabled = !gestures?.gestures.length;
 }
 
 /** Wire what the header offers. */
 export function manageLanguages() {
   byId("language").onchange = (event) => choose(event.target.value);
   byId("new-language").onclick = newLanguage;
-  const menu = byId("export");
-  addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || !menu.open) return;
-    menu.open = false;
-    menu.querySelector("summary").focus();
-  });
+  byId("export").onclick = openExport;
 }

@@ -2,7 +2,7 @@
 
 import httpx
 
-from tests.api.languages import LANGUAGES
+from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.running import assert_problem
 
 
@@ -89,3 +89,20 @@ def test_a_list_is_sent_again_only_when_something_changed(
     assert changed.status_code == 200
     assert [listed["name"] for listed in changed.json()] == ["sea"]
     assert changed.json()[0]["change"] == "Rename to sea"
+
+
+def test_an_export_is_described_before_it_is_taken_away(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip)
+    contents = client.get(f"{LANGUAGES}/{language_id}/export/contents").json()
+    assert (contents["schema_format"], contents["schema_version"]) == (
+        "osg-studio/gesture-language",
+        1,
+    )
+    assert contents["salient"] == ["right_wrist"]
+    assert contents["without_command"] == ["circle"]
+    for file in contents["files"]:
+        sent = client.get(f"{LANGUAGES}/{language_id}/export", params={"format": file["format"]})
+        assert len(sent.content) == file["bytes"]
+    assert [file["complete"] for file in contents["files"]] == [True, False]

@@ -121,9 +121,14 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(lab.get_by_role("img", name="Vulcan salute, confidence")).to_be_visible()
 
     # The language leaves as the file that a robot loads.
-    page.get_by_text("Export", exact=True).click()
+    page.get_by_role("button", name="Export").click()
+    dialog = page.get_by_role("dialog", name="Export")
+    expect(dialog.get_by_role("radio", name="OSG Studio language")).to_be_checked()
+    expect(dialog.get_by_text("left wrist, right wrist")).to_be_visible()
+    expect(dialog.locator("#export-command")).to_contain_text("--language Table-2-eight-signs.json")
+    picture(page, "export")
     with page.expect_download() as download:
-        page.get_by_role("link", name="OSG Studio language").click()
+        dialog.get_by_role("link", name="Download").click()
     exported = tmp_path / "exported.json"
     download.value.save_as(exported)
     language = Language.load(exported)

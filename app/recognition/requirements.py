@@ -1,0 +1,51 @@
+"""What a robot needs to understand a language: landmarks to follow, and models to find them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import get_args
+
+from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.language import Language
+from app.recognition.models import ModelName
+from app.recognition.movement import followed_landmarks, limbs_of
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What recognising a language takes.
+
+    Attributes
+    ----------
+    salient
+        Landmarks that carry a gesture, in alphabetical order: without one of them the gestures
+        that follow it are never recognised.
+    limbs
+        Landmarks that make recognition surer where they are seen: the arms those belong to.
+    torso
+        Landmarks that distance and drift are taken out by; without them the recording's own
+        extent is the unit.
+    models
+        Names of the models that find them, see ``osg-studio models``.
+
+    """
+
+    salient: tuple[str, ...]
+    limbs: tuple[str, ...]
+    torso: tuple[str, ...]
+    models: tuple[str, ...]
+
+
+def requirements_of(language: Language) -> Requirements:
+    """Tell what recognising a language takes."""
+    salient = followed_landmarks([gesture.salient for gesture in language.gestures])
+    known = {
+        name
+        for gesture in language.gestures
+        if gesture.trajectory is not None
+        for name in gesture.trajectory.landmarks
+    }
+    torso = (*SHOULDERS, *HIPS)
+    ends = {end for limb in limbs_of(salient) for end in limb}
+    limbs = tuple(sorted((ends & known) - {*salient, *torso}))
+    return Requirements(salient, limbs, torso, get_args(ModelName))

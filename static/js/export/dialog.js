@@ -1,0 +1,83 @@
+// The language as a file for the robot: what it holds, what it needs, and how it is used there.
+
+import * as api from "../api.js";
+import { byId, h } from "../dom.js";
+import { bytes, plural } from "../format.js";
+import { state } from "../state.js";
+import { attempt, toast } from "../toasts.js";
+
+const FORMATS = {
+  "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio recognize dive.mp4 --language ${file}` },
+  "osg-reference": { title: "Published OSG format", text: "For the published ROS node: images and salient keypoints only. Movement, thresholds and commands are left out.", command: (file) => `osg-studio convert ${file} language.json` },
+};
+
+const readable = (names) => names.map((name) => name.replaceAll("_", " ")).join(", ");
+
+/** A name that a shell takes without quotes. */
+const fileName = (name) => `${name.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}.json`;
+
+function choice({ format, bytes: size }, chosen, onchange) {
+  const { title, text } = FORMATS[format];
+  return h("label", { className: "export-choice" },
+    h("input", { type: "radio", name: "format", value: format, checked: chosen, onchange }),
+    h("span", {}, h("b", {}, title), h("span", { className: "dim" }, text)),
+    h("small", { className: "dim num" }, bytes(size)));
+}
+
+const row = (term, value, note) => (value.length ? [h("dt", {}, term), h("dd", {}, value, note ? h("small", { className: "dim" }, note) : null)] : []);
+
+function facts(contents) {
+  return h("dl", { className: "export-facts" },
+    row("Landmarks", readable(contents.salient), "must be seen, or the gesture is not recognised"),
+    row("Better with", readable(contents.limbs)),
+    row("Torso", readable(contents.torso), "takes out distance and drift"),
+    row("Models", contents.models.join(", "), "osg-studio models export DIR copies them for a robot without a network"),
+    row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
+    row("Without command", contents.without_command.join(", "), "the robot is told the label only"));
+}
+
+function commandLine(text) {
+  const copy = h("button", { type: "button", onclick: async () => {
+    try {
+      await navigator.clipboard.writeText(text());
+      toast("Command copied", text());
+    } catch {
+      toast("Could not copy", "The browser does not let this page use the clipboard; select the command and copy it.", { kind: "error" });
+    }
+  } }, "Copy");
+  return { copy, code: h("code", { id: "export-command" }, text()) };
+}
+
+/** Show what leaves with the language on display. */
+export async function openExport() {
+  const language = state.gestures;
+  if (!language?.gestures.length) {
+    toast("Nothing to export", "The language has no gestures yet. Save one from a take first.", { kind: "error" });
+    return;
+  }
+  const contents = await attempt("Looking at the export", () => api.languages.exportContents(language.id));
+  if (!contents) return;
+  const dialog = byId("dialog");
+  let format = contents.files[0].format;
+  const name = fileName(contents.name);
+  const command = () => FORMATS[format].command(name);
+  const { copy, code } = commandLine(command);
+  const download = h("a", { className: "button primary", download: name }, "Download");
+  const show = () => {
+    download.href = api.languages.exportUrl(language.id, format);
+    code.textContent = command();
+  };
+  const choose = (event) => { format = event.target.value; show(); };
+  show();
+  download.onclick = () => dialog.close();
+  dialog.replaceChildren(h("div", { className: "export-dialog" },
+    h("h2", { id: "dialog-title" }, "Export"),
+    h("p", { className: "dim" }, `${contents.name}, revision ${contents.revision}, ${plural(language.gestures.length, "gesture")}`),
+    h("div", { role: "radiogroup", "aria-label": "Format", className: "export-choices" }, contents.files.map((file, index) => choice(file, index === 0, choose))),
+    facts(contents),
+    h("div", { className: "export-command" }, code, copy),
+    h("div", { className: "dialog-actions" }, h("button", { type: "button", onclick: () => dialog.close() }, "Close"), download)));
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+}
