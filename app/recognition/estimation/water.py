@@ -31,8 +31,8 @@ LEAST_RANGE: Final = 8.0
 
 MURKY_RANGE: Final = 64.0
 """Grey levels between the `TAIL` darkest and lightest pixels below which ``"auto"`` corrects. A
-quarter of what there is: our frames of clear water have 75 to 190, mixed with 50 % of murk they have
-40 to 85, with 75 % 30 to 50. Above it the models do nearly as well on the frame as it is."""
+quarter of what there is: our frames of clear water have 75 to 190, mixed with 50 % of murk 40 to
+85, with 75 % 30 to 50. Above it the models do nearly as well on the frame as it is."""
 
 LUMA: Final = np.array([0.299, 0.587, 0.114])
 """Weights of red, green and blue in brightness (ITU-R BT.601)."""
