@@ -22,6 +22,7 @@ from app import __version__, resources
 from app.api import (
     checks,
     clips,
+    contrasts,
     events,
     gestures,
     health,
@@ -100,6 +101,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         language_files.router,
         revisions.router,
         checks.router,
+        contrasts.router,
         gestures.router,
         recognitions.router,
         sample_clips.router,

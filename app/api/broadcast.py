@@ -20,7 +20,8 @@ class News:
     Attributes
     ----------
     kind
-        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed.
+        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks``: how far
+        one is.
     data
         JSON types; at least ``id``.
 

@@ -1,21 +1,26 @@
-"""Checks: the health report of a language, computed once a revision."""
+"""Checks: the health report of a language, computed once a revision, with progress and cancel."""
 
 from __future__ import annotations
 
 from functools import lru_cache
-from threading import Lock
+from threading import Event, Lock
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Query, Response
+from fastapi import APIRouter, Header, Response
 
 from app import __version__
-from app.api.problems import documented
+from app.api.languages import Revision
+from app.api.problems import ProblemError, documented
 from app.api.studio import CurrentStudio
 from app.recognition import Language
-from app.recognition.health import check_health
+from app.recognition.health import Progress, check_health
 
 CACHED_REPORTS = 64
 """Reports kept ready: one of twenty gestures is about a hundred kilobytes of Python objects."""
+
+TOLD_EVERY = 8
+"""Pieces of work, each a take or a movement of some ten milliseconds, between two words about the
+progress: ten a second are as smooth as a bar need be."""
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -23,7 +28,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 @router.get(
     "/{language_id}/check",
     responses={
-        **documented(404),
+        **documented(404, 409),
         200: {"description": "The health report"},
         304: {"description": "The report that the caller has is still the newest"},
     },
@@ -32,14 +37,15 @@ def check_language(
     language_id: str,
     studio: CurrentStudio,
     response: Response,
-    revision: Annotated[int | None, Query(ge=0, le=2**31 - 1)] = None,
+    revision: Revision = None,
     if_none_match: Annotated[
         str | None, Header(description="The ETag of a report that the caller has")
     ] = None,
 ) -> Any:
     """Predict what will be confused, missed or set off by accident, and what would help.
 
-    The first call for a revision takes seconds, further ones none.
+    The first call for a revision takes seconds, further ones none. How far it is comes as `checks`
+    among the events; `DELETE` cancels it, which is answered here by 409.
     """
     state = studio.languages.get(language_id, revision)
     # Another version of the recogniser may judge the same revision otherwise.
@@ -47,7 +53,20 @@ def check_language(
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
-    return _check(state.revision.document).report()
+
+    def tell(stage: str, done: int, total: int) -> None:
+        if done % TOLD_EVERY == 1:
+            told = {"revision": state.revision.revision, "stage": stage, "done": done}
+            studio.broadcast.publish("checks", id=language_id, **told, total=total)
+
+    return _check(state.revision.document).report(tell)
+
+
+@router.delete("/{language_id}/check", status_code=204, responses=documented(404))
+def cancel_check(language_id: str, studio: CurrentStudio, revision: Revision = None) -> Response:
+    """Cancel the check of a revision, for all who wait for it; does nothing where none runs."""
+    _check(studio.languages.get(language_id, revision).revision.document).cancel()
+    return Response(status_code=204)
 
 
 class _Check:
@@ -56,13 +75,30 @@ class _Check:
     def __init__(self, document: str) -> None:
         self._document = document
         self._lock = Lock()
+        self._cancelled = Event()
         self._report: dict[str, Any] | None = None
 
-    def report(self) -> dict[str, Any]:
+    def report(self, tell: Progress) -> dict[str, Any]:
         with self._lock:
             if self._report is None:
-                self._report = check_health(Language.from_json(self._document)).to_dict()
+                self._cancelled.clear()
+                language = Language.from_json(self._document)
+                self._report = check_health(
+                    language, progress=self._until_cancelled(tell)
+                ).to_dict()
             return self._report
+
+    def cancel(self) -> None:
+        self._cancelled.set()
+
+    def _until_cancelled(self, tell: Progress) -> Progress:
+        def progress(stage: str, done: int, total: int) -> None:
+            if self._cancelled.is_set():
+                detail = "the check was cancelled; ask again to start it anew"
+                raise ProblemError(409, "check_cancelled", detail)
+            tell(stage, done, total)
+
+        return progress
 
 
 @lru_cache(CACHED_REPORTS)

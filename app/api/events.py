@@ -23,7 +23,8 @@ router = APIRouter(prefix="/events", tags=["events"])
 async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
     """Stream what changes, as server-sent events.
 
-    `clips`, `languages` and `recognitions` carry the `id` to load again, `jobs` the whole job.
+    `clips`, `languages` and `recognitions` carry the `id` to load again, `jobs` the whole job,
+    `checks` how far the check of a language is.
     One stream for all, because browsers open only six connections to a server.
     """
     return EventSourceResponse(_change_events(studio))

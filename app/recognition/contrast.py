@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.recognition.course import course
+from app.recognition.alignment import Alignment, align
+from app.recognition.course import course_of
 from app.recognition.difference import differences, spoken
 from app.recognition.gesture import condensed
 from app.recognition.pairing import Pairing
 from app.recognition.recognizer import Recognizer
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Contrast:
     """How one demonstration differs from another.
 
@@ -21,11 +22,14 @@ class Contrast:
         A clause for people, to be read after "differs in this: ".
     stroke
         Seconds of the first demonstration's clock between which the two part most.
+    alignment
+        Which moment of the first corresponds to which of the other, by their paths.
 
     """
 
     words: str
     stroke: tuple[float, float]
+    alignment: Alignment
 
 
 def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
@@ -54,10 +58,13 @@ def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
     pairing = Pairing.of(query, against, reading, mirrored=bool(compared.mirrored[other]))
     if pairing is None:
         return None
-    parted = course(pairing)
+    alignment = align(pairing.query, pairing.example, pairing.landmarks)
+    assert alignment is not None  # paths can always be compared
+    parted = course_of(alignment, pairing.query.paths, pairing.example.movement.paths)
     named = differences(pairing, sees_direction=True)
     little = (
         f"little, and most from {parted.start:.1f} to {parted.end:.1f} s, when the "
         f"{spoken(parted.landmark)} {parted.shown}"
     )
-    return Contrast(named[0].words if named else little, (parted.start, parted.end))
+    words = named[0].words if named else little
+    return Contrast(words, (parted.start, parted.end), alignment)

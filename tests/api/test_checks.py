@@ -1,9 +1,12 @@
 """The health report over HTTP: once a revision, and not sent twice."""
 
+import json
+from concurrent.futures import ThreadPoolExecutor
+
 import httpx
 import pytest
 
-from tests.api.running import assert_problem
+from tests.api.running import Running, assert_problem
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
@@ -52,3 +55,22 @@ def test_an_empty_language_is_not_ready(client: httpx.Client, language_id: str) 
 
 def test_a_language_that_is_not_there_is_404(client: httpx.Client) -> None:
     assert_problem(client.get(f"{LANGUAGES}/none/check"), 404, "not_found")
+
+
+def test_a_check_tells_its_progress_and_can_be_cancelled_and_begun_anew(
+    server: Running, client: httpx.Client, imported: str
+) -> None:
+    check = f"{LANGUAGES}/{imported}/check"
+    with ThreadPoolExecutor() as pool, client.stream("GET", "/api/v1/events") as events:
+        lines = events.iter_lines()
+        next(lines)
+        running = pool.submit(httpx.get, server.address + check, timeout=60)
+        while next(lines) != "event: checks":
+            pass
+        told = json.loads(next(lines).removeprefix("data: "))
+        assert told["id"] == imported
+        assert told["stage"] == "rehearsing"
+        assert 1 <= told["done"] <= told["total"]
+        assert client.delete(check).status_code == 204
+        assert_problem(running.result(), 409, "check_cancelled")
+    assert client.get(check).status_code == 200

@@ -1,0 +1,93 @@
+"""Contrasts: two gestures of a language side by side, on one time cursor."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from app.api.languages import Revision
+from app.api.problems import ProblemError, documented
+from app.api.schemas import Label
+from app.api.studio import CurrentStudio
+from app.recognition.contrast import Contrast, contrast
+from app.recognition.gesture import Gesture
+
+DIGITS = 3
+"""Decimals of places and seconds: a millisecond, and half a millimetre of a diver."""
+
+Place = tuple[float, float] | None
+"""Torso lengths from the torso's centre, x right and y down; null where not seen."""
+
+
+class PathsView(BaseModel):
+    """A gesture's demonstration, as it is drawn."""
+
+    label: str
+    salient: list[str]
+    time: list[float] = Field(description="Seconds of each moment")
+    paths: dict[str, list[Place]] = Field(
+        description="Per landmark its place at each moment, torso lengths from the torso's centre"
+    )
+
+
+class ContrastView(BaseModel):
+    """Two gestures of a language, and in what they differ."""
+
+    gestures: tuple[PathsView, PathsView]
+    differs: tuple[str | None, str | None] = Field(
+        description="In what the first differs from the second, and the second from the first; "
+        "null where they cannot be compared"
+    )
+    alignment: dict[str, Any] | None = Field(
+        description="Which moment of the first corresponds to which of the second"
+    )
+
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+@router.get("/{language_id}/contrast", responses=documented(404))
+def contrast_gestures(
+    language_id: str,
+    studio: CurrentStudio,
+    one: Annotated[Label, Query(description="A gesture's label")],
+    other: Annotated[Label, Query(description="Another one's")],
+    revision: Revision = None,
+) -> ContrastView:
+    """Tell in what two gestures differ, and which of their moments correspond."""
+    state = studio.languages.get(language_id, revision)
+    recognizer = studio.recognizer(state, "full")
+    labels = recognizer.language.labels
+    for label in (one, other):
+        if label not in labels:
+            detail = f"there is no gesture {label[:80]!r} in this language"
+            raise ProblemError(404, "not_found", detail)
+    first, second = labels.index(one), labels.index(other)
+    forth, back = contrast(recognizer, first, second), contrast(recognizer, second, first)
+    gestures = recognizer.language.gestures
+    return ContrastView(
+        gestures=(_paths(gestures[first]), _paths(gestures[second])),
+        differs=(_words(forth), _words(back)),
+        alignment=None if forth is None else forth.alignment.to_dict(),
+    )
+
+
+def _words(found: Contrast | None) -> str | None:
+    return None if found is None else found.words
+
+
+def _paths(gesture: Gesture) -> PathsView:
+    shown = gesture.trajectory
+    paths: dict[str, list[Place]] = {}
+    time: list[float] = []
+    if shown is not None:
+        time = np.round(shown.time - shown.time[0], DIGITS).tolist()
+        for landmark, places in zip(shown.landmarks, np.moveaxis(shown.xy, 1, 0), strict=True):
+            paths[landmark] = [
+                (x, y) if np.isfinite((x, y)).all() else None
+                for x, y in np.round(places, DIGITS).tolist()
+            ]
+    return PathsView(label=gesture.label, salient=list(gesture.salient), time=time, paths=paths)
