@@ -23,7 +23,7 @@ UNITS = 32
 EPOCHS = 15
 BATCH = 64
 
-# Compiling takes ten times as long as training. A network of a shape that was seen before is not
+# Compiling takes longer than training. A network of a shape that was seen before is not
 # compiled again, in this process or a later one.
 jax.config.update("jax_compilation_cache_dir", str(Path(tempfile.gettempdir()) / "osg-bench-jax"))
 
