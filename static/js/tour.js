@@ -11,7 +11,7 @@ const STEPS = [
   { title: "One demonstration makes a gesture", text: "You show it once, on a clip; the robot knows it from then on. Four places to know:", places: [] },
   { title: "1. Give it a clip", text: "Drop clips anywhere in the window: Vulcan salute, the gesture, Vulcan salute. Sample clips are below, for a first try.", places: [".drop label", "#clips"] },
   { title: "2. Save the take as a gesture", text: "The take between two salutes appears on the timeline. Save it as a gesture, or recognise it.", places: ["#clip-bar", "#stage"] },
-  { title: "3. Ask why", text: "Every voter tells its distance to every gesture: see which took it for something else, and what would help.", places: [".lab"] },
+  { title: "3. Ask why", text: "Every voter tells its distance to every gesture: see which took it for something else, and what would help.", places: ["#why", ".lab"] },
   { title: "4. Keep it in a language", text: "Gestures make a language. Every change is kept and can be taken back; Export gives the file to the robot.", places: ["#views a:nth-child(2)", ".picker"] },
 ];
 

@@ -11,6 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
 from tests.browser.library import Library, library_of
 
 pytestmark = pytest.mark.slow
@@ -70,7 +71,8 @@ def test_a_dropped_file_becomes_a_card_which_undo_takes_away(
     file.write_bytes(exported.content)
     library.client.delete(f"/api/v1/languages/{library.language}")
     page = open_page({"view": "languages"}, scene=False)
-    page.get_by_label("Import a file").set_input_files(file)
+    expect(page.get_by_role("heading", name="Languages")).to_be_visible()
+    drop(page, file)
     expect(page.get_by_text("Language imported")).to_be_visible()
     expect(card(page, name).get_by_text("2 gestures")).to_be_visible()
     page.keyboard.press("Control+z")
