@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import cv2
@@ -120,30 +121,53 @@ def _paths(poses: PoseSequence, salient: Sequence[str]) -> Image:
 
 
 def features(image: Image) -> tuple[FloatArray, ...]:
-    """Describe a picture for the seven voters, Hu, Zernike and Fourier first."""
-    contours = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)[0]
+    """Describe a picture for the seven voters, Hu, Zernike and Fourier first.
+
+    As published every voter finds the contours for itself, so that the time is the published one.
+    """
     complete = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
-    if not contours:
+    if not complete:
         return (np.full(1, np.inf),) * 7
-    contour = max(contours, key=cv2.contourArea)
-    area, hull = cv2.contourArea(contour), cv2.contourArea(cv2.convexHull(contour))
-    perimeter = cv2.arcLength(contour, closed=True)
-    width, height = cv2.boundingRect(contour)[2:]
-    open_length = float(np.linalg.norm(np.diff(contour[:, 0], axis=0), axis=1).sum())
     small = cv2.resize(image, (2 * ZERNIKE_RADIUS, 2 * ZERNIKE_RADIUS))
     zernike = mahotas.features.zernike_moments(small, ZERNIKE_RADIUS, degree=ZERNIKE_DEGREE)
-    proportions = (
-        4 * np.pi * area / perimeter**2 if perimeter else 0.0,
-        area / hull if hull else 0.0,
-        width / height,
-        open_length / (2 * (width + height)),
-    )
+    proportions = (_circularity(image), _solidity(image), _aspect_ratio(image), _complexity(image))
     return (
         _standardised(_hu_of_raw_moments(image)),
         _standardised(np.asarray(zernike)),
         _fourier(complete[0][:, 0]),
         *(np.array([value]) for value in proportions),
     )
+
+
+def _largest(image: Image) -> npt.NDArray[Any]:
+    """Return the contour ``(P, 1, 2)`` with the largest area."""
+    contours = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)[0]
+    return np.asarray(max(contours, key=cv2.contourArea))
+
+
+def _circularity(image: Image) -> float:
+    contour = _largest(image)
+    perimeter = cv2.arcLength(contour, closed=True)
+    return 4 * np.pi * cv2.contourArea(contour) / perimeter**2 if perimeter else 0.0
+
+
+def _solidity(image: Image) -> float:
+    contour = _largest(image)
+    hull = cv2.contourArea(cv2.convexHull(contour))
+    return cv2.contourArea(contour) / hull if hull else 0.0
+
+
+def _aspect_ratio(image: Image) -> float:
+    width, height = cv2.boundingRect(_largest(image))[2:]
+    return width / height
+
+
+def _complexity(image: Image) -> float:
+    """Open length of the contour over the perimeter of its box, side by side as published."""
+    contour = _largest(_blurred(image, 5))
+    length = sum(float(np.linalg.norm(corner - before)) for before, corner in pairwise(contour))
+    width, height = cv2.boundingRect(contour)[2:]
+    return length / (2 * (width + height))
 
 
 def _hu_of_raw_moments(image: Image) -> FloatArray:
