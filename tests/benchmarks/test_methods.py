@@ -74,10 +74,9 @@ def test_the_published_code_calls_a_gesture_another_one_when_the_camera_stands_b
     far = replace(near, xy=middle + (near.xy - middle) / 2)
     salient = published.salient_keypoints(near)
     assert salient == ("right_wrist",)
-    fourier = [
-        published.features(published.picture(poses, salient, published.QUERY_EDGES))[2]
-        for poses in (near, far)
-    ]
+    frames = [published.frames_of(poses, salient) for poses in (near, far)]
+    pictures = [published.picture(each, salient, published.QUERY_EDGES) for each in frames]
+    fourier = [published.features(picture)[2] for picture in pictures]
     assert np.linalg.norm(fourier[0] - fourier[1]) > 0.3 * np.linalg.norm(fourier[0])
 
 
