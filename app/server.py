@@ -20,6 +20,7 @@ from fastapi.staticfiles import StaticFiles
 
 from app import __version__, resources
 from app.api import (
+    analyses,
     checks,
     clips,
     contrasts,
@@ -104,6 +105,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         contrasts.router,
         gestures.router,
         recognitions.router,
+        analyses.router,
         sample_clips.router,
         sample_languages.router,
         events.router,

@@ -16,7 +16,7 @@ from app.api.schemas import (
     RecognitionView,
     TuningChange,
 )
-from app.api.studio import CurrentStudio
+from app.api.studio import CurrentStudio, Studio
 from app.recognition import Recognition, Recognizer
 from app.recognition.explanation import explain
 from app.recognition.situation import Situation
@@ -95,17 +95,21 @@ def explain_recognition(
     if meant is None:
         detail = "say which gesture was meant: add ?expected=LABEL"
         raise ProblemError(422, "expected_missing", detail)
-    state = studio.languages.get(record.language_id, record.revision)
-    recording = studio.recording(record.clip_id)
-    tuning = _view(record).tuning
-    situation = Situation(
-        recognizer=_tuned(studio.recognizer(state, record.profile), tuning),
-        poses=demonstration_in(recording, record.start, record.end).poses,
-        whole=surroundings_in(recording, record.start, record.end),
-    )
+    situation = situation_of(record, studio)
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
     return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
+
+
+def situation_of(record: RecognitionRecord, studio: Studio) -> Situation:
+    """Return the situation in which a recognition was made, by the language as it was then."""
+    state = studio.languages.get(record.language_id, record.revision)
+    recording = studio.recording(record.clip_id)
+    return Situation(
+        recognizer=_tuned(studio.recognizer(state, record.profile), _view(record).tuning),
+        poses=demonstration_in(recording, record.start, record.end).poses,
+        whole=surroundings_in(recording, record.start, record.end),
+    )
 
 
 def _tuned(recognizer: Recognizer, change: TuningChange | None) -> Recognizer:

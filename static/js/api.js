@@ -92,6 +92,7 @@ export const languages = {
 export const recognitions = {
   create: (query) => request("POST", "/recognitions", { body: query }),
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
+  analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
   explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
 };
 

@@ -55,6 +55,7 @@ function query() {
 async function saveGesture() {
   const range = query();
   if (!state.language && !(await newLanguage())) return;
+  const from = state.gestures;
   const saved = await ask({
     title: "Save as gesture",
     text: `One demonstration is enough. It is added to \u201c${state.gestures?.name ?? ""}\u201d.`,
@@ -64,7 +65,7 @@ async function saveGesture() {
       { name: "command", label: "Command", hint: "What the robot should do." },
     ],
     action: "Save gesture",
-    submit: (values) => edit("Saving the gesture", `New gesture ${values.label}`, (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null })),
+    submit: (values) => edit("Saving the gesture", `New gesture ${values.label}`, (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null }), { from }),
   });
   if (!saved) return;
   tellDone("Gesture saved", `${saved.gestures.at(-1).label}, in ${saved.name}`);

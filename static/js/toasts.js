@@ -6,7 +6,7 @@ const SHOWN_FOR = { info: 6000, error: 15000 };
 
 /**
  * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
- * One with the same text replaces the older one.
+ * One with the same text replaces the older one. Returns its element.
  */
 export function toast(title, detail = "", { kind = "info", action = null } = {}) {
   const box = byId("toasts");
@@ -25,6 +25,7 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
   // Nobody loses a message while reading or reaching for it.
   element.onpointerenter = element.onfocusin = () => clearTimeout(timer);
   element.onpointerleave = element.onfocusout = () => { timer = setTimeout(close, SHOWN_FOR[kind]); };
+  return element;
 }
 
 /** Show what went wrong. */

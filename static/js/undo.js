@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { reloadClips, select } from "./clips.js";
+import { byId } from "./dom.js";
 import { bind } from "./keys.js";
 import { reloadLanguages } from "./languages.js";
 import { complain, toast } from "./toasts.js";
@@ -77,7 +78,10 @@ function keep() {
 
 /** Show what was done, with a button that takes it back. */
 export function tellDone(title, detail = "") {
-  toast(title, detail, { action: { label: "Undo", run: undo } });
+  // Undo takes back the newest deed, so an older message must not offer it any more.
+  for (const other of byId("toasts").querySelectorAll(".undoable")) other.remove();
+  const told = toast(title, detail, { action: { label: "Undo", run: undo } });
+  told.classList.add("undoable");
 }
 
 /** Wire the keys. */

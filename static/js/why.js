@@ -132,6 +132,7 @@ export function drawWhy({ why, result, trial }) {
     trying,
     why ? h("p", { className: "why-sentence" }, why.sentence) : null,
     remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
+    why ? h("p", { className: "share" }, h("a", { href: api.recognitions.analysisUrl(result.id), download: "" }, "Share as one file"), h("small", { className: "dim" }, " plays without a server")) : null,
     why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
   ].filter(Boolean));
 }

@@ -88,14 +88,17 @@ def test_real_objects_answer_as_described(lasting_server: Running) -> None:
         readable = [
             operation
             for operation in OPERATIONS
-            if operation.method == "get" and "workspace" not in operation.path
+            if operation.method == "get"
+            and "workspace" not in operation.path
+            # Two gestures are compared by their labels in the query.
+            and not operation.path.endswith("/contrast")
         ]
         assert len(readable) >= 15
         for operation in readable:
             answer = client.get(operation.path.format(**known))
-            # A clip made of numbers has no still pictures.
-            pictures = ("poster", "filmstrip")
-            expected = 404 if operation.path.endswith(pictures) else 200
+            # A clip made of numbers has no pictures.
+            pictures = {"poster": 404, "filmstrip": 404, "analysis": 422}
+            expected = pictures.get(operation.path.rsplit("/", 1)[1], 200)
             assert answer.status_code == expected, operation.path
             if "json" in answer.headers["content-type"]:
                 operation.validate_response(answer)

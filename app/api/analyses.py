@@ -1,0 +1,40 @@
+"""A recognition as one HTML file, for whoever has no studio."""
+
+from __future__ import annotations
+
+from urllib.parse import quote
+
+from fastapi import APIRouter, Response
+
+from app.api.problems import documented
+from app.api.recognitions import kept_recognition, situation_of
+from app.api.studio import CurrentStudio
+from app.api.workspace_views import view_of
+from app.api.workspaces import ViewRequest
+from app.recognition.explanation import explain
+from app.ui.analysis import analysis_page
+
+router = APIRouter(prefix="/recognitions", tags=["recognitions"])
+
+
+@router.get(
+    "/{recognition_id}/analysis",
+    response_class=Response,
+    responses={
+        **documented(404, 409),
+        200: {"description": "One file that plays without a server", "content": {"text/html": {}}},
+    },
+)
+def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
+    """Send the take, its votes and why, as one HTML file."""
+    record = studio.recognitions.get(recognition_id)
+    view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
+    meant = record.expected
+    why = None if meant is None else explain(situation_of(record, studio), meant)
+    name = quote(f"{view.title}.html", safe="")
+    disposition = f"attachment; filename=\"analysis.html\"; filename*=utf-8''{name}"
+    return Response(
+        analysis_page(view, kept_recognition(record), why),
+        media_type="text/html",
+        headers={"Content-Disposition": disposition},
+    )

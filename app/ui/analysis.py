@@ -1,0 +1,163 @@
+"""A recognition as one HTML file that plays without a server, to be sent to a colleague."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from html import escape
+from typing import Any, Final
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition import PoseError, PoseSequence, Recognition
+from app.recognition.explanation import Explanation
+from app.recognition.landmarks import SKELETON
+from app.recognition.salience import salient_landmarks
+from app.recognition.trajectory import Trajectory
+from app.recognition.video import read_frames
+from app.resources import static_dir
+from app.ui import charts
+from app.ui.workspace import Range, WorkspaceView, compared_images
+
+MAX_WIDTH = 400
+"""Pixels of a picture in the file; half a laptop's screen shows it a little enlarged."""
+
+MAX_PICTURES = 120
+"""Pictures in the file, 2 MB; of longer takes every n-th frame."""
+
+JPEG_QUALITY = 72
+"""A file of two megabytes travels as an attachment; at 82 it would be three."""
+
+DIGITS = 4
+"""Of landmarks as shares of the picture: a tenth of a pixel."""
+
+POLICY: Final = (
+    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+)
+"""The file carries all it needs, and may fetch nothing from anywhere."""
+
+
+def analysis_page(
+    view: WorkspaceView, recognition: Recognition, explanation: Explanation | None
+) -> str:
+    """Write a recognition, what it compared and why, as HTML.
+
+    Parameters
+    ----------
+    view
+        The take that was recognised.
+    recognition
+        What came out.
+    explanation
+        Why; None where nobody said what was meant.
+
+    Raises
+    ------
+    PoseError
+        When no frame lies in the view's range.
+    VideoError
+        When the clip cannot be read.
+
+    """
+    shown = Range.of(view)
+    content = _recording(view, shown)
+    charted = "".join(
+        (
+            charts.verdict(recognition, view.expected),
+            charts.vote_table(recognition, view.expected),
+            charts.image_row(compared_images(view, recognition, shown.poses)),
+        )
+    )
+    folder = static_dir() / "analysis"
+    # A script element ends at the first "</", whatever it says.
+    embedded = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    title = f"{view.title}: {recognition.label or 'not recognised'}"
+    return (
+        "<!doctype html><html lang='en'><head><meta charset='utf-8'>"
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+        "<meta name='viewport' content='width=device-width, initial-scale=1'>"
+        f"<title>{escape(title)}</title><style>{(folder / 'analysis.css').read_text()}</style>"
+        f"</head><body><main><header><h1>{escape(view.title)}</h1><p>{_subtitle(view, shown)}</p>"
+        f"</header>{_why(explanation)}"
+        "<section class='player' aria-label='The take'><canvas></canvas><div class='controls'>"
+        "<button type='button'>Play</button>"
+        "<input type='range' min='0' value='0' step='1' aria-label='Frame'>"
+        f"<output></output></div></section><section>{charted}</section></main>"
+        f"<script type='application/json' id='recording'>{embedded}</script>"
+        f"<script type='module'>{(folder / 'analysis.js').read_text()}</script></body></html>"
+    )
+
+
+def _subtitle(view: WorkspaceView, shown: Range) -> str:
+    times = shown.poses.time
+    language = f", language {escape(view.language.name)}" if view.language else ""
+    return f"{times[0]:.2f} to {times[-1]:.2f} s of the clip{language}. Made with OSG Studio."
+
+
+def _why(explanation: Explanation | None) -> str:
+    if explanation is None:
+        return ""
+    found = explanation.counterfactuals.found
+    helps = "".join(f"<li>{escape(each.change.words)}</li>" for each in found)
+    listed = (
+        f"<p class='dim'>It would have been read as {escape(explanation.expected)}:</p>"
+        f"<ul>{helps}</ul>"
+        if helps
+        else ""
+    )
+    return (
+        f"<section class='why' aria-label='Why'><p>{escape(explanation.sentence)}</p>{listed}"
+        "</section>"
+    )
+
+
+def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:
+    """Return what the script plays: pictures, their moments, poses, bones and trails."""
+    poses = shown.poses
+    stride = max(1, -(-len(poses) // MAX_PICTURES))
+    kept = range(shown.first, shown.first + len(poses), stride)
+    pictures = list(_pictures(view, kept))
+    chosen = [index - shown.first for index in kept][: len(pictures)]
+    names = {name: column for column, name in enumerate(poses.landmarks)}
+    return {
+        "frames": [url for url, _ in pictures],
+        "size": pictures[0][1] if pictures else list(poses.frame_size),
+        "times": [round(float(poses.time[index]), 3) for index in chosen],
+        "poses": [_shares(poses.xy[index], poses.frame_size) for index in chosen],
+        "bones": [[names[a], names[b]] for a, b in SKELETON if a in names and b in names],
+        "trails": [names[name] for name in _salient(poses)],
+    }
+
+
+def _pictures(view: WorkspaceView, kept: range) -> Iterator[tuple[str, list[int]]]:
+    """Yield the frames of the clip as small JPEG data URLs with their size."""
+    with read_frames(view.video) as frames:
+        for frame in frames:
+            if frame.index >= kept.stop:
+                return
+            if frame.index in kept:
+                yield _picture(frame.image)
+
+
+def _picture(image: npt.NDArray[np.uint8]) -> tuple[str, list[int]]:
+    height, width = image.shape[:2]
+    size = [min(width, MAX_WIDTH), max(1, round(height * min(1.0, MAX_WIDTH / width)))]
+    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+    bgr = cv2.cvtColor(small, cv2.COLOR_RGB2BGR)
+    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()
+    return "data:image/jpeg;base64," + base64.b64encode(encoded).decode("ascii"), size
+
+
+def _shares(xy: npt.NDArray[np.float64], frame_size: tuple[int, int]) -> list[list[float] | None]:
+    shares = np.round(xy / frame_size, DIGITS)
+    return [[float(x), float(y)] if np.isfinite([x, y]).all() else None for x, y in shares.tolist()]
+
+
+def _salient(poses: PoseSequence) -> tuple[str, ...]:
+    try:
+        return salient_landmarks(Trajectory.from_poses(poses))
+    except PoseError:
+        return ()
