@@ -1,0 +1,68 @@
+"""No view has a fault that axe calls serious, in dark and in light."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
+from playwright.sync_api import Page, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+
+pytestmark = pytest.mark.slow
+
+SERIOUS = {"serious", "critical"}
+
+
+@pytest.fixture(scope="module")
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "accessible")
+
+
+def faults(page: Page) -> list[str]:
+    """Return what axe finds that is serious, with the elements."""
+    # viser's frame is another project's page.
+    found = Axe().run(page, context={"exclude": ["#lab"]}).response["violations"]
+    return [
+        f"{fault['id']}: {[node['html'][:120] for node in fault['nodes']]}"
+        for fault in found
+        if fault["impact"] in SERIOUS
+    ]
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library, scheme: str) -> None:
+    query = {**library.address, "recognition": library.recognise("line")}
+    page = open_page(query, scene=False, scheme=scheme)
+    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of")
+    assert faults(page) == []
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_every_view(open_page: OpenPage, library: Library, scheme: str) -> None:
+    page = open_page(library.address, scene=False, scheme=scheme)
+    links = page.get_by_role("navigation", name="Views").get_by_role("link")
+    names = links.all_inner_texts()
+    assert len(names) >= 2
+    found = {}
+    for name in names:
+        links.get_by_text(name, exact=True).click()
+        expect(page.locator(".view:visible")).not_to_be_empty()
+        found[name] = faults(page)
+    assert found == {name: [] for name in names}
+
+
+def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False)
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_be_visible()
+    assert faults(page) == []
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Export").click()
+    expect(page.get_by_role("dialog", name="Export")).to_be_visible()
+    assert faults(page) == []
