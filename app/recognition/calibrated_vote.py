@@ -190,11 +190,8 @@ class CalibratedVote:
         """
         distances, scores = compared.distances, compared.scores
         winner = int(scores.argmin())
-        votes = {
-            voter: int(row.argmin())
-            for voter, row in zip(VOTERS, distances, strict=True)
-            if np.isfinite(row).any()
-        }
+        able = np.flatnonzero(np.isfinite(distances).any(axis=1)).tolist()
+        nearest_by_voter = distances.argmin(axis=1)
         nearest = self._labels[winner]
         return Recognition(
             label=None if is_rejected(float(compared.novelty[winner])) else nearest,
@@ -208,7 +205,7 @@ class CalibratedVote:
             voters=VOTERS,
             gestures=self._labels,
             distances=distances,
-            votes={voter: self._labels[index] for voter, index in votes.items()},
+            votes={VOTERS[voter]: self._labels[nearest_by_voter[voter]] for voter in able},
             weights=self.weights,
             scores=scores,
             novelty=compared.novelty,

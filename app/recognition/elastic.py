@@ -44,26 +44,26 @@ def alignment_costs(costs: FloatArray, band: int) -> FloatArray:
     Parameters
     ----------
     costs
-        ``(N, N, M)``: of each step of the one sequence against each of the other, for M pairs.
+        ``(..., N, N, M)``: of each step of the one sequence against each of the other, for M pairs.
     band
         As for `elastic_distances`.
 
     Returns
     -------
-    ``(M,)``: costs summed along the alignment over N.
+    ``(..., M)``: costs summed along the alignment over N.
 
     """
-    steps, _, pairs = costs.shape
-    cells = costs.reshape(steps * steps, pairs)
+    *points_of_view, steps, _, pairs = costs.shape
+    cells = costs.reshape(-1, steps * steps, pairs)
     # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
-    total = np.full((2 * band + 3, pairs), np.inf)
-    total[band + 1] = cells[0]
+    total = np.full((len(cells), 2 * band + 3, pairs), np.inf)
+    total[:, band + 1] = cells[:, 0]
     for diagonal in _diagonals(steps, band):
         # A row was last written two diagonals ago (both ran on), its neighbours one ago.
-        best = np.minimum(total[diagonal.one], total[diagonal.other])
-        np.minimum(best, total[diagonal.both], out=best)
-        np.add(best, cells[diagonal.cells], out=total[diagonal.both])
-    return np.asarray(total[band + 1] / steps, dtype=np.float64)
+        best = np.minimum(total[:, diagonal.one], total[:, diagonal.other])
+        np.minimum(best, total[:, diagonal.both], out=best)
+        np.add(best, cells[:, diagonal.cells], out=total[:, diagonal.both])
+    return np.asarray((total[:, band + 1] / steps).reshape(*points_of_view, pairs))
 
 
 @dataclass(frozen=True)
@@ -143,21 +143,28 @@ def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.ND
     return np.array(pairs[::-1], dtype=np.intp) - 1
 
 
-def squared_distances(query: FloatArray, references: FloatArray) -> FloatArray:
+def squared_distances(
+    query: FloatArray, references: FloatArray, out: FloatArray | None = None
+) -> FloatArray:
     """Measure the squared distance of every step of the query to every step of the references.
 
     Parameters
     ----------
     query, references
         ``(N, D)`` and ``(M, N, D)``, with NaN as for `elastic_distances`.
+    out
+        Where to write the answer, contiguous: asking the system for fresh memory for each would
+        take longer than the arithmetic.
 
     Returns
     -------
     ``(N, N, M)``, infinite where nothing can be compared.
 
     """
+    if out is None:
+        out = np.empty((len(query), len(query), len(references)))
     if np.isfinite(query).all() and np.isfinite(references).all():
-        return _without_rounding(_complete(query, references))
+        return _without_rounding(_complete(query, references, out))
     known, others_known = np.isfinite(query), np.isfinite(references)
     left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
     mask, others_mask = known.astype(np.float64), others_known.astype(np.float64)
@@ -168,15 +175,19 @@ def squared_distances(query: FloatArray, references: FloatArray) -> FloatArray:
     scale = np.divide(
         query.shape[1], compared, out=np.full_like(compared, np.inf), where=compared > 0
     )
-    return _without_rounding(np.where(compared > 0, squares, 1.0) * scale)
+    np.multiply(np.where(compared > 0, squares, 1.0), scale, out=out)
+    return _without_rounding(out)
 
 
-def _complete(query: FloatArray, references: FloatArray) -> FloatArray:
+def _complete(query: FloatArray, references: FloatArray, out: FloatArray) -> FloatArray:
     """|q - r|^2 = (-2q, |q|^2, 1) . (r, 1, |r|^2): a single matrix product."""
+    count, steps, size = references.shape
     left = np.concatenate([-2 * query, (query**2).sum(1)[:, None], np.ones((len(query), 1))], 1)
-    norms = (references**2).sum(axis=2)[..., None]
-    right = np.concatenate([references, np.ones_like(norms), norms], axis=2)
-    return _products(left, right)
+    right = np.ones((size + 2, steps, count))
+    right[:size] = references.transpose(2, 1, 0)
+    np.einsum("dnm,dnm->nm", right[:size], right[:size], out=right[-1])
+    np.matmul(left, right.reshape(size + 2, -1), out=out.reshape(len(query), -1))
+    return out
 
 
 def _products(left: FloatArray, right: FloatArray) -> FloatArray:

@@ -57,13 +57,12 @@ def jumps(trajectory: Trajectory) -> Mask:
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     paths = trajectory.xy / body_unit(trajectory)
     known = np.asarray(np.isfinite(paths).all(axis=2))
-    kinked = _has_kink(paths)
-    for index, name in enumerate(trajectory.landmarks):
-        seen = np.flatnonzero(known[:, index])
-        with_gaps = len(seen) < len(paths)
-        if name in UNFOLLOWED or not (with_gaps or kinked[index]):
+    with_gaps: Mask = ~np.asarray(known.all(axis=0))
+    for index in np.flatnonzero(with_gaps | _has_kink(paths)).tolist():
+        if trajectory.landmarks[index] in UNFOLLOWED:
             continue
-        if with_gaps and not _has_kink(paths[seen, index, None]).any():
+        seen = np.flatnonzero(known[:, index])
+        if with_gaps[index] and not _has_kink(paths[seen, index, None]).any():
             continue
         off[seen, index] = _strays(paths[seen, index], trajectory.time[seen])
     return off

@@ -54,6 +54,8 @@ MOST_COMPARED = 1
 ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
+_ELASTIC = tuple(voter for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter))
+
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
 
@@ -219,10 +221,12 @@ def _distances(query: dict[str, FloatArray], references: dict[str, FloatArray]) 
 
     The elastic voters' alignments are found together, which costs hardly more than one of them.
     """
-    elastic = [voter for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter)]
-    costs = [voter.step_costs(query[voter.name], references[voter.name]) for voter in elastic]
-    aligned = np.split(alignment_costs(np.concatenate(costs, axis=2), BAND), len(elastic))
-    found = {voter.name: row for voter, row in zip(elastic, aligned, strict=True)}
+    steps, rows = len(query["path"]), len(references["path"])
+    costs = np.empty((len(_ELASTIC), steps, steps, rows))
+    for elastic, out in zip(_ELASTIC, costs, strict=True):
+        elastic.step_costs(query[elastic.name], references[elastic.name], out)
+    aligned = alignment_costs(costs, BAND)
+    found = {elastic.name: row for elastic, row in zip(_ELASTIC, aligned, strict=True)}
     for voter in MOTION_VOTERS:
         if voter.name not in found:
             found[voter.name] = voter.distances(query[voter.name], references[voter.name])

@@ -166,9 +166,9 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
     limbs = np.full((STEPS, len(bones), 2), np.nan)
     places = smooth.at(reached).xy
     column = {part_of(name): index for index, name in enumerate(smooth.landmarks)}
-    for index, (inner, outer) in enumerate(bones):
-        if inner in column and outer in column:
-            limbs[:, index] = places[:, column[outer]] - places[:, column[inner]]
+    shown = [index for index, bone in enumerate(bones) if column.keys() >= {*bone}]
+    inner, outer = ([column[bones[index][end]] for index in shown] for end in (0, 1))
+    limbs[:, shown] = places[:, outer] - places[:, inner]
     return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
 
 

@@ -102,10 +102,12 @@ class PoseSequence:
         """Seconds from the first to the last frame; 0 for fewer than two frames."""
         return float(self.time[-1] - self.time[0]) if len(self) > 1 else 0.0
 
-    @property
+    @cached_property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Tell ``(T, K)`` which landmark was found in which frame."""
-        return _all_finite(self.xy)
+        seen = _all_finite(self.xy)
+        seen.setflags(write=False)
+        return seen
 
     def column(self, name: str) -> FloatArray:
         """Return one landmark's path.

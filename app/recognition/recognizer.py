@@ -103,7 +103,7 @@ class Recognizer:
 
         """
         repair = repaired(poses) if self.repairs else None
-        query = condensed(Trajectory.from_poses(repair.poses if repair else poses))
+        query = condensed(repair.trajectory if repair else Trajectory.from_poses(poses))
         comparison = self.compare(query)
         result = self.decided(comparison)
         if repair:

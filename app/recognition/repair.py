@@ -9,6 +9,7 @@ movements are compared (`movement`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -50,6 +51,18 @@ class Repair:
     blended: Mask
     jumps: Mask
 
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """What `poses` shows, normalised; made once for all that look at it.
+
+        Raises
+        ------
+        PoseError
+            When they show nothing.
+
+        """
+        return Trajectory.from_poses(self.poses)
+
     @property
     def touched(self) -> Mask:
         """Tell ``(T,)`` in which frames anything was repaired."""
@@ -86,25 +99,20 @@ def repaired(poses: PoseSequence) -> Repair:
     result = Repair(poses, no_frame, no_frame, np.zeros(poses.seen.shape, dtype=bool))
     if not poses.seen.any():
         return result
-    seen = Trajectory.from_poses(poses)
     for _ in range(ROUNDS):
         before = result.poses
         for mend in (_with_sides_right, _without_jumps):
-            mended = mend(result, seen)
-            if mended is result:
-                continue
-            result = mended
+            result = mend(result)
             if not result.poses.seen.any():
                 return result
-            seen = Trajectory.from_poses(result.poses)
         if result.poses is before:
             break
     return result
 
 
-def _with_sides_right(repair: Repair, seen: Trajectory) -> Repair:
+def _with_sides_right(repair: Repair) -> Repair:
     poses = repair.poses
-    sides = mistaken_sides(seen)
+    sides = mistaken_sides(repair.trajectory)
     if not sides.exchanged.any():
         return repair
     xy = exchanged_back(poses.xy, poses.landmarks, sides.exchanged)
@@ -120,9 +128,9 @@ def _with_sides_right(repair: Repair, seen: Trajectory) -> Repair:
     )
 
 
-def _without_jumps(repair: Repair, seen: Trajectory) -> Repair:
+def _without_jumps(repair: Repair) -> Repair:
     poses = repair.poses
-    off = jumps(seen)
+    off = jumps(repair.trajectory)
     if not off.any():
         return repair
     xy = np.where(off[..., None], np.nan, poses.xy)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -133,28 +134,37 @@ def simplified(path: FloatArray, tolerance: float) -> FloatArray:
     ``(C, 2)``: the first point, the corners in order, the last point.
 
     """
-    kept = np.zeros(len(path), dtype=np.bool_)
-    kept[[0, -1]] = True
+    kept = [0, len(path) - 1]
     open_stretches = [(0, len(path) - 1)]
+    # Most stretches have a dozen points, for which plain numbers are faster than arrays.
+    points = path.tolist()
     while open_stretches:
         first, last = open_stretches.pop()
-        if last - first < 2:
-            continue
-        away = _distances_to_segment(path[first + 1 : last], path[first], path[last])
-        farthest = int(away.argmax())
-        if away[farthest] > tolerance:
-            corner = first + 1 + farthest
-            kept[corner] = True
+        corner, away = _farthest_from_line(points, first, last)
+        if away > tolerance:
+            kept.append(corner)
             open_stretches += [(first, corner), (corner, last)]
-    return path[kept]
+    return path[sorted({*kept})]
 
 
-def _distances_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return the distance of each of ``(N, 2)`` points from a straight segment, ``(N,)``."""
-    along = end - start
-    length = float(along @ along)
-    offsets = points - start
-    if length > 0:
-        share = np.minimum(np.maximum(offsets @ along / length, 0.0), 1.0)
-        offsets -= share[:, None] * along
-    return np.asarray(np.hypot(offsets[:, 0], offsets[:, 1]), dtype=np.float64)
+def _farthest_from_line(points: list[list[float]], first: int, last: int) -> tuple[int, float]:
+    """Return which point between two lies farthest from the segment that joins them, and how far.
+
+    Of equally far ones the first; where there is none between, `first` and 0.
+    """
+    (start_x, start_y), (end_x, end_y) = points[first], points[last]
+    along_x, along_y = end_x - start_x, end_y - start_y
+    length = along_x * along_x + along_y * along_y
+    farthest, largest = first, 0.0
+    for index in range(first + 1, last):
+        x, y = points[index]
+        x, y = x - start_x, y - start_y
+        # Before the start the nearest place of the segment is its start, beyond the end its end.
+        passed = x * along_x + y * along_y
+        if passed > 0:
+            share = passed / length if passed < length else 1.0
+            x, y = x - share * along_x, y - share * along_y
+        square = x * x + y * y
+        if square > largest:
+            farthest, largest = index, square
+    return farthest, math.sqrt(largest)

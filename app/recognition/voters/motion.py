@@ -50,8 +50,13 @@ class ElasticVoter(ABC):
     """A voter that aligns two movements step by step, and so can be asked together with others."""
 
     @abstractmethod
-    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Compare each step of the query with each of every reference: ``(N, N, M)``."""
+    def step_costs(
+        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
+    ) -> FloatArray:
+        """Compare each step of the query with each of every reference: ``(N, N, M)``.
+
+        `out`: where to write them, contiguous.
+        """
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the elastic distances, ``(M,)``; infinite where nothing can be compared."""
@@ -61,9 +66,11 @@ class ElasticVoter(ABC):
 class _Vectors(ElasticVoter):
     """A voter whose every step is one vector, known throughout."""
 
-    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
+    def step_costs(
+        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
+    ) -> FloatArray:
         """Return squared distances."""
-        return squared_distances(query, references)
+        return squared_distances(query, references, out)
 
 
 class Path(_Vectors):
@@ -101,12 +108,20 @@ class Direction(_Vectors):
 class _Limbs(ElasticVoter):
     """A voter that compares vectors along bones, each step weighted by how far it is under way."""
 
-    def step_costs(self, query: FloatArray, references: FloatArray) -> FloatArray:
+    def step_costs(
+        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
+    ) -> FloatArray:
         """Return squared distances; infinite where no limb is seen in both."""
-        known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
-        if not known.any():
-            return np.full((len(query), len(query), len(references)), np.inf)
-        return squared_distances(query[:, known], references[..., known])
+        if out is None:
+            out = np.empty((len(query), len(query), len(references)))
+        found, others_found = np.isfinite(query), np.isfinite(references)
+        if not (found.all() and others_found.all()):
+            known = found.any(axis=0) & others_found.any(axis=(0, 1))
+            query, references = query[:, known], references[..., known]
+        if query.shape[1]:
+            return squared_distances(query, references, out)
+        out.fill(np.inf)
+        return out
 
 
 class Posture(_Limbs):
