@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import prod
 
 import numpy as np
 import numpy.typing as npt
@@ -54,7 +55,7 @@ def alignment_costs(costs: FloatArray, band: int) -> FloatArray:
 
     """
     *points_of_view, steps, _, pairs = costs.shape
-    cells = costs.reshape(-1, steps * steps, pairs)
+    cells = costs.reshape(prod(points_of_view), steps * steps, pairs)
     # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
     total = np.full((len(cells), 2 * band + 3, pairs), np.inf)
     total[:, band + 1] = cells[:, 0]
@@ -186,7 +187,8 @@ def _complete(query: FloatArray, references: FloatArray, out: FloatArray) -> Flo
     right = np.ones((size + 2, steps, count))
     right[:size] = references.transpose(2, 1, 0)
     np.einsum("dnm,dnm->nm", right[:size], right[:size], out=right[-1])
-    np.matmul(left, right.reshape(size + 2, -1), out=out.reshape(len(query), -1))
+    columns = steps * count
+    np.matmul(left, right.reshape(size + 2, columns), out=out.reshape(len(query), columns))
     return out
 
 
