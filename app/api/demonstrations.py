@@ -33,12 +33,17 @@ class Demonstration:
 
 
 def demonstration_in(
-    recording: Recording, start: float | None = None, end: float | None = None
+    recording: Recording,
+    start: float | None = None,
+    end: float | None = None,
+    *,
+    keep_transit: bool = False,
 ) -> Demonstration:
     """Find the demonstration meant by a range of seconds.
 
     A range that is a take's own, from salute to salute, means its stroke, without the hand's way
-    from and to the salute. Any other range is taken as it is: whoever chooses by hand decides.
+    from and to the salute unless `keep_transit`. Any other range is taken as it is: whoever chooses
+    by hand decides.
     Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
 
     Raises
@@ -55,12 +60,12 @@ def demonstration_in(
             detail = f"the clip holds {len(takes)} takes ({spans}); say which by start and end"
             raise ProblemError(422, "take_ambiguous", detail)
         if takes:
-            return _stroke(takes[0])
+            return _shown_in(takes[0], keep_transit)
     first = float(poses.time[0]) if start is None else start
     last = float(poses.time[-1]) if end is None else end
     for take in takes:
         if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
-            return _stroke(take)
+            return _shown_in(take, keep_transit)
     inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
     if last <= first or not len(inside):
         detail = (
@@ -80,5 +85,7 @@ def surroundings_in(recording: Recording, start: float, end: float) -> PoseSeque
     return recording.poses
 
 
-def _stroke(take: Take) -> Demonstration:
+def _shown_in(take: Take, keep_transit: bool) -> Demonstration:
+    if keep_transit:
+        return Demonstration(take.start, take.end, take.untrimmed)
     return Demonstration(take.stroke_start, take.stroke_end, take.poses)

@@ -126,27 +126,31 @@ class LanguageRevert(Body):
     revision: Annotated[int, Field(ge=0, le=2**31 - 1)]
 
 
-class GestureDraft(Body):
-    """A gesture to save from a clip."""
-
-    label: Label
-    clip_id: Identifier
-    start: Seconds | None = None
-    end: Seconds | None = None
-    salient: Landmarks | None = None
-    description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
-    command: Command = None
-
-
 SwitchPosition = Literal["auto", "on", "off"]
 
 
 class NewDemonstration(Body):
-    """Where another demonstration of a gesture is."""
+    """Where the demonstration of a gesture is."""
 
     clip_id: Identifier
     start: Seconds | None = None
     end: Seconds | None = None
+    keep_transit: bool = Field(
+        default=False,
+        description="Keep the hand's way from and to the salute, where the range is a take's own",
+    )
+
+
+class GestureDraft(NewDemonstration):
+    """A gesture to save from a clip."""
+
+    label: Label
+    salient: Landmarks | None = None
+    direction: SwitchPosition = "auto"
+    tempo: SwitchPosition = "auto"
+    mirror: SwitchPosition = "auto"
+    description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
+    command: Command = None
 
 
 class GestureChange(Body):

@@ -28,6 +28,7 @@ from app.recognition.rejection import (
     thresholds_of,
 )
 from app.recognition.shape_references import ShapeReferences
+from app.recognition.switches import Counting
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.voters import PAPER_VOTERS
@@ -109,6 +110,18 @@ class CalibratedVote:
         self._tempo = tempo_counts(self._motions, own, *self._of_motion, sides)
         free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
         self._motions = unambiguous(self._motions, own, *self._of_motion, free)
+
+    def counting(self, gesture: int) -> Counting | None:
+        """Tell what about a gesture counts here; None where its movement is not compared."""
+        rows = np.flatnonzero(self._motions.gestures == gesture)
+        if not len(rows):
+            return None
+        readings = [self._motions.readings[row] for row in rows]
+        return Counting(
+            direction=not any(reading.backward for reading in readings),
+            tempo=bool(self._tempo[gesture]),
+            sides=not any(reading.exchanged for reading in readings),
+        )
 
     @property
     def needed(self) -> tuple[str, ...]:

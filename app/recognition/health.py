@@ -105,7 +105,7 @@ def check_health(
         for index, gesture in enumerate(language.gestures)
     )
     pairs = [
-        _pair_health(language, pair, rehearsal, distances)
+        pair_health(language, pair, rehearsal, distances)
         for pair in combinations(range(len(gestures)), 2)
     ]
     pairs.sort(key=_confusion_rate, reverse=True)
@@ -176,9 +176,25 @@ def _gesture_health(
     )
 
 
-def _pair_health(
+def pair_health(
     language: Language, pair: tuple[int, int], rehearsal: Rehearsal, distances: FloatArray
 ) -> PairHealth:
+    """Say how well two gestures are told apart.
+
+    Parameters
+    ----------
+    language
+        Of G gestures.
+    pair
+        Indices of the two.
+    rehearsal
+        Of both; what was not rehearsed is not forecast.
+    distances
+        ``(G, G)``: fused distance of each demonstration, a row, to every gesture; infinite where
+        they were not compared.
+
+    """
+
     def forecast(one: int, other: int) -> Forecast | None:
         performer = _performer(rehearsal, one)
         return None if performer is None else rehearsal.confusion(performer, other)

@@ -19,6 +19,7 @@ from app.recognition.quality import fault
 from app.recognition.recognition_result import Recognition
 from app.recognition.repair import repaired
 from app.recognition.shape_references import ShapeReferences
+from app.recognition.switches import Counting
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.voters import PAPER_VOTERS, Voter
@@ -168,6 +169,16 @@ class Recognizer:
         if self._calibrated is not None:
             return self._calibrated.references.landmarks
         return self._shapes.needed
+
+    def counting(self, label: str) -> Counting | None:
+        """Tell what about a gesture counts in this language.
+
+        None in profile ``paper``, and where the gesture was imported without its demonstration:
+        then only drawings are compared, whatever the switches say.
+        """
+        if self._calibrated is None:
+            return None
+        return self._calibrated.counting(self.language.labels.index(label))
 
     def compare(self, trajectory: Trajectory) -> Comparison:
         """Take the comparison of a `query` with every gesture apart, voter by voter."""

@@ -80,13 +80,15 @@ def salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
     Names in the trajectory's order; empty when nothing moves.
 
     """
-    moved = {
-        name: displacement
-        for name, displacement in displacements(trajectory).items()
-        if name in _representatives(trajectory)
-    }
-    bar = max(MIN_DISPLACEMENT, MIN_SHARE_OF_LARGEST * max(moved.values(), default=0.0))
+    moved = _eligible_displacements(trajectory)
+    bar = least_displacement(trajectory)
     return tuple(name for name in trajectory.landmarks if moved.get(name, 0.0) >= bar)
+
+
+def least_displacement(trajectory: Trajectory) -> float:
+    """Return the displacement from which `salient_landmarks` chooses, in the trajectory's unit."""
+    moved = _eligible_displacements(trajectory)
+    return max(MIN_DISPLACEMENT, MIN_SHARE_OF_LARGEST * max(moved.values(), default=0.0))
 
 
 def chosen_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
@@ -121,8 +123,18 @@ def chosen_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[st
     return tuple(name for name in trajectory.landmarks if name in names)
 
 
-def _representatives(trajectory: Trajectory) -> frozenset[str]:
-    """Return the landmarks that may be salient: one per group, and those outside any group."""
+def _eligible_displacements(trajectory: Trajectory) -> dict[str, float]:
+    """Return the displacements of the landmarks that `salient_landmarks` chooses from."""
+    eligible = representatives(trajectory)
+    moved = displacements(trajectory)
+    return {name: displacement for name, displacement in moved.items() if name in eligible}
+
+
+def representatives(trajectory: Trajectory) -> frozenset[str]:
+    """Return the landmarks that may be salient: one per group, and those outside any group.
+
+    Only landmarks that are seen at all.
+    """
     visible = [
         name
         for index, name in enumerate(trajectory.landmarks)

@@ -47,3 +47,23 @@ class Switches:
 
 
 AUTOMATIC = Switches()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counting:
+    """What about a gesture counts in its language, the automatic switches decided.
+
+    Attributes
+    ----------
+    direction
+        Whether it is read only the way round it was shown.
+    tempo
+        Whether its duration counts.
+    sides
+        Whether its left and right are never read as exchanged.
+
+    """
+
+    direction: bool
+    tempo: bool
+    sides: bool

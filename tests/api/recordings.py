@@ -27,7 +27,12 @@ def line(share: FloatArray) -> FloatArray:
     return np.stack([2 * share - 1, 0.3 * share], axis=1)
 
 
-SHAPES = {"circle": circle, "line": line}
+def backwards(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of the same circle, the other way round."""
+    return circle(1 - share)
+
+
+SHAPES = {"circle": circle, "circle backwards": backwards, "line": line}
 
 
 def recording_of(*shapes: str) -> Recording:

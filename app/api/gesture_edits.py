@@ -1,0 +1,142 @@
+"""Making and changing gestures as requests ask for it, before anything is written."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from app.api.demonstrations import Demonstration, demonstration_in
+from app.api.problems import Fault, ProblemError
+from app.api.schemas import GestureChange, NewDemonstration, SwitchPosition
+from app.api.studio import Studio
+from app.recognition import Gesture, GestureError, Language
+from app.recognition.switches import Switches
+
+WORDS = frozenset({"label", "description", "command"})
+"""What of a gesture is for people and the robot, and does not change what is recognised."""
+
+
+def demonstration_at(studio: Studio, where: NewDemonstration) -> Demonstration:
+    """Find the demonstration that a request names.
+
+    Raises
+    ------
+    NotFound
+        When there is no such clip.
+    ProblemError
+        409 while its poses are not extracted, 422 as `demonstration_in`.
+
+    """
+    recording = studio.recording(where.clip_id)
+    return demonstration_in(recording, where.start, where.end, keep_transit=where.keep_transit)
+
+
+def switched(
+    switches: Switches,
+    direction: SwitchPosition | None,
+    tempo: SwitchPosition | None,
+    mirror: SwitchPosition | None,
+) -> Switches:
+    """Return switches of which those are changed that are not None."""
+    return replace(
+        switches,
+        direction=direction or switches.direction,
+        tempo=tempo or switches.tempo,
+        mirror=mirror or switches.mirror,
+    )
+
+
+def with_change(
+    language: Language, label: str, change: GestureChange, demonstration: Demonstration | None
+) -> Language:
+    """Return a language in which one gesture is changed.
+
+    Parameters
+    ----------
+    language
+        Which has it.
+    label
+        The gesture's, before the change.
+    change
+        What is left out stays.
+    demonstration
+        The one that `change` names, if it names one.
+
+    Raises
+    ------
+    ProblemError
+        404 without such a gesture, 409 when its new label is taken, 422 when the salient keypoints
+        do not fit it.
+    GestureError
+        When the demonstration is none.
+
+    """
+    gesture = gesture_in(language, label)
+    if change.label is not None and change.label.strip() != gesture.label:
+        require_free(language, change.label.strip())
+    # The command may be set to null on purpose; all else that is null was left out.
+    fields = {
+        name: getattr(change, name)
+        for name in change.model_fields_set & WORDS
+        if name == "command" or getattr(change, name) is not None
+    }
+    changed = gesture
+    if demonstration is not None:
+        changed = _shown_anew(gesture, demonstration, change.salient)
+    elif change.salient:
+        changed = _with_salient(gesture, change.salient)
+    switches = switched(changed.switches, change.direction, change.tempo, change.mirror)
+    changed = replace(changed, switches=switches, **fields)
+    gestures = [changed if member is gesture else member for member in language.gestures]
+    return replace(language, gestures=gestures)
+
+
+def gesture_in(language: Language, label: str) -> Gesture:
+    """Return the gesture of that label.
+
+    Raises
+    ------
+    ProblemError
+        404 when there is none.
+
+    """
+    for gesture in language.gestures:
+        if gesture.label == label:
+            return gesture
+    raise ProblemError(404, "not_found", f"there is no gesture {label[:80]!r} in this language")
+
+
+def require_free(language: Language, label: str) -> None:
+    """Refuse a label that a gesture of the language has.
+
+    Raises
+    ------
+    ProblemError
+        409 when one has it.
+
+    """
+    if label in language.labels:
+        detail = f"the language has a gesture {label!r} already; choose another label"
+        fault = Fault(pointer="/label", detail=detail)
+        raise ProblemError(409, "label_taken", detail, errors=[fault])
+
+
+def _shown_anew(
+    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None
+) -> Gesture:
+    """Make a gesture from another demonstration; what it says and what counts stays."""
+    made = Gesture.from_demonstration(gesture.label, demonstration.poses, salient=salient or None)
+    return replace(
+        made,
+        description=gesture.description,
+        command=gesture.command,
+        switches=gesture.switches,
+    )
+
+
+def _with_salient(gesture: Gesture, names: list[str]) -> Gesture:
+    """Draw and describe a gesture anew with other salient keypoints."""
+    try:
+        return gesture.with_salient(names)
+    except GestureError as error:
+        fault = Fault(pointer="/salient", detail=str(error))
+        raise ProblemError(422, "gesture_unusable", str(error), errors=[fault]) from error

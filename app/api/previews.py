@@ -1,0 +1,325 @@
+"""Previews: what a gesture would be, and do to its language, before anything is saved."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from app.api.demonstrations import Demonstration
+from app.api.gesture_edits import demonstration_at, gesture_in, switched, with_change
+from app.api.languages import Revision
+from app.api.problems import Fault, ProblemError, documented
+from app.api.schemas import Body, GestureChange, Label, PosesView, SwitchPosition
+from app.api.studio import CurrentStudio, Studio
+from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
+from app.recognition.finding import visible_share
+from app.recognition.movement import hands_in
+from app.recognition.outlook import outlook
+from app.recognition.png import encode_png
+from app.recognition.repair import repaired
+from app.recognition.salience import (
+    displacements,
+    least_displacement,
+    representatives,
+    salient_landmarks,
+)
+from app.recognition.switches import Counting, Switches
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters import PAPER_VOTERS
+
+SWITCHES = ("direction", "tempo", "mirror")
+
+UNNAMED = "this gesture"
+"""What messages call a gesture that has no label yet."""
+
+DISPLACEMENT_DIGITS = 3
+"""Millimetres of a diver, in torso lengths."""
+
+TORSO_PIXELS = 160
+"""Height of a torso where a demonstration is drawn without its clip: the picture of a diver from
+the head to the knees is then about 640 high, as a clip's."""
+
+BORDER = 40
+"""Pixels around it: a head, of which only the middle is followed, is half as high."""
+
+router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
+
+
+class PreviewRequest(Body):
+    """A gesture as it would be saved."""
+
+    label: Label | None = Field(default=None, description="Which gesture is changed; null: a new")
+    change: GestureChange = Field(description="A new gesture needs its demonstration")
+
+
+class KeypointView(BaseModel):
+    """How much of a gesture one keypoint shows."""
+
+    landmark: str
+    displacement: float = Field(description="Peak to peak, in the preview's unit")
+    seen: float = Field(description="Share of the moments in which it was seen, 0 to 1")
+    usual: bool = Field(description="Whether it may be proposed: the one that stands for its hand")
+    proposed: bool = Field(description="Whether it moves enough to be proposed")
+
+
+class DescriptorView(BaseModel):
+    """How one voter describes the trajectory image."""
+
+    voter: str
+    unit: str = Field(description="What a distance of 1 between two descriptors means")
+    values: list[float]
+
+
+class PreviewView(BaseModel):
+    """What a gesture would be."""
+
+    problem: str | None = Field(description="Why it cannot be saved like this; null: it can")
+    image: str | None = Field(description="The trajectory image, a data URI of a PNG")
+    salient: list[str] = Field(description="The keypoints that are drawn")
+    keypoints: list[KeypointView] = Field(description="Empty without a demonstration")
+    threshold: Annotated[float, Field(ge=0)] | None = Field(
+        description="Displacement from which a keypoint is proposed"
+    )
+    unit: str = Field(description="Of displacements: torso_length, or extent without a torso")
+    descriptors: list[DescriptorView]
+    start: float | None = Field(description="Seconds of the clip; null without one")
+    end: float | None
+    seconds: float | None = Field(description="How long the demonstration lasts")
+
+
+class SwitchView(BaseModel):
+    """A switch, and what comes of it in this language."""
+
+    position: SwitchPosition
+    counts: bool | None = Field(description="Null: only the drawing is compared")
+    words: str
+
+
+class OutlookView(BaseModel):
+    """What is to be expected of a gesture in its language."""
+
+    switches: dict[str, SwitchView]
+    pairs: list[dict[str, Any]] = Field(description="As in the health report, the nearest first")
+    missed: dict[str, float] | None = Field(description="Null: there is no demonstration to vary")
+    refused: dict[str, float] | None
+
+
+@router.post("/preview", responses=documented(404, 409))
+def preview_gesture(
+    language_id: str, request: PreviewRequest, studio: CurrentStudio
+) -> PreviewView:
+    """Tell what a gesture would be; nothing is written."""
+    language = studio.language(studio.languages.get(language_id))
+    draft = _draft(language, request, studio)
+    try:
+        gesture = draft.gesture()
+    except GestureError as error:
+        return _view(None, draft, str(error))
+    return _view(gesture, draft, None)
+
+
+@router.post("/preview/health", responses=documented(404, 409))
+def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStudio) -> OutlookView:
+    """Tell what a gesture would do to its language; nothing is written."""
+    language = studio.language(studio.languages.get(language_id))
+    draft = _draft(language, request, studio)
+    gesture = draft.gesture()
+    recognizer = Recognizer(draft.language(), "full")
+    found = outlook(recognizer, gesture.label)
+    return OutlookView(
+        switches=_switch_views(gesture, recognizer.counting(gesture.label)),
+        pairs=[] if found is None else [pair.to_dict() for pair in found.pairs],
+        missed=None if found is None else found.missed.to_dict(),
+        refused=None if found is None else found.refused.to_dict(),
+    )
+
+
+@router.get("/gestures/{label:path}/demonstration", responses=documented(404))
+def get_demonstration(
+    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
+) -> PosesView:
+    """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
+    language = studio.language(studio.languages.get(language_id, revision))
+    trajectory = gesture_in(language, label).trajectory
+    if trajectory is None:
+        detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
+        raise ProblemError(404, "no_demonstration", detail)
+    return _laid_out(trajectory)
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """A gesture that is being edited, in its language."""
+
+    of: Language
+    request: PreviewRequest
+    demonstration: Demonstration | None
+
+    @property
+    def label(self) -> str:
+        """Its label, or what takes the place of one."""
+        label = self.request.label or UNNAMED
+        while self.request.label is None and label in self.of.labels:
+            label += "'"
+        return label
+
+    def language(self) -> Language:
+        """Return the language with it."""
+        change = self.request.change
+        if self.request.label is not None:
+            words = change.model_copy(update={"label": None})
+            return with_change(self.of, self.label, words, self.demonstration)
+        assert self.demonstration is not None  # `_draft` refuses it otherwise
+        made = Gesture.from_demonstration(
+            self.label, self.demonstration.poses, salient=change.salient or None
+        )
+        switches = switched(Switches(), change.direction, change.tempo, change.mirror)
+        return self.of.with_gesture(replace(made, switches=switches))
+
+    def gesture(self) -> Gesture:
+        """Return the gesture itself."""
+        return self.language().gesture(self.label)
+
+    def trajectory(self) -> Trajectory | None:
+        """Return all that is known of the movement; None where that is nothing."""
+        if self.demonstration is None:
+            return gesture_in(self.of, self.label).trajectory
+        try:
+            return Trajectory.from_poses(repaired(self.demonstration.poses).poses)
+        except PoseError:
+            return None
+
+
+def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draft:
+    where = request.change.demonstration
+    if request.label is not None:
+        gesture_in(language, request.label)
+    elif where is None:
+        detail = "a new gesture needs a demonstration: name its clip"
+        fault = Fault(pointer="/change/demonstration", detail=detail)
+        raise ProblemError(422, "request_invalid", detail, errors=[fault])
+    return _Draft(language, request, None if where is None else demonstration_at(studio, where))
+
+
+def _view(gesture: Gesture | None, draft: _Draft, problem: str | None) -> PreviewView:
+    trajectory, shown = draft.trajectory(), draft.demonstration
+    image = None if gesture is None else b64encode(encode_png(gesture.image)).decode("ascii")
+    known = trajectory is not None and len(trajectory) > 0
+    return PreviewView(
+        problem=problem,
+        image=image and f"data:image/png;base64,{image}",
+        salient=[] if gesture is None else list(gesture.salient),
+        keypoints=_keypoints(trajectory) if known and trajectory else [],
+        threshold=least_displacement(trajectory) if known and trajectory else None,
+        unit="torso_length" if trajectory is None else trajectory.unit,
+        descriptors=[] if gesture is None else _descriptors(gesture),
+        start=None if shown is None else shown.start,
+        end=None if shown is None else shown.end,
+        seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
+    )
+
+
+def _keypoints(trajectory: Trajectory) -> list[KeypointView]:
+    moved, usual = displacements(trajectory), representatives(trajectory)
+    proposed = salient_landmarks(trajectory)
+    views = [
+        KeypointView(
+            landmark=name,
+            displacement=round(moved[name], DISPLACEMENT_DIGITS),
+            seen=visible_share(trajectory, name),
+            usual=name in usual,
+            proposed=name in proposed,
+        )
+        for name in trajectory.landmarks
+    ]
+    return sorted(views, key=lambda view: -view.displacement)
+
+
+def _descriptors(gesture: Gesture) -> list[DescriptorView]:
+    return [
+        DescriptorView(
+            voter=voter.name, unit=voter.unit, values=gesture.descriptors[voter.name].tolist()
+        )
+        for voter in PAPER_VOTERS
+        if voter.name in gesture.descriptors
+    ]
+
+
+def _switch_views(gesture: Gesture, counting: Counting | None) -> dict[str, SwitchView]:
+    words = _switch_words(gesture, counting)
+    counts: dict[str, bool | None] = dict.fromkeys(SWITCHES)
+    if counting is not None:
+        sides_free = gesture.switches.mirror == "on" or not counting.sides
+        counts = {
+            "direction": counting.direction,
+            "tempo": counting.tempo,
+            "mirror": not sides_free,
+        }
+    return {
+        name: SwitchView(
+            position=getattr(gesture.switches, name), counts=counts[name], words=words[name]
+        )
+        for name in SWITCHES
+    }
+
+
+def _switch_words(gesture: Gesture, counting: Counting | None) -> dict[str, str]:
+    """Say what each switch comes to in this language."""
+    if counting is None:
+        only = "only its drawing is known, which looks the same either way"
+        return dict.fromkeys(SWITCHES, only)
+    return {
+        "direction": _direction_words(gesture, counting),
+        "tempo": _tempo_words(gesture, counting),
+        "mirror": _mirror_words(gesture, counting),
+    }
+
+
+def _direction_words(gesture: Gesture, counting: Counting) -> str:
+    if hands_in(gesture.salient) != 1:
+        return "it is read as shown: of two hands, opening is the reverse of closing"
+    if not counting.direction:
+        return "it is read either way round"
+    if gesture.switches.direction == "on":
+        return "it is read only the way round it is shown"
+    return "it counts here: another gesture is the same figure the other way round"
+
+
+def _tempo_words(gesture: Gesture, counting: Counting) -> str:
+    if not counting.tempo:
+        return "it is read however fast it is shown"
+    if gesture.switches.tempo == "on":
+        return "how long it takes counts"
+    return "it counts here: another gesture is the same movement, clearly slower or quicker"
+
+
+def _mirror_words(gesture: Gesture, counting: Counting) -> str:
+    if gesture.switches.mirror == "on":
+        return "its mirror image, with the other hand, is read as it too"
+    if not counting.sides:
+        return "its mirror image is not read as it, but left and right may have been exchanged"
+    return "its mirror image, with the other hand, is not read as it"
+
+
+def _laid_out(trajectory: Trajectory) -> PosesView:
+    """Place a trajectory in a picture that it fills, x right, y down."""
+    known = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
+    low, high = known.min(axis=0), known.max(axis=0)
+    # Without a torso the unit is the largest extent, which then is as high as two torsos.
+    scale = TORSO_PIXELS * (1 if trajectory.unit == "torso_length" else 2)
+    xy = (trajectory.xy - low) * scale + BORDER
+    size = np.ceil((high - low) * scale) + 2 * BORDER
+    return PosesView(
+        landmarks=list(trajectory.landmarks),
+        time=trajectory.time.tolist(),
+        xy=[
+            [[*point] if np.isfinite(point).all() else [None, None] for point in row] for row in xy
+        ],
+        confidence=None,
+        frame_size=[int(size[0]), int(size[1])],
+    )
