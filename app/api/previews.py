@@ -18,6 +18,7 @@ from app.api.schemas import Body, GestureChange, Label, PosesView, SwitchPositio
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.finding import visible_share
+from app.recognition.health_report import MOST_CONFUSION, MOST_MISSED
 from app.recognition.movement import hands_in
 from app.recognition.outlook import outlook
 from app.recognition.png import encode_png
@@ -107,6 +108,8 @@ class OutlookView(BaseModel):
     pairs: list[dict[str, Any]] = Field(description="As in the health report, the nearest first")
     missed: dict[str, float] | None = Field(description="Null: there is no demonstration to vary")
     refused: dict[str, float] | None
+    most_confusion: float = Field(description="Share of takes from which confusion is warned of")
+    most_missed: float = Field(description="The same for missed takes")
 
 
 @router.post("/preview", responses=documented(404, 409))
@@ -136,6 +139,8 @@ def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStu
         pairs=[] if found is None else [pair.to_dict() for pair in found.pairs],
         missed=None if found is None else found.missed.to_dict(),
         refused=None if found is None else found.refused.to_dict(),
+        most_confusion=MOST_CONFUSION,
+        most_missed=MOST_MISSED,
     )
 
 

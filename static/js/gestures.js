@@ -1,12 +1,12 @@
 // The gestures of the language, as cards with their trajectory images.
 
 import * as api from "./api.js";
-import { ask } from "./dialogs.js";
 import { byId, h, iconButton, reconcile } from "./dom.js";
 import { reloadLanguage } from "./languages.js";
 import { selectedClip, state, update } from "./state.js";
 import { complain } from "./toasts.js";
 import { did, tellDone } from "./undo.js";
+import { go } from "./views.js";
 
 /**
  * Change the language by `change(base)`, which calls the API with the revision `base`; it can be
@@ -30,34 +30,6 @@ export async function edit(doing, title, change, { from = state.gestures, mine =
 }
 
 const readable = (name) => name.replaceAll("_", " ");
-
-function rename(gesture) {
-  const from = state.gestures;
-  const mine = (change) => ({ ...from, gestures: from.gestures.map((each) => (each.label === gesture.label ? { ...each, ...change } : each)) });
-  return ask({
-    title: "Change gesture",
-    fields: [
-      { name: "label", label: "Label", value: gesture.label, required: true, most: 80 },
-      { name: "description", label: "Description", value: gesture.description, multiline: true },
-      { name: "command", label: "Command", value: typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, ""), hint: "What the robot should do." },
-    ],
-    action: "Save",
-    submit: (values) => {
-      const change = changesOf(gesture, values);
-      if (!Object.keys(change).length) return from;
-      return edit("Changing the gesture", `Change of ${gesture.label}`, (language) => api.languages.changeGesture(language, gesture.label, change), { from, mine: mine(change) });
-    },
-  });
-}
-
-/** Only what was changed: the rest may meanwhile be another's, and a command stays an object. */
-function changesOf(gesture, values) {
-  const change = {};
-  for (const name of ["label", "description"]) if (values[name] !== gesture[name]) change[name] = values[name];
-  const shown = typeof gesture.command === "string" ? gesture.command : JSON.stringify(gesture.command ?? "").replace(/^""$/, "");
-  if (values.command !== shown) change.command = values.command || null;
-  return change;
-}
 
 async function remove(gesture) {
   const from = state.gestures;
@@ -83,7 +55,7 @@ function draw(gesture, element) {
       h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
       mark ? h("span", { className: `tag ${mark}` }, mark) : null),
     h("div", { className: "card-buttons" },
-      iconButton("rename", `Change ${gesture.label}`, () => rename(gesture)),
+      iconButton("rename", `Change ${gesture.label}`, () => go("gesture", { gesture: gesture.label })),
       iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture))));
   card.dataset.signature = signature;
   return card;

@@ -8,7 +8,8 @@ const TYPED_IN = "input:not([type=range]):not([type=checkbox]):not([type=radio])
 
 /**
  * Let a key do something. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,", the first
- * is the one told; `when` says whether it means anything now. Plain keys are left alone where text
+ * is the one told; `when` says whether it means anything now, and of several that do the last one
+ * bound is meant. Plain keys are left alone where text
  * is typed. None may shadow what the browser itself does.
  */
 export function bind({ keys, text, group, run, when = () => true }) {
@@ -31,7 +32,7 @@ function pressed(event) {
   // A button that has the focus is pressed with the space bar.
   if (event.key === " " && at?.closest("button, a, summary, [role=tab]")) return;
   const combination = written(event);
-  const found = bound.find((each) => each.keys.includes(combination) && each.when());
+  const found = bound.findLast((each) => each.keys.includes(combination) && each.when());
   if (!found) return;
   event.preventDefault();
   found.run(event);

@@ -1,16 +1,14 @@
 // The clip on display: its takes, what is done with them, and what came of it.
 
 import * as api from "./api.js";
-import { ask } from "./dialogs.js";
 import { byId, h } from "./dom.js";
-import { edit } from "./gestures.js";
 import { newLanguage } from "./languages.js";
 import { frameShown } from "./playback.js";
 import { selectedClip, selectedRange, state, update } from "./state.js";
 import { drawTimeline } from "./timeline.js";
 import { attempt, complain, toast } from "./toasts.js";
 import { buildTransport } from "./transport.js";
-import { tellDone } from "./undo.js";
+import { go } from "./views.js";
 import { show } from "./workspace.js";
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
@@ -52,23 +50,10 @@ function query() {
   return whole && !state.takes?.length ? { clip_id: state.clip } : { clip_id: state.clip, start, end };
 }
 
+/** Make a gesture of what is selected, in its own view. */
 async function saveGesture() {
-  const range = query();
   if (!state.language && !(await newLanguage())) return;
-  const from = state.gestures;
-  const saved = await ask({
-    title: "Save as gesture",
-    text: `One demonstration is enough. It is added to \u201c${state.gestures?.name ?? ""}\u201d.`,
-    fields: [
-      { name: "label", label: "Label", required: true, most: 80, hint: "What the recogniser answers: circle, ascend, follow me." },
-      { name: "description", label: "Description", multiline: true },
-      { name: "command", label: "Command", hint: "What the robot should do." },
-    ],
-    action: "Save gesture",
-    submit: (values) => edit("Saving the gesture", `New gesture ${values.label}`, (language) => api.languages.addGesture(language, { ...range, label: values.label, description: values.description, command: values.command || null }), { from }),
-  });
-  if (!saved) return;
-  tellDone("Gesture saved", `${saved.gestures.at(-1).label}, in ${saved.name}`);
+  await go("gesture", { gesture: null });
 }
 
 /** The range on which the buttons act, as the API takes it. */

@@ -3,6 +3,7 @@
 import { curves, filmstrip, legend } from "./curves.js";
 import { byId, h, icon } from "./dom.js";
 import { moment, plural } from "./format.js";
+import { nearestFrame } from "./frames.js";
 import { seek } from "./playback.js";
 import { selectedClip, selectedRange, state, update } from "./state.js";
 
@@ -53,17 +54,7 @@ const saluteMarks = (take, duration) => [
 const lastMoment = () => state.timeline.time.at(-1) || 1;
 
 /** The frame that is nearest to a moment. */
-function frameAt(seconds) {
-  const { time } = state.timeline;
-  let low = 0;
-  let high = time.length - 1;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (time[middle] < seconds) low = middle + 1;
-    else high = middle;
-  }
-  return low > 0 && seconds - time[low - 1] < time[low] - seconds ? low - 1 : low;
-}
+const frameAt = (seconds) => nearestFrame(state.timeline.time, seconds);
 
 function handle(which) {
   const label = which === "start" ? "Start of the range" : "End of the range";

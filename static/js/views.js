@@ -6,17 +6,25 @@ import { follow, state, update } from "./state.js";
 /** The view at the start, which the URL does not name. */
 const FIRST = "studio";
 
+// A passing view has a tab only while it is open: elsewhere there is nothing it could show.
 const VIEWS = [
   { name: FIRST, title: "Studio" },
   { name: "languages", title: "Languages", load: () => import("./languages/view.js") },
+  { name: "gesture", title: "Gesture", load: () => import("./editor/view.js"), passing: true },
 ];
 
 const opened = new Map();
+const guards = new Map();
+
+/** Ask `mayLeave()`, which may take its time, before a view is left for another one. */
+export const guard = (view, mayLeave) => guards.set(view, mayLeave);
 
 const nameOf = (view) => (knows(view) ? view : FIRST);
 
 /** Show another view; `change` says what else is selected with it. */
-export function go(view, change = {}) {
+export async function go(view, change = {}) {
+  const current = nameOf(state.view);
+  if (nameOf(view) !== current && guards.has(current) && !(await guards.get(current)())) return;
   update({ ...change, view: view === FIRST ? null : view });
 }
 
@@ -43,7 +51,7 @@ export const here = (run) => (event) => {
 };
 
 function drawTabs(current) {
-  byId("views").replaceChildren(...VIEWS.map(({ name, title }) => h("a", {
+  byId("views").replaceChildren(...VIEWS.filter(({ name, passing }) => !passing || name === current).map(({ name, title }) => h("a", {
     href: address(name),
     "aria-current": name === current ? "page" : null,
     onclick: here(() => go(name)),

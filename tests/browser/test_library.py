@@ -154,6 +154,7 @@ def lose_race(open_page: OpenPage, library: Library) -> Callable[[], Page]:
         line = page.get_by_role("list", name="Gestures").get_by_role("listitem")
         line.filter(has_text="line").hover()
         page.get_by_role("button", name="Change line", exact=True).click()
+        expect(page.get_by_label("Label")).to_have_value("line")
         change = {"description": "a long line"}
         place = f"/api/v1/languages/{library.language}/gestures/line"
         assert library.client.patch(place, json=change).status_code == 200

@@ -111,19 +111,20 @@ def test_a_deleted_clip_comes_back(open_page: OpenPage, library: Library) -> Non
     )
 
 
-def test_a_label_that_is_taken_is_refused_in_the_dialog(
+def test_a_label_that_is_taken_is_refused_in_the_editor(
     open_page: OpenPage, library: Library
 ) -> None:
     page = open_page(library.address, scene=False)
     page.get_by_role("button", name="Save as gesture").click()
-    dialog = page.get_by_role("dialog")
-    dialog.get_by_role("button", name="Save gesture").click()
-    expect(dialog.get_by_role("alert")).to_have_text("Label is empty; type one.")
-    dialog.get_by_label("Label").fill("circle")
-    dialog.get_by_role("button", name="Save gesture").click()
-    expect(dialog.get_by_role("alert")).to_contain_text("has a gesture 'circle' already")
-    page.keyboard.press("Escape")
-    expect(dialog).to_have_count(0)
+    page.get_by_role("button", name="Save gesture").click()
+    problem = page.get_by_role("alert")
+    expect(problem.filter(has_text="Label is empty; type one.")).to_be_visible()
+    page.get_by_role("textbox", name="Label").fill("circle")
+    page.get_by_role("button", name="Save gesture").click()
+    expect(problem.filter(has_text="There is a gesture \u201ccircle\u201d already")).to_be_visible()
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Discard", exact=True).click()
+    expect(page.get_by_role("button", name="Save as gesture")).to_be_visible()
 
 
 def test_a_range_can_be_chosen_by_hand_with_the_keyboard(

@@ -1,0 +1,188 @@
+// One gesture being made or changed: nothing is saved before "Save", and nothing is lost until then.
+
+import { h } from "../dom.js";
+import { ago } from "../format.js";
+import { bind } from "../keys.js";
+import { follow, selectedRange, state } from "../state.js";
+import { complain, toast } from "../toasts.js";
+import { tellDone } from "../undo.js";
+import { go, guard } from "../views.js";
+import { written } from "./command.js";
+import { begin, canRedo, canUndo, discard, draft, forget, isChanged, placeOf, redo, saved, undo } from "./draft.js";
+import { switches, textProblem, texts } from "./form.js";
+import { keypoints, toggle } from "./keypoints.js";
+import { mayLeave } from "./leaving.js";
+import { previewing } from "./previewing.js";
+import { health, image } from "./results.js";
+import { requestOf, save } from "./saving.js";
+import { take } from "./take.js";
+
+const GROUP = "Editing a gesture";
+
+let editor = null; // the one on display
+
+/** What is edited: a gesture of the language, or a new one from what is selected. */
+function subject() {
+  const { gestures, gesture, clip, clips } = state;
+  if (!gestures || gestures.id !== state.language) return null;
+  if (gesture) return { language: gestures, gesture, key: `${gestures.id} ${gesture}` };
+  if (!clip || !clips.some((each) => each.id === clip && each.status === "done") || !state.takes || !state.timeline) return null;
+  return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
+}
+
+function valuesOf({ language, gesture }) {
+  if (gesture === null) {
+    const { start, end } = selectedRange();
+    return { label: "", description: "", command: "", salient: null, direction: "auto", tempo: "auto", mirror: "auto", clip: { clip_id: state.clip, start, end, keep_transit: false } };
+  }
+  const { label, description, command, salient, direction, tempo, mirror } = language.gestures.find((each) => each.label === gesture);
+  return { label, description, command: written(command), salient: [...salient].sort(), direction, tempo, mirror, clip: null };
+}
+
+function build(section, about) {
+  const { language, gesture } = about;
+  const others = () => state.gestures.gestures.map((each) => each.label).filter((label) => label !== gesture);
+  const drawn = gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
+  let preview = null;
+  let outlook = null;
+  let before = null; // the outlook of what is saved
+  const pick = (landmark) => { if (!toggle(landmark, preview)) toast("One keypoint stays", "At least one keypoint is followed; choose another one first."); };
+  const parts = { take: take({ language: language.id, gesture, drawn, pick }), image: image(), keypoints: keypoints(() => preview), health: health(language.name), texts: texts(others), switches: switches() };
+  const button = (text, title, run, className = "") => h("button", { type: "button", className, title, onclick: run }, text);
+  const undoing = button("Undo", "Undo (Ctrl+Z)", undo);
+  const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
+  const saving = h("button", { type: "submit", className: "primary" }, gesture === null ? "Save gesture" : "Save");
+  const status = h("span", { className: "draft-state dim", role: "status" });
+  const restored = h("p", { className: "restored", role: "status", hidden: true });
+  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
+
+  const ask = previewing({
+    shown: (found, forecast) => {
+      preview = found;
+      outlook = forecast;
+      if (forecast && !isChanged() && gesture !== null) before = forecast;
+      draw();
+    },
+    failed: (error) => complain(error, "The preview"),
+  });
+
+  function draw() {
+    parts.texts.draw();
+    parts.switches.draw(outlook);
+    parts.keypoints.draw(preview);
+    parts.take.draw(preview);
+    parts.image.draw(preview);
+    parts.health.draw(outlook, before, preview?.problem);
+    undoing.disabled = !canUndo();
+    redoing.disabled = !canRedo();
+    status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
+    restored.hidden = restored.hidden || !isChanged();
+    saving.disabled = gesture !== null && !isChanged();
+  }
+
+  function changed() {
+    problem.hidden = true;
+    draw();
+    ask(language.id, requestOf(gesture, draft(), drawn && !draft().clip));
+  }
+
+  function abandon() {
+    forget();
+    close();
+    go(null, { gesture: null });
+  }
+
+  async function submit(event) {
+    event.preventDefault();
+    const fault = textProblem(draft(), others());
+    if (fault) return tell(fault.text, document.getElementById(fault.id));
+    saving.disabled = true;
+    try {
+      const label = draft().label.trim();
+      const now = await save(about.language, gesture, draft(), saved());
+      abandon();
+      tellDone("Gesture saved", `${label}, in ${now.name}`);
+    } catch (error) {
+      if (error.code !== "cancelled") tell(error.message);
+      else abandon(); // Somebody else's change was preferred to this one.
+    } finally {
+      saving.disabled = false;
+    }
+    return undefined;
+  }
+
+  function tell(text, input) {
+    problem.textContent = text;
+    problem.hidden = false;
+    input?.focus();
+  }
+
+  const form = h("form", { className: "editor-page", noValidate: true, onsubmit: submit },
+    h("div", { className: "page-head" },
+      h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`), h("span", { className: "dim in-language" }, `in ${language.name}`), status,
+      h("span", { className: "spacer" }), undoing, redoing, button("Cancel", "Back without saving", leave), saving),
+    restored, problem,
+    h("div", { className: "editor-grid" },
+      h("div", { className: "column" }, parts.take.element, parts.keypoints.element),
+      h("div", { className: "column" }, parts.image.element, parts.health.element),
+      h("div", { className: "column" }, parts.texts.element, parts.switches.element)));
+  const kept = begin(placeOf(language.id, gesture ?? `new ${state.clip}`), valuesOf(about), changed);
+  if (kept !== null) {
+    restored.replaceChildren(`A draft that was not saved, last changed ${ago(kept)}, is restored.`, button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard));
+    restored.hidden = false;
+  }
+  section.replaceChildren(form);
+  editor = { about, take: parts.take };
+  changed();
+  if (gesture === null) parts.texts.focus();
+}
+
+function close() {
+  editor?.take.pause();
+  editor = null;
+}
+
+const leave = () => go(null, { gesture: null });
+
+function explain(section) {
+  const { gestures, gesture } = state;
+  const missing = gestures && gesture && !gestures.gestures.some((each) => each.label === gesture);
+  section.replaceChildren(h("div", { className: "editor-empty" },
+    h("h1", {}, missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"),
+    h("p", { className: "dim" }, missing ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.` : "Choose a gesture of the language, or a take of a clip to make one of."),
+    h("button", { type: "button", className: "primary", onclick: leave }, "Back to the studio")));
+}
+
+/** Build the view, and build it anew when something else is edited. */
+export function open(section) {
+  follow(["view", "gesture", "gestures", "language", "clip", "clips", "takes", "timeline", "loaded"], () => {
+    if (state.view !== "gesture") return close();
+    const about = subject();
+    const known = about && (about.gesture === null || about.language.gestures.some((each) => each.label === about.gesture));
+    if (!known) {
+      close();
+      if (state.loaded && state.gestures && (state.gesture || !state.clip)) explain(section);
+      return undefined;
+    }
+    if (editor?.about.key === about.key) return adopt(about);
+    close();
+    return build(section, about);
+  });
+  guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
+  const when = () => state.view === "gesture" && editor !== null;
+  const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
+  keys(["Ctrl+Z"], "Undo in the draft", undo);
+  keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
+  keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
+  for (const [key, by, text] of [[",", -1, "One frame back"], [".", 1, "One frame on"], ["Shift+,", -10, "Ten frames back"], ["Shift+.", 10, "Ten frames on"]]) keys([key], text, () => editor.take.step(by));
+  keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
+  keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
+}
+
+/** The language has another revision: where this gesture stayed as it was, that one is changed. */
+function adopt(about) {
+  const now = about.language.gestures.find((each) => each.label === about.gesture);
+  const then = editor.about.language.gestures.find((each) => each.label === about.gesture);
+  const content = (gesture) => gesture && JSON.stringify({ ...gesture, thumbnail: null });
+  if (content(now) === content(then)) editor.about.language = about.language;
+}

@@ -1,0 +1,185 @@
+"""Editing a gesture: seen before it is saved, taken back, and never lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, request.node.name.removeprefix("test_")[:40])
+
+
+def gesture(library: Library, label: str) -> dict[str, object]:
+    members = library.client.get(f"/api/v1/languages/{library.language}").json()["gestures"]
+    return next(member for member in members if member["label"] == label)
+
+
+def revision(library: Library) -> int:
+    return int(library.client.get(f"/api/v1/languages/{library.language}").json()["revision"])
+
+
+def editing(open_page: OpenPage, library: Library, label: str = "circle") -> Page:
+    page = open_page(library.address | {"view": "gesture", "gesture": label}, scene=False)
+    expect(page.get_by_role("heading", name=f"Edit {label}")).to_be_visible()
+    expect(page.get_by_text("Missed: read as")).to_be_visible()
+    return page
+
+
+def keypoint(page: Page, name: str) -> Locator:
+    return page.get_by_role("list", name="Keypoints").get_by_role("checkbox", name=name)
+
+
+def test_a_take_becomes_a_gesture_seen_before_it_is_saved(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="Save as gesture").click()
+    expect(page.get_by_label("Label")).to_be_focused()
+    expect(page.get_by_text("Confused with circle")).to_be_visible()
+    page.keyboard.type("ring")
+    page.get_by_label("Command").fill('{"move": ')
+    page.get_by_role("button", name="Save gesture").click()
+    expect(page.get_by_role("alert").filter(has_text="JSON object but is none")).to_be_visible()
+    page.get_by_label("Command").fill('{"move": [1, 0]}')
+    page.get_by_role("group", name="Mirror").get_by_text("On", exact=True).click()
+    page.get_by_role("button", name="Save gesture").click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    saved = gesture(library, "ring")
+    assert saved["command"] == {"move": [1, 0]}
+    assert saved["mirror"] == "on"
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("New gesture ring", exact=True)).to_be_visible()
+    assert "ring" not in [each["label"] for each in _gestures(library)]
+
+
+def _gestures(library: Library) -> list[dict[str, object]]:
+    answer = library.client.get(f"/api/v1/languages/{library.language}").json()
+    gestures: list[dict[str, object]] = answer["gestures"]
+    return gestures
+
+
+def test_a_keypoint_is_switched_by_its_bar_and_on_the_skeleton(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    before = revision(library)
+    drawing = page.get_by_role("img", name="Trajectory image")
+    first = drawing.get_attribute("src")
+    expect(keypoint(page, "right wrist")).to_be_checked()
+    page.locator("circle[data-landmark=left_wrist]").click()
+    expect(keypoint(page, "left wrist")).to_be_checked()
+    expect(drawing).not_to_have_attribute("src", str(first))
+    keypoint(page, "left wrist").uncheck()
+    expect(drawing).to_have_attribute("src", str(first))
+    keypoint(page, "right wrist").click()
+    expect(page.get_by_role("alert").filter(has_text="At least one keypoint")).to_be_visible()
+    assert revision(library) == before
+
+
+def test_the_draft_is_undone_step_by_step_and_saved_as_one_revision(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    before = revision(library)
+    page.get_by_label("Description").fill("round")
+    page.locator("circle[data-landmark=left_wrist]").click()
+    page.get_by_role("group", name="Direction").get_by_text("Off").click()
+    expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(
+        page.get_by_role("group", name="Direction").get_by_role("radio", name="Auto")
+    ).to_be_checked()
+    page.keyboard.press("Control+z")
+    expect(keypoint(page, "right wrist")).to_be_checked()
+    page.keyboard.press("Control+Shift+z")
+    expect(keypoint(page, "left wrist")).to_be_checked()
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    saved = gesture(library, "circle")
+    assert saved["description"] == "round"
+    assert saved["direction"] == "auto"
+    assert saved["salient"] == ["left_wrist", "right_wrist"]
+    assert revision(library) == before + 1
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("Change of circle", exact=True)).to_be_visible()
+    assert gesture(library, "circle")["description"] == ""
+
+
+def test_a_draft_survives_a_reload_and_can_be_discarded(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Description").fill("half finished")
+    page.reload()
+    expect(page.get_by_label("Description")).to_have_value("half finished")
+    page.get_by_role("button", name="Discard the draft").click()
+    expect(page.get_by_label("Description")).to_have_value("")
+    page.reload()
+    expect(page.get_by_role("heading", name="Edit circle")).to_be_visible()
+    expect(page.get_by_text("is restored")).to_be_hidden()
+
+
+def test_leaving_a_changed_gesture_asks_first(open_page: OpenPage, library: Library) -> None:
+    page = editing(open_page, library)
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Change circle", exact=True).click()
+    page.get_by_label("Description").fill("round")
+    page.get_by_role("link", name="Languages").click()
+    page.get_by_role("button", name="Go on editing").click()
+    expect(page.get_by_role("heading", name="Edit circle")).to_be_visible()
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Keep the draft").click()
+    page.get_by_role("button", name="Change circle", exact=True).click()
+    expect(page.get_by_label("Description")).to_have_value("round")
+    page.get_by_role("button", name="Cancel").click()
+    page.get_by_role("button", name="Discard", exact=True).click()
+    page.get_by_role("button", name="Change circle", exact=True).click()
+    expect(page.get_by_label("Description")).to_have_value("")
+
+
+def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Clip", exact=True).select_option(library.clip)
+    transit = page.get_by_role("checkbox", name="Leave out the hand")
+    expect(transit).to_be_checked()
+    start = page.get_by_label("Start frame")
+    frame = int(start.input_value())
+    page.get_by_label("Start of the demonstration").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    expect(start).to_have_value(str(frame + 2))
+    expect(transit).to_be_disabled()
+    expect(page.get_by_text(f"frame {frame + 2},")).to_be_visible()
+    page.get_by_label("Take", exact=True).select_option("0")
+    expect(start).to_have_value(str(frame))
+    transit.uncheck()
+    expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+
+
+def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(
+    open_page: OpenPage, library: Library
+) -> None:
+    place = f"/api/v1/languages/{library.language}/export"
+    exported = library.client.get(place, params={"format": "osg-reference"}).content
+    answer = library.client.post("/api/v1/languages/import", content=exported).json()
+    query = {"language": str(answer["id"]), "view": "gesture", "gesture": "circle"}
+    page = open_page(query, scene=False)
+    expect(page.get_by_text("Imported as a drawing")).to_be_visible()
+    expect(page.get_by_text("which keypoints are followed cannot be changed")).to_be_visible()
+    page.get_by_label("Label").fill("ring")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
