@@ -26,7 +26,7 @@ from benchmarks.methods.base import Method
 from benchmarks.recognition import wander
 
 GESTURES = 20
-ROUNDS = 9
+ROUNDS = 25
 FRAMES = 60
 
 ARM = {"elbow": 0.5, "wrist": 1.0, "index": 1.15, "pinky": 1.15, "thumb": 1.1}
@@ -51,15 +51,20 @@ def whole_body(seed: int) -> PoseSequence:
     )
 
 
-def seconds(work: Callable[[], object], rounds: int = ROUNDS) -> float:
-    """Return the median processor time of some work, done once before it counts."""
-    work()
-    times = []
-    for _ in range(rounds):
-        start = process_time()
+def seconds(*works: Callable[[], object], rounds: int = ROUNDS) -> list[float]:
+    """Return the median processor time of each of some works, done once before it counts.
+
+    They take turns: what slows down the machine for a while then slows down all of them.
+    """
+    for work in works:
         work()
-        times.append(process_time() - start)
-    return median(times)
+    times: list[list[float]] = [[] for _ in works]
+    for _ in range(rounds):
+        for work, taken in zip(works, times, strict=True):
+            start = process_time()
+            work()
+            taken.append(process_time() - start)
+    return [median(taken) for taken in times]
 
 
 def seconds_a_frame() -> float:
@@ -74,8 +79,8 @@ def seconds_a_frame() -> float:
     return median(times)
 
 
-def seconds_as_published(demonstrations: list[PoseSequence], query: PoseSequence) -> float | None:
-    """Return the time of the published steps, or None where mahotas is not installed."""
+def published_steps(demonstrations: list[PoseSequence]) -> Method | None:
+    """Return the published steps for some gestures, or None where mahotas is not installed."""
     try:
         from benchmarks.methods.published import PublishedCode
     except ModuleNotFoundError:
@@ -83,7 +88,7 @@ def seconds_as_published(demonstrations: list[PoseSequence], query: PoseSequence
     method: Method = PublishedCode()
     for number, demonstration in enumerate(demonstrations):
         method.add(f"figure {number}", demonstration)
-    return seconds(lambda: method.answer(query))
+    return method
 
 
 def main() -> None:
@@ -96,19 +101,22 @@ def main() -> None:
     language, query = Language("bench", gestures), whole_body(GESTURES)
     recognizer = Recognizer(language, "full")
     alone = [Recognizer(Language("one", [gesture]), "paper") for gesture in gestures]
-    recognition = seconds(lambda: recognizer.recognize(query))
-    once_each = seconds(lambda: [one.recognize(query) for one in alone])
+    method = published_steps(demonstrations)
+    recognition, once_each, published = seconds(
+        lambda: recognizer.recognize(query),
+        lambda: [one.recognize(query) for one in alone],
+        lambda: method.answer(query) if method else None,
+    )
     frame = seconds_a_frame()
-    published = seconds_as_published(demonstrations, query)
 
     def add() -> Recognizer:
         added = Gesture.from_demonstration("one more", query)
         return Recognizer(language.with_gesture(added), "full")
 
-    adding = seconds(add, rounds=3)
+    (adding,) = seconds(add, rounds=3)
     head = f"profile full, {GESTURES} gestures, {len(POSE_LANDMARKS)} landmarks: "
     print(f"{head}a recognition takes {recognition / frame:.2f} of one frame of pose estimation")
-    if published is None:
+    if method is None:
         print(f"{head}the published steps need mahotas, which has no wheel for this platform")
     else:
         print(f"{head}a recognition takes {recognition / published:.2f} of the published steps")
