@@ -162,10 +162,22 @@ def test_a_gesture_is_found_without_looking_for_salutes(
 
 @pytest.mark.slow
 def test_a_range_by_hand_needs_no_salute(osg_studio: OsgStudio, sample_clips: Path) -> None:
-    clip = f"{sample_clips / 'ordinary-movement.mp4'}@0.5-2.5"
+    clip = f"{sample_clips / 'circle-test-1.mp4'}@2.4-4.2"
     ended = osg_studio("recognize", clip, "--language", LANGUAGE)
     assert ended.code == 0
-    assert ended.out.split("\t")[:2] == ["0.50", "2.50"]
+    assert ended.out.split("\t")[:3] == ["2.40", "4.20", "circle"]
+
+
+@pytest.mark.slow
+def test_what_is_no_gesture_is_rejected_and_ends_with_one(
+    osg_studio: OsgStudio, sample_clips: Path
+) -> None:
+    clip = f"{sample_clips / 'ordinary-movement.mp4'}@0.5-2.5"
+    ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--json")
+    assert ended.code == 1
+    (take,) = json.loads(ended.out)["takes"]
+    assert take["label"] is None
+    assert take["nearest"] in take["gestures"]
 
 
 @pytest.mark.slow

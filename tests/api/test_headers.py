@@ -33,4 +33,8 @@ def test_viser_has_a_policy_of_its_own_that_keeps_it_here(client: httpx.Client) 
 
 
 def test_answers_of_the_api_are_not_stored(client: httpx.Client) -> None:
-    assert client.get("/api/v1/clips").headers["cache-control"] == "no-store"
+    assert client.get("/api/v1/recognitions").headers["cache-control"] == "no-store"
+
+
+def test_lists_may_be_kept_by_the_browser_but_are_asked_for_again(client: httpx.Client) -> None:
+    assert client.get("/api/v1/clips").headers["cache-control"] == "private, no-cache"

@@ -136,7 +136,7 @@ def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> No
         job = client.get(f"{JOBS}/{job_id}").json()
         assert job["error_code"] == "decoder"
         assert "no progress" in job["error"]
-        assert not alive(worker)
+        until(lambda: not alive(worker))
 
 
 @pytest.mark.skipif(os.name != "posix", reason="POSIX resource limits")

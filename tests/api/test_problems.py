@@ -70,7 +70,8 @@ def test_what_does_not_exist_is_a_problem_on_every_route(client: httpx.Client) -
         address = path.replace("{label}", "circle")
         for name in ("clip_id", "job_id", "language_id", "recognition_id", "workspace_id"):
             address = address.replace(f"{{{name}}}", "missing")
-        answer = client.request(method, address, json=BODIES.get((method, path)))
+        body, query = BODIES.get((method, path)), QUERIES.get(path)
+        answer = client.request(method, address, json=body, params=query)
         assert_problem(answer, 404, "not_found")
 
 
@@ -82,6 +83,9 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("PUT", "/api/v1/workspaces/{workspace_id}/view"): {"clip_id": "missing"},
     ("PATCH", "/api/v1/workspaces/{workspace_id}"): {"dark": True},
 }
+
+
+QUERIES = {"/api/v1/languages/{language_id}/contrast": {"one": "circle", "other": "line"}}
 
 
 def test_a_body_that_is_no_json_is_a_problem_on_every_route(client: httpx.Client) -> None:
