@@ -2,15 +2,17 @@
 
 Plausible takes of the demonstration (`variation`) tell how far each voter's distances reach for
 this gesture. Their logarithms spread alike for all gestures, so that one multiple of their
-geometric mean, `REACH`, serves for all: other people's takes lie twice as far as the
+geometric mean, the voter's `REACH`, serves for all: other people's takes lie twice as far as the
 demonstrator's own, and about one in twenty of them beyond it. Movements that mean nothing
-(`foreign`) then pull a threshold in, a little, when they would pass it.
+(`foreign`) then pull the thresholds in, a little, when they would pass them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 
@@ -21,7 +23,7 @@ from app.recognition.fusion import TYPICAL
 from app.recognition.gesture import Gesture, Rates, condensed
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE, describe_movement
 from app.recognition.poses import FloatArray
-from app.recognition.rejection import NOVELTY_WEIGHTS, novelty, novelty_weights
+from app.recognition.rejection import novelty, novelty_weights
 from app.recognition.variation import variants
 from app.recognition.voters.motion import MOTION_VOTERS
 
@@ -33,13 +35,29 @@ OWN = 0.75
 (`fusion.TYPICAL`), geometrically: twelve takes of one demonstration know more than the average
 over other gestures, but not all. From 0.7 to 1 the result is the same."""
 
-REACH = 5.0
+ANY_GESTURES = frozenset({"path_length"})
+"""Voters for which the typical distance is that of any gesture: the lengths of plausible takes
+differ by less than half of what those of real ones do."""
+
+REACH: Final[Mapping[str, float]] = MappingProxyType(
+    {
+        "path": 7.0,
+        "direction": 7.0,
+        "path_length": 7.0,
+        "posture": 4.0,
+        "hand_attitude": 4.0,
+    }
+)
 """Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded
-sets, one in twenty of the takes lies beyond."""
+sets, one in twenty of the takes lies beyond, once `foreign` has pulled in what it does. How an arm
+is held tells more than what it draws: with as long a reach, a quarter more of the foreign signals
+are accepted at as many true ones refused; with half the reach it is a twentieth less, but one in
+seven of the true signals is refused. Of other people's takes not one in a hundred has a
+way 1.5 times as long; the reach is 1.7 times."""
 
 LEAST_DISTANCE = 0.1
-"""Least distance to a take, as a share of the typical one: where only one landmark is followed,
-which hand moves never differs."""
+"""Least distance to a take, as a share of the typical one: where only one bone is seen, its
+attitude may hardly differ."""
 
 OTHERS = 2.0
 """How much farther other people's takes lie than the demonstrator's own: variants by 1.9 to 2.1
@@ -49,12 +67,19 @@ UNFORESEEN = 0.2
 """Scale by which real takes differ from variants beyond that, see `Forecast.of_margins`; the same
 as in the health report."""
 
-LEAST_SHARE = 0.8
-"""How far foreign movements pull a threshold in, at most: below, another person's takes are refused
-more often than foreign movements are."""
+LEAST_SHARE = 0.9
+"""How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
+foreign movements is accepted at as many true ones refused."""
+
+PLAUSIBLE = 0.2
+"""Novelty below which a foreign movement is the gesture, whatever it was spliced from: about that
+of a typical take, 1 / `REACH`."""
 
 DIGITS = 4
 """Significant decimal digits kept of a threshold: far more than it is known to."""
+
+RULE = repr((*REACH.items(), OWN, LEAST_SHARE))
+"""What thresholds depend on beside the gestures: those by another rule are made anew."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,15 +88,15 @@ class _Reach:
 
     Attributes
     ----------
-    spreads
-        ``(V, G)``: typical distances to further takes by the demonstrator.
+    thresholds
+        ``(V, G)``: the multiples `REACH` of typical distances to further takes by the
+        demonstrator; infinite for voters that no view asks.
     takes
-        ``(G, TAKES)``: novelties of these takes, in `spreads`; NaN for gestures without
-        demonstration.
+        ``(G, TAKES)``: novelties of these takes; NaN for gestures without demonstration.
 
     """
 
-    spreads: FloatArray
+    thresholds: FloatArray
     takes: FloatArray
 
 
@@ -89,17 +114,17 @@ def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     """
     vote = CalibratedVote(gestures)
     reach = _reach(gestures, vote)
-    foreign = _foreign(gestures, vote, reach.spreads)
+    foreign = _foreign(gestures, vote, reach.thresholds)
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
-        else _with_thresholds(gesture, reach.spreads[:, index], reach.takes[index], others)
+        else _with_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
         for index, (gesture, others) in enumerate(zip(gestures, foreign.T, strict=True))
     )
 
 
 def _with_thresholds(
-    gesture: Gesture, spread: FloatArray, takes: FloatArray, foreign: FloatArray
+    gesture: Gesture, reach: FloatArray, takes: FloatArray, foreign: FloatArray
 ) -> Gesture:
     """Set the thresholds of one gesture.
 
@@ -107,19 +132,17 @@ def _with_thresholds(
     ----------
     gesture
         The gesture.
-    spread
-        ``(V,)`` typical distances to further takes.
+    reach
+        ``(V,)`` thresholds as far as takes reach.
     takes, foreign
-        Novelties in these typical distances, of further takes and of foreign movements; infinite
-        for a foreign movement that is nearer to another gesture, NaN for what is not known.
+        Novelties with these thresholds, of further takes and of foreign movements; infinite for a
+        foreign movement that is nearer to another gesture, NaN for what is not known.
 
     """
-    # What lies nearer than a typical take is the gesture, whatever it was spliced from.
-    near = foreign[foreign > 1.0].min(initial=REACH)
-    limit = max(LEAST_SHARE * REACH, min(REACH, float(near)))
+    near = foreign[foreign > PLAUSIBLE].min(initial=1.0)
+    limit = max(LEAST_SHARE, float(near))
     thresholds = {
-        voter: float(f"{limit * spread[VOTERS.index(voter)]:.{DIGITS}g}")
-        for voter in NOVELTY_WEIGHTS
+        voter: float(f"{limit * reach[VOTERS.index(voter)]:.{DIGITS}g}") for voter in REACH
     }
     if not np.isfinite(takes).all() or np.isnan(foreign).any():
         return replace(gesture, thresholds=thresholds, rates=None)
@@ -134,21 +157,23 @@ def _with_thresholds(
 def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
     """Draw plausible takes of every gesture and measure how far they lie."""
     typical = np.array([TYPICAL[voter].within for voter in VOTERS])
-    spreads = np.repeat(typical[:, None], len(gestures), axis=1)
+    multiples = np.array([REACH.get(voter, np.inf) for voter in VOTERS])
+    own = np.array([0.0 if voter in ANY_GESTURES else OWN for voter in VOTERS])
+    thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
     if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
-        return _Reach(spreads, takes)
+        return _Reach(thresholds, takes)
     for row in vote.references.as_shown:
         index = int(vote.references.gestures[row])
         if index >= len(gestures):
             continue  # a mirror image varies as much as what it mirrors
         distances = _distances_to_takes(gestures[index], vote, int(row))
         known = np.isfinite(distances).all(axis=1)
-        floor = LEAST_DISTANCE * typical[known]
-        own = np.exp(np.log(np.maximum(distances[known], floor[:, None])).mean(axis=1))
-        spreads[known, index] = own**OWN * typical[known] ** (1 - OWN)
-        takes[index] = novelty(distances, spreads[:, [index]], novelty_weights(VOTERS))
-    return _Reach(spreads, takes)
+        least = LEAST_DISTANCE * typical[known, None]
+        mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
+        thresholds[known, index] *= (mean / typical[known]) ** own[known]
+        takes[index] = novelty(distances, thresholds[:, [index]], novelty_weights(VOTERS))
+    return _Reach(thresholds, takes)
 
 
 def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> FloatArray:
@@ -170,19 +195,21 @@ def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> Flo
     return distances
 
 
-def _foreign(gestures: Sequence[Gesture], vote: CalibratedVote, spreads: FloatArray) -> FloatArray:
+def _foreign(
+    gestures: Sequence[Gesture], vote: CalibratedVote, thresholds: FloatArray
+) -> FloatArray:
     """Measure how far foreign movements lie from the gesture they are nearest to.
 
     Returns
     -------
-    ``(N, G)`` novelties in `spreads`, infinite for the gestures they are not nearest to. Where the
+    ``(N, G)`` novelties, infinite for the gestures they are not nearest to. Where the
     landmarks of the gestures are of another body than the accidental movements', or there are
     more than `MAX_GESTURES_READ_OTHERWISE` gestures, NaN: nothing is known.
 
     """
     if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
         return np.full((1, len(gestures)), np.nan)
-    measuring = vote.with_thresholds(spreads)
+    measuring = vote.with_thresholds(thresholds)
     found = []
     for movement in foreign_movements(gestures):
         compared = measuring.compare(condensed(movement), drawn=False)

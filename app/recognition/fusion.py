@@ -55,6 +55,7 @@ TYPICAL = {
     "cloud": Trust(0.2, 0.18, 0.43),
     "stroke_direction": Trust(0.05, 0.35, 2.5),
     "which_hand": Trust(0.05, 0.05, 0.5),
+    "path_length": Trust(0.0, 0.11, 0.28),
     "tempo": Trust(0.0, 0.35, 0.5),
 }
 """Measured on air-drawn digits, letters and commands, two-handed figures and aircraft

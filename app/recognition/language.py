@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from app.recognition.calibration import calibrated
+from app.recognition.calibration import RULE, calibrated
 from app.recognition.errors import LanguageError
 from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
@@ -116,7 +116,7 @@ class Language:
     @property
     def fingerprint(self) -> str:
         """What the thresholds depend on, in eight hexadecimal digits (CRC-32)."""
-        checksum = 0
+        checksum = crc32(RULE.encode())
         for gesture in self.gestures:
             said = (gesture.salient, gesture.switches, gesture.image.any())
             checksum = crc32(repr(said).encode("utf-8", "surrogatepass"), checksum)

@@ -326,3 +326,16 @@ def test_switches_are_kept_in_the_file_and_left_out_when_automatic() -> None:
 def test_a_switch_has_three_positions() -> None:
     with pytest.raises(GestureError, match="tempo must be auto, on or off, got 'fast'"):
         with_switches(circle, tempo="fast")
+
+
+def test_another_movement_is_not_believed(recognizer: Recognizer) -> None:
+    """A zigzag about a line is near it step by step, the arm held alike, but its way is longer."""
+
+    def zigzag(share: FloatArray) -> FloatArray:
+        height = 0.4 * np.abs((6 * share) % 2 - 1)
+        return np.stack([-1.2 + share, height], axis=1)
+
+    foreign = recognizer.recognize(recording(zigzag, jitter=0.01))
+    own = recognizer.recognize(recording(circle, jitter=0.01))
+    assert foreign.label is None
+    assert foreign.confidence < 0.5 < own.confidence

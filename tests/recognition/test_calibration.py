@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.calibration import calibrated
+from app.recognition.calibration import REACH, calibrated
 from app.recognition.gesture import condensed
-from app.recognition.rejection import NOVELTY_WEIGHTS
 from app.recognition.switches import Switches
 from app.recognition.variation import variants
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
@@ -24,7 +23,7 @@ def language() -> Language:
 
 def test_every_gesture_has_thresholds_and_expected_rates(language: Language) -> None:
     for gesture in language.gestures:
-        assert set(gesture.thresholds) == set(NOVELTY_WEIGHTS)
+        assert set(gesture.thresholds) == set(REACH)
         assert all(value > 0 for value in gesture.thresholds.values())
         assert gesture.rates is not None
         assert 0 < gesture.rates.miss < 0.3
@@ -77,6 +76,13 @@ def test_a_changed_language_is_calibrated_anew(language: Language) -> None:
     renamed = replace(language.gestures[0], label="round")
     same = replace(language, gestures=(renamed, *language.gestures[1:]))
     assert same.calibrated() is same
+
+
+def test_thresholds_by_another_rule_are_made_anew(
+    language: Language, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.recognition.language.RULE", "another")
+    assert language.calibrated().thresholds_for != language.thresholds_for
 
 
 def test_what_is_drawn_with_more_care_reaches_less_far() -> None:

@@ -5,9 +5,10 @@ import pytest
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.calibrated_vote import VOTERS
+from app.recognition.calibration import REACH
 from app.recognition.poses import FloatArray
 from app.recognition.rejection import (
-    NOVELTY_WEIGHTS,
+    VIEWS,
     calibrated_confidence,
     is_rejected,
     novelty,
@@ -53,18 +54,30 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
     assert np.isnan(result.novelty).all()
 
 
-def test_novelty_is_the_weighted_root_mean_square_of_distances_over_thresholds() -> None:
-    distances = np.array([[2.0, 1.0, 1.0], [9.0, 3.0, np.inf], [4.0, np.inf, 1.0]])
-    thresholds = np.array([[1.0, 2.0, np.inf], [np.inf, 2.0, 1.0], [4.0, 1.0, np.inf]])
-    measured = novelty(distances, thresholds, np.array([1.0, 3.0, 2.0]))
-    np.testing.assert_allclose(measured, [np.sqrt((4 + 2) / 3), np.sqrt((0.25 + 6.75) / 4), np.nan])
-    assert [is_rejected(each) for each in measured] == [True, True, False]
+def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_thresholds() -> None:
+    distances = np.array([[2.0, 1.0, 1.0, 0.5], [9.0, 4.0, np.inf, 2.0], [4.0, np.inf, 1.0, 0.2]])
+    thresholds = np.array([[1.0, 2.0, np.inf, 1.0], [np.inf, 2.0, 1.0, 2.0], [4.0, 1.0, np.inf, 1]])
+    views = np.array([[1.0, 3.0, 0.0], [0.0, 0.0, 2.0]])
+    measured = novelty(distances, thresholds, views)
+    np.testing.assert_allclose(measured, [2.0, (0.5 + 3 * 2) / 4, np.nan, (0.5 + 3 * 1) / 4])
+    assert [is_rejected(each) for each in measured] == [True, True, False, False]
 
 
-def test_a_voter_with_weight_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
+def test_what_is_held_alike_does_not_make_up_for_what_is_drawn_otherwise() -> None:
+    """A voter of another view that sees no difference leaves the novelty as it is."""
+    views = novelty_weights(VOTERS)
+    distances = np.where(views[0] > 0, 2.0, np.inf)[:, None]
+    calm = np.where(np.isfinite(distances), distances, 0.0)
+    ones = np.ones((len(VOTERS), 1))
+    assert novelty(calm, ones, views) == novelty(distances, ones, views) == 2.0
+
+
+def test_a_voter_of_a_view_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
     thresholds = thresholds_of(recognizer.language.gestures, VOTERS)
-    assert np.isfinite(thresholds[novelty_weights(VOTERS) > 0]).all()
-    assert set(NOVELTY_WEIGHTS) <= set(VOTERS)
+    asked = (novelty_weights(VOTERS) > 0).any(axis=0)
+    assert np.isfinite(thresholds[asked]).all()
+    assert not np.isfinite(thresholds[~asked]).any()
+    assert {voter for view in VIEWS.values() for voter in view} == set(REACH)
 
 
 def test_an_imported_gesture_is_not_rejected() -> None:

@@ -24,6 +24,11 @@ SHORTEST_SECONDS = 0.05
 """Shortest duration taken seriously, two frames: a logarithm needs a floor."""
 
 
+SHORTEST_LENGTH = 1.0
+"""Shortest way taken seriously, in sizes: a straight stroke is three and a half of its sizes long,
+and only what does not move is shorter."""
+
+
 class MotionVoter(Protocol):
     """Judges how much a query moves like each reference, from one point of view."""
 
@@ -221,6 +226,26 @@ class WhichHand:
         return euclidean_distances(query, references)
 
 
+class PathLength:
+    """How long the way is, for its size: a line against a zigzag (Rubine 1991, total length).
+
+    The joint path of all landmarks, in sizes.
+    """
+
+    name = "path_length"
+    unit = "doublings of the length in sizes"
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the logarithm to base 2 of the length, ``(1,)``."""
+        steps = np.diff(_sized(movement.paths - movement.paths.mean(axis=0)), axis=0)
+        length = float(np.sqrt((steps**2).sum(axis=(1, 2))).sum())
+        return np.log2([max(length, SHORTEST_LENGTH)])
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return absolute differences, ``(M,)``."""
+        return euclidean_distances(query, references)
+
+
 class Tempo:
     """How long the movement takes."""
 
@@ -256,6 +281,7 @@ MOTION_VOTERS: tuple[MotionVoter, ...] = (
     Cloud(),
     StrokeDirection(),
     WhichHand(),
+    PathLength(),
     Tempo(),
 )
 """The voters of profile ``full`` beside the paper's seven."""
