@@ -30,6 +30,7 @@ from app.api import (
     jobs,
     language_files,
     languages,
+    live,
     playback,
     previews,
     problems,
@@ -118,6 +119,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         responses=problems.documented(404),
     )
     api.include_router(playback.router(registry))
+    api.include_router(live.router())
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
     app.include_router(viser_relay.router(registry.port_of))

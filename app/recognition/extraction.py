@@ -12,7 +12,7 @@ from app.recognition.estimation import create_estimator
 from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
 from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses import PoseSequence, joined
 from app.recognition.recording import Recording
 from app.recognition.salute import ENTER_SCORE, best_salute
 from app.recognition.video import FrameReader, VideoFrame, VideoInfo, read_frames
@@ -82,43 +82,53 @@ def extract_poses(
     return record(clip, estimator=estimator, progress=progress, water=water).poses
 
 
+def moment_of(found: FrameLandmarks, time: float, frame_size: tuple[int, int]) -> PoseSequence:
+    """Return what was found in one frame as a recording of that frame alone.
+
+    Parameters
+    ----------
+    found
+        The landmarks of the frame; without a body all of them are NaN.
+    time
+        Seconds.
+    frame_size
+        Width and height of the image in pixels.
+
+    """
+    xy, visibility = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
+    if found.body is not None:
+        seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
+        xy = np.where(seen, found.body.xy, np.nan)
+        visibility = np.clip(np.nan_to_num(found.body.visibility), 0, 1)
+    return PoseSequence(
+        landmarks=POSE_LANDMARKS,
+        xy=xy[None],
+        confidence=visibility[None],
+        time=np.array([time]),
+        frame_size=frame_size,
+    )
+
+
 class _Collector:
     """Gathers the landmarks of one frame after another into a `Recording`."""
 
     def __init__(self, info: VideoInfo) -> None:
         self._info = info
-        self._xy: list[FloatArray] = []
-        self._visibility: list[FloatArray] = []
-        self._time: list[float] = []
+        self._moments: list[PoseSequence] = []
         self._hands: list[tuple[Hand, ...]] = []
         self._salute: list[float] = []
         self._without_body = 0
 
     def add(self, time: float, found: FrameLandmarks) -> None:
-        count = len(POSE_LANDMARKS)
-        if found.body is None:
-            self._without_body += 1
-            self._xy.append(np.full((count, 2), np.nan))
-            self._visibility.append(np.zeros(count))
-        else:
-            seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
-            self._xy.append(np.where(seen, found.body.xy, np.nan))
-            self._visibility.append(np.clip(np.nan_to_num(found.body.visibility), 0, 1))
+        self._without_body += found.body is None
+        self._moments.append(moment_of(found, time, (self._info.width, self._info.height)))
         hands = tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
-        self._time.append(time)
         self._hands.append(hands)
         self._salute.append(best_salute(hands))
 
     def recording(self, warnings: tuple[str, ...]) -> Recording:
-        poses = PoseSequence(
-            landmarks=POSE_LANDMARKS,
-            xy=np.stack(self._xy),
-            confidence=np.stack(self._visibility),
-            time=np.array(self._time),
-            frame_size=(self._info.width, self._info.height),
-        )
         return Recording(
-            poses=poses,
+            poses=joined(self._moments),
             hands=tuple(self._hands),
             salute=np.array(self._salute),
             warnings=warnings + self._warnings(),
@@ -126,7 +136,7 @@ class _Collector:
 
     def _warnings(self) -> tuple[str, ...]:
         """Say what is missing in the clip, with counts, and what to do about it."""
-        frames = len(self._time)
+        frames = len(self._moments)
         found = []
         if self._without_body:
             found.append(f"no person in {self._without_body} of {frames} frames")

@@ -209,6 +209,30 @@ class PoseSequence:
         return (self.column(pair[0]) + self.column(pair[1])) / 2
 
 
+def joined(moments: Sequence[PoseSequence]) -> PoseSequence:
+    """Put the frames of a stream together.
+
+    Parameters
+    ----------
+    moments
+        At least one, in order, with the same landmarks and frame size; confidence is kept where
+        all of them tell it.
+
+    Raises
+    ------
+    PoseError
+        When the time does not go on from one to the next.
+
+    """
+    known = [each.confidence for each in moments if each.confidence is not None]
+    return replace(
+        moments[0],
+        xy=np.concatenate([each.xy for each in moments]),
+        confidence=np.concatenate(known) if len(known) == len(moments) else None,
+        time=np.concatenate([each.time for each in moments]),
+    )
+
+
 def _checked_names(names: Any) -> tuple[str, ...]:
     if isinstance(names, str) or not all(isinstance(name, str) and name for name in names):
         raise PoseError(f"landmarks must be non-empty names, got {names!r}")

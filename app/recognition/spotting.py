@@ -17,7 +17,7 @@ from app.recognition.errors import PoseError, RecognitionError
 from app.recognition.jumps import body_unit
 from app.recognition.landmarks import other_side
 from app.recognition.movement import followed_landmarks
-from app.recognition.poses import PoseSequence
+from app.recognition.poses import PoseSequence, joined
 from app.recognition.recognition_result import Recognition
 from app.recognition.recognizer import Recognizer
 from app.recognition.salience import MIN_DISPLACEMENT, displacements
@@ -296,17 +296,3 @@ def strokes_in(motion: Motion) -> list[Span]:
         Span(float(max(first - SLOW_EDGE, before)), float(min(last + SLOW_EDGE, after)))
         for first, last, before, after in zip(firsts, lasts, halves, halves[1:], strict=False)
     ]
-
-
-def joined(moments: deque[PoseSequence]) -> PoseSequence:
-    """Put the frames of a stream together; at least one."""
-    first = moments[0]
-    confidences = [each.confidence for each in moments]
-    known = [each for each in confidences if each is not None]
-    return PoseSequence(
-        landmarks=first.landmarks,
-        xy=np.concatenate([each.xy for each in moments]),
-        confidence=np.concatenate(known) if len(known) == len(moments) else None,
-        time=np.concatenate([each.time for each in moments]),
-        frame_size=first.frame_size,
-    )

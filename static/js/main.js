@@ -15,7 +15,7 @@ import { offerTour } from "./tour.js";
 import { drawTransport } from "./transport.js";
 import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
-import { followViews } from "./views.js";
+import { followViews, go } from "./views.js";
 import { drawWelcome } from "./welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./why.js";
 import { followTheme, openWorkspace, restart } from "./workspace.js";
@@ -94,6 +94,7 @@ async function start() {
   followViews();
   listenToKeys();
   byId("keys").onclick = showKeys;
+  byId("record-clip").onclick = () => go("live", { source: null });
   bindUndo();
   acceptFiles();
   manageLanguages();

@@ -1,11 +1,11 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
-const IN_URL = { view: "view", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition",
+const IN_URL = { view: "view", source: "source", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition",
   panel: "panel", older: "older", newer: "newer" };
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 const values = {
-  view: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
+  view: null, source: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
   timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, connected: null, loaded: false,
   clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null,
   panel: null, older: null, newer: null,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import dataclass
+from pathlib import Path
 
 import httpx
 
@@ -48,12 +50,17 @@ class Library:
         return str(answer.json()["id"])
 
 
-def add_clip(server: Running, *shapes: str, name: str = "dive.mp4") -> str:
-    """Add a clip with one take per shape and a small video, and return its id."""
+def add_clip(
+    server: Running, *shapes: str, name: str = "dive.mp4", video: Path | None = None
+) -> str:
+    """Add a clip with one take per shape, and a small video or that one; return its id."""
     recording = recording_of(*shapes)
     clips = server.studio.clips
     partial = clips.new_partial()
-    write_clip(partial, frames=len(recording.poses), container_format="mp4")
+    if video is None:
+        write_clip(partial, frames=len(recording.poses), container_format="mp4")
+    else:
+        shutil.copyfile(video, partial)
     width, height = recording.poses.frame_size
     clip = Clip(
         name=name,

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import math
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, Field, TypeAdapter
+
+if TYPE_CHECKING:
+    from app.recognition.poses import FloatArray
 
 Pose = tuple[tuple[float, float] | None, ...]
 """A body in one frame, to be drawn: of each of `POSE_LANDMARKS` how far right and how far down it
 is, as fractions of the upright picture's width and height; outside of 0 to 1 where the model places
 it beyond the picture's edge, None where it was not seen."""
+
+POSE_DIGITS = 4
+"""Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 
 class Probed(BaseModel):
@@ -67,6 +74,16 @@ class Failed(BaseModel):
 Message = Probed | Progressed | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
+
+
+def pose_in(xy: FloatArray, width: int, height: int) -> Pose:
+    """Return landmarks ``(K, 2)`` in pixels as fractions of a picture of `width` x `height`."""
+    return tuple(
+        (round(x / width, POSE_DIGITS), round(y / height, POSE_DIGITS))
+        if math.isfinite(x) and math.isfinite(y)
+        else None
+        for x, y in xy.tolist()
+    )
 
 
 def dump(message: Message) -> str:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import math
 import os
 import sys
 import threading
@@ -18,7 +17,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.api.extraction.messages import Failed, Finished, Message, Pose, Probed, Progressed, dump
+from app.api.extraction.messages import (
+    Failed,
+    Finished,
+    Message,
+    Probed,
+    Progressed,
+    dump,
+    pose_in,
+)
 
 if TYPE_CHECKING:
     from app.recognition.estimation.base import Body, FrameLandmarks
@@ -27,9 +34,6 @@ if TYPE_CHECKING:
 
 PROGRESS_SECONDS = 0.1
 """Shortest time between two reports: what an eye follows on a progress bar."""
-
-POSE_DIGITS = 4
-"""Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 Report = Callable[[Message], None]
 
@@ -68,7 +72,7 @@ def extract(
         nonlocal reported
         if (now := time.monotonic()) - reported >= PROGRESS_SECONDS or done == total:
             reported = now
-            pose = pose_in(newest, info.width, info.height) if newest else None
+            pose = pose_in(newest.xy, info.width, info.height) if newest else None
             seconds = round(newest_time, 3)
             report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
 
@@ -78,16 +82,6 @@ def extract(
     thumbnails.write(filmstrip)
     recorded.save(recording)
     report(Finished(frames=frames, warnings=recorded.warnings))
-
-
-def pose_in(body: Body, width: int, height: int) -> Pose:
-    """Return a body's landmarks as fractions of a picture of `width` x `height` pixels."""
-    return tuple(
-        (round(x / width, POSE_DIGITS), round(y / height, POSE_DIGITS))
-        if math.isfinite(x) and math.isfinite(y)
-        else None
-        for x, y in body.xy.tolist()
-    )
 
 
 def limit_resources(memory_bytes: int, cpu_seconds: int) -> None:

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.api.extraction.worker import pose_in
+from app.api.extraction.messages import pose_in
 from app.recognition import Recording
-from app.recognition.estimation.base import Body
 from tests.recognition.damaged_clips import write_clip
 
 COMMAND = [sys.executable, "-m", "app.api.extraction.worker"]
@@ -63,7 +62,7 @@ def test_a_pose_is_told_as_fractions_of_the_picture() -> None:
     xy = np.tile([[320.0, 60.0]], (33, 1))
     xy[1] = [-64.0, 480.0]
     xy[2] = [np.nan, 10.0]
-    pose = pose_in(Body(xy, np.ones(33), 1.0), 640, 240)
+    pose = pose_in(xy, 640, 240)
     assert pose[:4] == ((0.5, 0.25), (-0.1, 2.0), None, (0.5, 0.25))
     assert len(pose) == 33
 

@@ -1,0 +1,84 @@
+"""Takes found while a camera runs: the same salutes and the same cut as in a recorded clip."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from app.recognition.estimation.base import FrameLandmarks
+from app.recognition.extraction import moment_of
+from app.recognition.poses import PoseSequence, joined
+from app.recognition.salute import best_salute
+from app.recognition.takes import LONGEST_TAKE, Take, TakeMachine, TakeState, take_from
+
+LONGEST_SALUTE = 10.0
+"""Seconds of a start salute that are remembered beside the longest take: the way of the hand from
+it takes one, and a camera that stalls may need some until the salute counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """What one frame of a camera adds.
+
+    Attributes
+    ----------
+    salute
+        In [0, 1]: how much the best hand salutes.
+    held
+        Whether a salute was held long enough to count, and still is.
+    state
+        Whether a salute is awaited, a take goes on, or the salute that ended it is still held.
+    take
+        The take that this frame ends, if it ends one.
+
+    """
+
+    salute: float
+    held: bool
+    state: TakeState
+    take: Take | None
+
+
+class LiveTakes:
+    """Finds the takes of a camera's frames, one frame at a time.
+
+    Memory is bounded: no more than the longest take and its start salute are kept, as landmarks.
+
+    Parameters
+    ----------
+    frame_size
+        Width and height of the images in pixels.
+
+    """
+
+    def __init__(self, frame_size: tuple[int, int]) -> None:
+        self.frame_size = frame_size
+        self._machine = TakeMachine()
+        self._moments: deque[PoseSequence] = deque()
+
+    def __len__(self) -> int:
+        """Count the frames that are remembered."""
+        return len(self._moments)
+
+    def feed(self, time: float, found: FrameLandmarks) -> Sight:
+        """Take the next frame.
+
+        Parameters
+        ----------
+        time
+            Seconds in any clock, later than in every call before.
+        found
+            The landmarks of the frame.
+
+        """
+        self._moments.append(moment_of(found, time, self.frame_size))
+        while time - self._moments[0].time[0] > LONGEST_TAKE + LONGEST_SALUTE:
+            self._moments.popleft()
+        salute = best_salute(found.hands)
+        bracket = self._machine.update(time, salute)
+        return Sight(
+            salute=salute,
+            held=self._machine.trigger.held,
+            state=self._machine.state,
+            take=take_from(joined(self._moments), bracket) if bracket else None,
+        )

@@ -1,0 +1,71 @@
+"""Takes found while a camera runs are those that are found in the recording afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from app.recognition.estimation.base import Body, FrameLandmarks, Hand
+from app.recognition.extraction import moment_of
+from app.recognition.live import LONGEST_SALUTE, LiveTakes, Sight
+from app.recognition.poses import joined
+from app.recognition.recording import Recording
+from app.recognition.salute import best_salute
+from app.recognition.takes import LONGEST_TAKE, TakeState, takes_in
+from tests.api.recordings import FRAME_SIZE, recording_of
+from tests.recognition.parametric_hand import Finger, hand_xy, salute
+
+SALUTING = Hand(hand_xy(salute()), "right", 0.9)
+FLAT = Hand(hand_xy((Finger(3), Finger(0), Finger(-3), Finger(-6))), "right", 0.9)
+
+
+def frames_of(recording: Recording) -> Iterator[tuple[float, FrameLandmarks]]:
+    """Yield what an estimator would find: a hand that salutes where the recording's score is 1."""
+    poses = recording.poses
+    for time, xy, score in zip(poses.time.tolist(), poses.xy, recording.salute, strict=True):
+        hand = SALUTING if score > 0.5 else FLAT
+        yield time, FrameLandmarks(Body(xy, np.ones(len(xy)), 1.0), (hand,))
+
+
+def watched(recording: Recording) -> list[Sight]:
+    takes = LiveTakes(FRAME_SIZE)
+    return [takes.feed(time, found) for time, found in frames_of(recording)]
+
+
+def test_the_takes_of_a_camera_are_those_of_its_recording() -> None:
+    seen = list(frames_of(recording_of("circle", "line")))
+    recording = Recording(
+        poses=joined([moment_of(found, time, FRAME_SIZE) for time, found in seen]),
+        hands=tuple(found.hands for _, found in seen),
+        salute=np.array([best_salute(found.hands) for _, found in seen]),
+    )
+    live = [sight.take for sight in watched(recording) if sight.take is not None]
+    afterwards = takes_in(recording)
+    assert len(live) == len(afterwards) == 2
+    for one, other in zip(live, afterwards, strict=True):
+        assert (one.start, one.end, one.closed) == (other.start, other.end, True)
+        assert (one.stroke_start, one.stroke_end) == (other.stroke_start, other.stroke_end)
+        assert one.poses == other.poses
+
+
+def test_what_goes_on_is_told_with_every_frame() -> None:
+    sights = watched(recording_of("circle"))
+    states = [sight.state for sight in sights]
+    assert states[0] is TakeState.idle
+    assert {sight.state for sight in sights if sight.held} == {TakeState.recording, TakeState.done}
+    assert sights[states.index(TakeState.done)].salute > 0.9
+
+
+def test_a_salute_held_for_minutes_is_not_remembered_whole() -> None:
+    takes = LiveTakes(FRAME_SIZE)
+    body = next(found.body for _, found in frames_of(recording_of("circle")))
+    rate = 10
+    for frame in range(rate * 200):
+        takes.feed(frame / rate, FrameLandmarks(body, (SALUTING,)))
+    assert len(takes) <= rate * (LONGEST_TAKE + LONGEST_SALUTE) + 1
+
+
+def test_a_frame_without_anybody_is_a_frame() -> None:
+    sight = LiveTakes(FRAME_SIZE).feed(3.0, FrameLandmarks(None, ()))
+    assert (sight.salute, sight.held, sight.state, sight.take) == (0.0, False, TakeState.idle, None)
