@@ -19,7 +19,7 @@ export function whyNoCamera(error) {
   if (!cameraPossible()) {
     return {
       title: "No camera over an open connection",
-      text: `Browsers give cameras only to pages over HTTPS, or from the machine itself (127.0.0.1, localhost). This page comes from ${location.origin}. Open it there, or play a clip as if live.`,
+      text: `Browsers give cameras only to pages over HTTPS, or from the machine itself (127.0.0.1, localhost). This page comes from ${location.origin}. Open it on that machine or over HTTPS, or play a clip as if live.`,
     };
   }
   const [title, text] = REASONS[error.name] ?? ["The camera cannot be used", error.message];

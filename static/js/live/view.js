@@ -1,7 +1,7 @@
 // The view "Live": a camera, or a clip played as if it were one, and what the recogniser sees in it.
 
 import * as api from "../api.js";
-import { byId, h, icon } from "../dom.js";
+import { byId, h } from "../dom.js";
 import { bind } from "../keys.js";
 import { follow, state, update } from "../state.js";
 import { toast } from "../toasts.js";
@@ -216,7 +216,6 @@ function wire() {
 /** Called once, when the view is first shown. */
 export function open(section) {
   section.append(...panel());
-  byId("live-record").prepend(icon("plus"));
   clearResults("Show a gesture between two salutes.");
   wire();
   follow(["clips", "clip", "source"], drawClipChoice);
