@@ -16,6 +16,7 @@ from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
 from app.api.problems import ProblemError, documented
 from app.api.ranges import keep_single_range
 from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView
+from app.api.still_pictures import sent_picture
 from app.api.studio import CurrentStudio
 from app.api.uploads import receive_file
 from app.recognition.poses import PoseSequence
@@ -159,12 +160,8 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
 def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send a still picture of the clip, once its job has begun."""
     studio.clips.get(clip_id)
-    poster = studio.clips.poster(clip_id)
-    if not poster.is_file():
-        raise ProblemError(404, "no_poster", "there is no still picture of this clip yet")
-    keep_single_range(request, poster.stat().st_size)
-    headers = {"Cache-Control": "private, max-age=3600"}
-    return FileResponse(poster, media_type="image/jpeg", headers=headers)
+    missing = "there is no still picture of this clip yet"
+    return sent_picture(request, studio.clips.poster(clip_id), "no_poster", missing)
 
 
 @router.get("/{clip_id}/poses", response_model=PosesView, responses=documented(404, 409))

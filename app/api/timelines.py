@@ -10,8 +10,8 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from app.api.extraction.pictures import thumbnails_in
-from app.api.problems import ProblemError, documented
-from app.api.ranges import keep_single_range
+from app.api.problems import documented
+from app.api.still_pictures import sent_picture
 from app.api.studio import CurrentStudio
 from app.recognition import PoseError, Recording
 from app.recognition.poses import FloatArray
@@ -67,12 +67,8 @@ def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
 def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send the thumbnails along the clip, once its poses are found."""
     studio.clips.get(clip_id)
-    path = studio.clips.filmstrip(clip_id)
-    if not path.is_file():
-        raise ProblemError(404, "no_filmstrip", "there are no thumbnails of this clip yet")
-    keep_single_range(request, path.stat().st_size)
-    headers = {"Cache-Control": "private, max-age=3600"}
-    return FileResponse(path, media_type="image/jpeg", headers=headers)
+    missing = "there are no thumbnails of this clip yet"
+    return sent_picture(request, studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
 
 
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:

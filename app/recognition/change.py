@@ -6,6 +6,7 @@ take. Whoever shows it can also apply it.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Literal
 
@@ -20,7 +21,7 @@ Reach = Literal["take", "gesture", "language"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change:
+class Change(ABC):
     """One thing that might have been otherwise.
 
     Attributes
@@ -35,10 +36,11 @@ class Change:
     size: float
 
     @property
+    @abstractmethod
     def words(self) -> str:
         """A clause for people that follows "it would have been read so"."""
-        raise NotImplementedError
 
+    @abstractmethod
     def applied(self, situation: Situation) -> Situation:
         """Return the situation with this change.
 
@@ -48,7 +50,6 @@ class Change:
             When it cannot be made here.
 
         """
-        raise NotImplementedError
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types: the kind, what it touches, and the values to apply."""

@@ -20,14 +20,18 @@ from app.recognition.movement import followed_landmarks
 from app.recognition.poses import PoseSequence, joined
 from app.recognition.recognition_result import Recognition
 from app.recognition.recognizer import Recognizer
+from app.recognition.rejection import calibrated_confidence
 from app.recognition.salience import MIN_DISPLACEMENT, displacements
 from app.recognition.trajectory import Trajectory
 from app.recognition.transit import GRID_STEP, Motion, Span, motion_along, pieces_of
 
-CONFIDENT = 0.95
-"""Least confidence of a spotted gesture. Confidence is calibrated for takes of which half mean
-something; of the stretches of a stream almost none do. At 0.9 somebody who points into the distance
-draws a *line*; at 0.95 nothing is found in our clip of ordinary movement."""
+CONFIDENT = 0.8
+"""Least confidence of a spotted gesture: below, another one of the language is about as near."""
+
+FAMILIAR = 0.97
+"""Least confidence that a stretch is this gesture rather than none, whatever else is near.
+Confidence is calibrated for takes of which half mean something; of the stretches of a stream almost
+none do. Somebody who points into the distance draws a *line* at 0.96."""
 
 FASTER, SLOWER = 0.4, 2.2
 """How much shorter or longer than its demonstration a gesture may take: two people's takes differ
@@ -254,6 +258,9 @@ class Spotter:
         """Tell whether a stretch is a gesture: sure, large enough, and about as long."""
         result = spotted.recognition
         if result.label is None or result.confidence < self._confident:
+            return False
+        at = result.gestures.index(result.label)
+        if calibrated_confidence(result.novelty[at], result.scores[at], np.inf) < FAMILIAR:
             return False
         gesture = self._recognizer.language.gesture(result.label)
         if gesture.trajectory is None:

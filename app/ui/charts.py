@@ -117,9 +117,11 @@ def _gesture_head(recognition: Recognition, column: int, expected: str | None) -
     kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
     tags = ""
     if gesture == recognition.label:
-        tags += "<span class='tag chosen'>chosen</span>"
-    if gesture == expected:
-        tags += "<span class='tag expected'>expected</span>"
+        # Two tags side by side would lie over the next column.
+        word = "chosen, expected" if gesture == expected else "chosen"
+        tags = f"<span class='tag chosen'>{word}</span>"
+    elif gesture == expected:
+        tags = "<span class='tag expected'>expected</span>"
     return (
         f"<th scope='col' class='gesture {kind}' title='{escape(gesture)}'>"
         f"<span>{escape(gesture)}{tags}</span></th>"

@@ -120,6 +120,15 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     lab.get_by_role("tab", name="Tracks").click()
     expect(lab.get_by_role("img", name="Vulcan salute, confidence")).to_be_visible()
 
+    # A misread clip: the sentence says why, and what would have helped can be tried.
+    upload(page, clips / "unfinished-triangle.mp4")
+    page.get_by_label("Expected").select_option("triangle")
+    page.get_by_role("button", name="Recognise").click()
+    why = page.get_by_role("region", name="Why")
+    expect(why).to_contain_text("took 'wedge' instead of 'triangle'", timeout=EXTRACTION_MS)
+    expect(why.get_by_role("listitem").first).to_be_visible()
+    picture(page, "why")
+
     # The language leaves as the file that a robot loads.
     page.get_by_role("button", name="Export").click()
     dialog = page.get_by_role("dialog", name="Export")

@@ -1,0 +1,27 @@
+"""Still pictures of a clip, as files that a job has written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fastapi import Request
+from fastapi.responses import FileResponse
+
+from app.api.problems import ProblemError
+from app.api.ranges import keep_single_range
+
+
+def sent_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:
+    """Return the JPEG at `path`.
+
+    Raises
+    ------
+    ProblemError
+        404 with `code` and `missing` as its detail while the job has not written it.
+
+    """
+    if not path.is_file():
+        raise ProblemError(404, code, missing)
+    keep_single_range(request, path.stat().st_size)
+    headers = {"Cache-Control": "private, max-age=3600"}
+    return FileResponse(path, media_type="image/jpeg", headers=headers)
