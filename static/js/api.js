@@ -78,6 +78,8 @@ export const languages = {
   revisions: (language) => request("GET", `/languages/${id(language)}/revisions`),
   compare: (language, older, newer) => request("GET", `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`),
   check: (language, revision) => request("GET", `/languages/${id(language)}/check?revision=${revision}`),
+  cancelCheck: (language, revision) => request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
+  contrast: (language, one, other, revision) => request("GET", `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`),
   image: (language, label, revision) => `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
   remove: (language) => request("DELETE", `/languages/${id(language.id)}`, "revision" in language ? { headers: matching(language) } : {}),
@@ -95,6 +97,7 @@ export const languages = {
 
 export const recognitions = {
   create: (query) => request("POST", "/recognitions", { body: query }),
+  list: (language) => request("GET", `/recognitions?language_id=${id(language)}&limit=500`),
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
   analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
   explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),

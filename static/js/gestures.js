@@ -76,7 +76,7 @@ export function drawGestures({ gestures, result }) {
 let shown = { result: null, clip: null };
 
 /** A clip called "circle-2.mp4" is probably meant as a circle; anyone can say otherwise. */
-function proposed(clip, members) {
+export function proposed(clip, members) {
   const name = clip?.name.toLowerCase() ?? "";
   const named = members.filter(({ label }) => name.startsWith(label.toLowerCase()) && !/^[a-z]/.test(name.slice(label.length)));
   return named.sort((one, other) => other.label.length - one.label.length)[0]?.label ?? "";

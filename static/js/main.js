@@ -39,6 +39,8 @@ function followServer() {
   };
   stream.addEventListener("clips", (event) => reloadClip(data(event).id));
   stream.addEventListener("languages", (event) => reloadOneLanguage(data(event).id));
+  stream.addEventListener("checks", (event) => update({ checking: data(event) }));
+  stream.addEventListener("recognitions", (event) => update({ recognised: data(event).id }));
   stream.addEventListener("jobs", (event) => {
     const job = data(event);
     if (job.id) followJob(job);

@@ -13,17 +13,20 @@ const AT_ONCE = 2; // More only share the same line, and each would finish later
 let counter = 0;
 
 /** An upload that has not begun; its key makes a repeated attempt the same clip. */
-const waiting = (file, first) => ({
+const waiting = (file, first, uploaded) => ({
   key: `${Date.now()}-${Math.random().toString(36).slice(2)}-${counter++}`,
-  file, first, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null,
+  file, first, uploaded, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null,
 });
 
-/** Take files in, whatever they are. */
-export function addFiles(files) {
+/**
+ * Take files in, whatever they are. `uploaded(id)` hears of each clip; without it the first clip
+ * is shown.
+ */
+export function addFiles(files, uploaded = null) {
   const added = [];
   for (const file of files) {
     if (/\.json$/i.test(file.name)) importLanguage(file);
-    else added.push(waiting(file, !added.length));
+    else added.push(waiting(file, !added.length, uploaded));
   }
   if (added.length) update({ uploads: [...state.uploads, ...added] });
   startNext();
@@ -50,7 +53,8 @@ async function start(upload) {
     forget(upload.key);
     update({ clips: await api.clips.list() });
     // Of several files the first is shown; the others must not take its place one after the other.
-    if (upload.first) select(accepted.id);
+    if (upload.uploaded) upload.uploaded(accepted.id);
+    else if (upload.first) select(accepted.id);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
     else change(upload.key, { status: "failed", error: error.message });
@@ -87,6 +91,11 @@ export function drawUploads({ uploads }) {
   reconcile(byId("uploads"), uploads, (upload) => upload.key, draw);
 }
 
+const takers = new Map();
+
+/** Let files that are dropped while a view is shown go to `take(files)`. */
+export const takeFilesIn = (view, take) => takers.set(view, take);
+
 /** Make the whole window a place to drop files. */
 export function acceptFiles() {
   const veil = byId("veil");
@@ -104,7 +113,7 @@ export function acceptFiles() {
     event.preventDefault();
     depth = 0;
     veil.hidden = true;
-    addFiles(event.dataTransfer.files);
+    (takers.get(state.view) ?? addFiles)(event.dataTransfer.files);
   });
   const input = byId("file");
   input.onchange = () => {

@@ -11,6 +11,7 @@ const VIEWS = [
   { name: FIRST, title: "Studio" },
   { name: "languages", title: "Languages", load: () => import("./languages/view.js") },
   { name: "gesture", title: "Gesture", load: () => import("./editor/view.js"), passing: true },
+  { name: "health", title: "Health", load: () => import("./health/view.js") },
   { name: "live", title: "Live", load: () => import("./live/view.js") },
 ];
 

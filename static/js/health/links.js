@@ -1,0 +1,28 @@
+// Where a finding leads to: the editor of a gesture, or two gestures side by side.
+
+import { h } from "../dom.js";
+import { state, update } from "../state.js";
+import { address, go, here, knows } from "../views.js";
+
+/** Two labels as the address names them; a comma in a label is not the one between them. */
+export const pairName = (one, other) => [one, other].map(encodeURIComponent).join(",");
+
+/** The two labels that `name` names, if there are two. */
+export function pairOf(name) {
+  const labels = (name ?? "").split(",");
+  if (labels.length !== 2) return null;
+  try {
+    return labels.map(decodeURIComponent);
+  } catch {
+    return null;
+  }
+}
+
+/** Show two gestures side by side. */
+export const compare = (one, other) => update({ pair: pairName(one, other) });
+
+/** A link to what mends a gesture, or nothing while there is no such view. */
+export function editLink(label, text = `Edit ${label}`) {
+  if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
+  return h("a", { className: "button", href: address("gesture", { gesture: label }), onclick: here(() => go("gesture", { gesture: label })) }, text);
+}

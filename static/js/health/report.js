@@ -1,0 +1,45 @@
+// The health report of the language on display: asked for when looked at, with progress and cancel.
+
+import * as api from "../api.js";
+import { state, update } from "../state.js";
+
+const keyOf = ({ id, revision }) => `${id} ${revision}`;
+
+/** Whether a report is of the language and revision on display. */
+export const isCurrent = (health) => Boolean(health && state.gestures && health.key === keyOf(state.gestures));
+
+/**
+ * Check the revision on display. `state.health` is `{ key, id, revision, status, report, error }`; the
+ * report of the revision before stays on display until the new one is there.
+ */
+export async function check() {
+  const language = state.gestures;
+  const key = keyOf(language);
+  const known = state.health?.id === language.id ? state.health : null;
+  const base = { key, id: language.id, revision: language.revision, report: known?.report ?? null, shown: known?.shown ?? null };
+  const settle = (change) => { if (state.health?.key === key) update({ health: { ...base, ...change } }); };
+  update({ checking: null, health: { ...base, status: "checking" } });
+  try {
+    const report = await api.languages.check(language.id, language.revision);
+    settle({ status: "done", report, shown: language.revision });
+  } catch (error) {
+    settle(error.code === "check_cancelled" ? { status: "cancelled" } : { status: "failed", error: error.message });
+  }
+}
+
+/** Check again where what is on display is not what was checked. */
+export function keepChecked({ view, gestures }) {
+  if (view === "health" && gestures?.gestures.length && !isCurrent(state.health)) check();
+}
+
+/** Cancel the check that runs. */
+export const cancel = () => api.languages.cancelCheck(state.health.id, state.health.revision);
+
+/** A predicted rate as a number of per cent; what is hardly ever is told apart from never. */
+export function percent(rate) {
+  if (rate > 0 && rate < 0.01) return "<1";
+  return String(Math.round(100 * rate));
+}
+
+/** A forecast in words, with its interval. */
+export const told = ({ rate, low, high }) => `${percent(rate)} % (${percent(low)} to ${percent(high)})`;

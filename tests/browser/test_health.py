@@ -1,0 +1,97 @@
+"""The health of a language in the browser: what is predicted, two side by side, test clips."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "pool")
+
+
+def health_of(library: Library, **more: str) -> dict[str, str]:
+    return {"view": "health", "language": library.language, **more}
+
+
+def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(health_of(library), scene=False)
+    grid = page.get_by_role("grid", name="Predicted confusions")
+    cell = grid.get_by_role("gridcell", name="circle taken for line")
+    expect(cell).to_be_visible()
+    grid.get_by_role("gridcell", name="circle is read as itself").focus()
+    page.keyboard.press("ArrowRight")
+    expect(cell).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", name="circle and line")).to_be_focused()
+    expect(page.get_by_text("circle differs from line in this")).to_be_visible()
+    circle = page.get_by_role("img", name="The movement of circle")
+    dots = circle.locator(".dots")
+    before = dots.get_attribute("d")
+    page.keyboard.press(".")
+    expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("1")
+    assert dots.get_attribute("d") != before
+    colleague = open_page(scene=False)
+    colleague.goto(page.url)
+    expect(colleague.get_by_role("heading", name="circle and line")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(grid).to_be_visible()
+
+
+def test_a_check_is_cancelled_and_begun_again(
+    open_page: OpenPage, library: Library, server: Running
+) -> None:
+    client = library.client
+    copy = client.post(f"/api/v1/languages/{library.language}/duplicate").json()["id"]
+    page = open_page({"view": "health", "language": copy}, scene=False)
+    expect(page.get_by_role("progressbar", name="Progress of the check")).to_be_visible()
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.get_by_text("The check was cancelled")).to_be_visible()
+    page.get_by_role("button", name="Check again").click()
+    expect(page.get_by_role("grid", name="Predicted confusions")).to_be_visible()
+
+
+def test_a_language_without_gestures_says_what_to_do(open_page: OpenPage, library: Library) -> None:
+    empty = library.client.post("/api/v1/languages", json={"name": "empty"}).json()["id"]
+    page = open_page({"view": "health", "language": empty}, scene=False)
+    expect(page.get_by_text("No gestures to check yet")).to_be_visible()
+
+
+def test_labelled_clips_are_tested_corrected_and_opened(
+    open_page: OpenPage, library: Library, server: Running, tmp_path: Path
+) -> None:
+    clip = add_clip(server, "circle", "line", name="circle-9.mp4")
+    pending = [{"clip": clip, "language": library.language, "expected": None}]
+    page = open_page(health_of(library), scene=False)
+    page.evaluate(
+        "pending => sessionStorage.setItem('osg-studio.batch', JSON.stringify(pending))", pending
+    )
+    page.reload()
+    takes = page.get_by_role("table", name="The test clips")
+    expect(takes.get_by_text("right: circle")).to_be_visible()
+    expect(takes.get_by_text("wrong: line")).to_be_visible()
+    grid = page.get_by_role("grid", name="Confusions of the test clips")
+    expect(grid.get_by_role("gridcell", name="1 take of circle read as line")).to_be_visible()
+    takes.get_by_label("What circle-9.mp4, take 2 shows").select_option("line")
+    expect(grid.get_by_role("gridcell", name="1 take of line read as line")).to_be_visible()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Export as CSV").click()
+    file = tmp_path / "test.csv"
+    download.value.save_as(file)
+    assert file.read_text().count("circle-9.mp4") == 2
+    grid.get_by_role("gridcell", name="1 take of circle read as circle").click()
+    expect(page.locator("#outcome")).to_contain_text("as expected")
