@@ -12,6 +12,7 @@ from playwright.sync_api import expect
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
@@ -33,11 +34,14 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     grid = page.get_by_role("grid", name="Predicted confusions")
     cell = grid.get_by_role("gridcell", name="circle taken for line")
     expect(cell).to_be_visible()
+    assert faults(page) == []
     grid.get_by_role("gridcell", name="circle is read as itself").focus()
     page.keyboard.press("ArrowRight")
     expect(cell).to_be_focused()
     page.keyboard.press("Enter")
     expect(page.get_by_role("heading", name="circle and line")).to_be_focused()
+    expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("0")
+    assert faults(page) == []
     expect(page.get_by_text("circle differs from line in this")).to_be_visible()
     circle = page.get_by_role("img", name="The movement of circle")
     dots = circle.locator(".dots")
