@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from threading import Event, Lock
+from threading import Lock
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Response
@@ -75,30 +75,30 @@ class _Check:
     def __init__(self, document: str) -> None:
         self._document = document
         self._lock = Lock()
-        self._cancelled = Event()
+        self._cancelled = 0  # how often: who waits since before one of them is told so
         self._report: dict[str, Any] | None = None
 
     def report(self, tell: Progress) -> dict[str, Any]:
+        begun = self._cancelled
+
+        def progress(stage: str, done: int, total: int) -> None:
+            self._require_wanted(begun)
+            tell(stage, done, total)
+
         with self._lock:
             if self._report is None:
-                self._cancelled.clear()
+                self._require_wanted(begun)
                 language = Language.from_json(self._document)
-                self._report = check_health(
-                    language, progress=self._until_cancelled(tell)
-                ).to_dict()
+                self._report = check_health(language, progress=progress).to_dict()
             return self._report
 
     def cancel(self) -> None:
-        self._cancelled.set()
+        self._cancelled += 1
 
-    def _until_cancelled(self, tell: Progress) -> Progress:
-        def progress(stage: str, done: int, total: int) -> None:
-            if self._cancelled.is_set():
-                detail = "the check was cancelled; ask again to start it anew"
-                raise ProblemError(409, "check_cancelled", detail)
-            tell(stage, done, total)
-
-        return progress
+    def _require_wanted(self, begun: int) -> None:
+        if self._cancelled != begun:
+            detail = "the check was cancelled; ask again to start it anew"
+            raise ProblemError(409, "check_cancelled", detail)
 
 
 @lru_cache(CACHED_REPORTS)

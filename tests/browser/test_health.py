@@ -11,6 +11,7 @@ from playwright.sync_api import expect
 
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
 from tests.browser.test_accessibility import faults
 
@@ -99,3 +100,21 @@ def test_labelled_clips_are_tested_corrected_and_opened(
     assert file.read_text().count("circle-9.mp4") == 2
     grid.get_by_role("gridcell", name="1 take of circle read as circle").click()
     expect(page.locator("#outcome")).to_contain_text("as expected")
+
+
+def test_a_dropped_clip_is_labelled_by_its_name(
+    open_page: OpenPage, library: Library, clips: Path
+) -> None:
+    page = open_page(health_of(library), scene=False)
+    expect(page.get_by_role("heading", name="Test with clips")).to_be_visible()
+    drop(page, clips / "line-demonstration.mp4", names=("circle-dropped.mp4",))
+    shows = page.get_by_label("What circle-dropped.mp4 shows")
+    expect(shows).to_have_value("circle")
+    shows.select_option("line")
+    page.reload()
+    expect(shows).to_have_value("line")
+    page.get_by_role("button", name="Leave circle-dropped.mp4 out of the test").click()
+    expect(shows).to_have_count(0)
+    listed = library.client.get("/api/v1/clips").json()
+    added = next(clip for clip in listed if clip["name"] == "circle-dropped.mp4")
+    library.client.delete(f"/api/v1/jobs/{added['job_id']}")
