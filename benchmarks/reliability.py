@@ -34,7 +34,7 @@ class Answer:
 
     Attributes
     ----------
-    confidence
+    confidence, novelty
         Of the nearest gesture.
     known
         Whether the query's gesture was in the language.
@@ -46,6 +46,7 @@ class Answer:
     """
 
     confidence: float
+    novelty: float
     known: bool
     correct: bool
     refused: bool
@@ -74,6 +75,7 @@ def answers(
                 continue
             yield Answer(
                 confidence=result.confidence,
+                novelty=float(result.novelty[result.gestures.index(result.nearest)]),
                 known=label in language.labels,
                 correct=result.nearest == label,
                 refused=result.label is None,
@@ -81,9 +83,9 @@ def answers(
 
 
 def accepted_at_bar(asked: list[Answer]) -> float:
-    """Share of the foreign movements above the bar that refuses `REFUSED` % of the true ones."""
-    bar = np.percentile([answer.confidence for answer in asked if answer.known], REFUSED)
-    return float(np.mean([answer.confidence >= bar for answer in asked if not answer.known]))
+    """Share of the foreign movements as little novel as all but `REFUSED` % of the true ones."""
+    bar = np.percentile([answer.novelty for answer in asked if answer.known], 100 - REFUSED)
+    return float(np.mean([answer.novelty <= bar for answer in asked if not answer.known]))
 
 
 def report(name: str, asked: list[Answer]) -> None:

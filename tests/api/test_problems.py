@@ -80,6 +80,8 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/api/v1/languages/{language_id}/revert"): {"revision": 1},
     ("POST", "/api/v1/languages/{language_id}/gestures"): {"label": "x", "clip_id": "missing"},
     ("PATCH", "/api/v1/languages/{language_id}/gestures/{label}"): {"label": "x"},
+    ("POST", "/api/v1/languages/{language_id}/preview"): {"label": "x", "change": {}},
+    ("POST", "/api/v1/languages/{language_id}/preview/health"): {"label": "x", "change": {}},
     ("PUT", "/api/v1/workspaces/{workspace_id}/view"): {"clip_id": "missing"},
     ("PATCH", "/api/v1/workspaces/{workspace_id}"): {"dark": True},
 }
