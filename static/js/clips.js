@@ -83,8 +83,18 @@ function draw(clip, element) {
   const chosen = clip.id === state.clip;
   const signature = JSON.stringify([clip, job, chosen]);
   if (element?.dataset.signature === signature) return element;
+  // Progress comes ten times a second: a button must not be replaced under the pointer.
+  const shape = JSON.stringify([{ ...clip, status: busy }, chosen]);
+  if (busy && element?.dataset.shape === shape) {
+    element.dataset.signature = signature;
+    element.querySelector(".stage-text").textContent = statusText(clip, job);
+    const bar = element.querySelector("progress");
+    if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
+    return element;
+  }
   const drawn = element ?? h("li");
   drawn.dataset.signature = signature;
+  drawn.dataset.shape = shape;
   drawn.className = `clip ${clip.status}${chosen ? " chosen" : ""}`;
   const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   drawn.replaceChildren(
