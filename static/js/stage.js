@@ -19,7 +19,9 @@ let shownView = "";
 /** Load the takes of the clip on display as soon as it has any. */
 export async function loadTakes() {
   const clip = selectedClip();
-  if (!clip || clip.status !== "done") return update({ takes: null, timeline: null });
+  // Those of the clip before must not be taken for this one's while its own are on their way.
+  update({ takes: null, timeline: null });
+  if (!clip || clip.status !== "done") return undefined;
   const loaded = await attempt("Loading the takes", () => Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]));
   if (!loaded || state.clip !== clip.id) return undefined;
   const [takes, timeline] = loaded;
@@ -115,7 +117,7 @@ export function drawStage() {
   const ready = clip.status === "done";
   byId("clip-name").textContent = clip.name;
   byId("clip-meta").textContent = ready ? "" : clip.status === "failed" ? (clip.error ?? "") : "Its takes appear as soon as the poses are found.";
-  for (const id of ["save-gesture", "recognise", "expected"]) byId(id).disabled = !ready;
+  for (const id of ["save-gesture", "recognise", "expected"]) byId(id).disabled = !ready || !state.takes;
   byId("clip-warnings").replaceChildren(...(clip.warnings ?? []).map((warning) => h("li", {}, warning)));
   byId("range-text").replaceChildren();
   drawTimeline();

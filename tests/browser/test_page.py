@@ -8,7 +8,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
 from app.recognition.landmarks import POSE_LANDMARKS, SKELETON
 from tests.api.running import Running, until
@@ -164,6 +164,24 @@ def test_what_is_expected_is_proposed_by_the_clips_name_and_forgotten_with_it(
     page.get_by_role("button", name=re.compile(r"^Show test_what.*(?<!line)\.mp4")).click()
     expect(expected).to_have_value("")
     expect(outcome).to_be_empty()
+
+
+def test_nothing_acts_on_another_clip_before_its_own_takes_are_there(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="late.mp4")
+    page = open_page(library.address, scene=False)
+    expect(page.get_by_text("Take 1 of 1")).to_be_visible()
+    held: list[Route] = []
+    page.route("**/takes", lambda route: held.append(route))
+    page.get_by_role("button", name="Show late.mp4").click()
+    recognise = page.get_by_role("button", name="Recognise")
+    expect(recognise).to_be_disabled()
+    expect(page.get_by_role("button", name="Save as gesture")).to_be_disabled()
+    while not held:
+        page.wait_for_timeout(10)
+    held[0].continue_()
+    expect(recognise).to_be_enabled()
 
 
 def test_names_with_markup_are_text_everywhere(
