@@ -15,8 +15,9 @@ from app.recognition.errors import PoseError
 from app.recognition.forecast import Forecast
 from app.recognition.health_report import MOST_CONFUSION
 from app.recognition.poses import FloatArray
-from app.recognition.rehearsal import UNFORESEEN, rehearse
+from app.recognition.rehearsal import rehearse
 from app.recognition.rejection import SCORE_FLOOR
+from app.recognition.unforeseen import UNFORESEEN
 from app.recognition.variation import Person
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated

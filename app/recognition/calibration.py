@@ -24,6 +24,7 @@ from app.recognition.gesture import Gesture, Rates, condensed
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE, describe_movement
 from app.recognition.poses import FloatArray
 from app.recognition.rejection import novelty, novelty_weights
+from app.recognition.unforeseen import UNFORESEEN
 from app.recognition.variation import variants
 from app.recognition.voters.motion import MOTION_VOTERS
 
@@ -62,10 +63,6 @@ attitude may hardly differ."""
 OTHERS = 2.0
 """How much farther other people's takes lie than the demonstrator's own: variants by 1.9 to 2.1
 times, recorded takes by 1.9 to 2.6."""
-
-UNFORESEEN = 0.2
-"""Scale by which real takes differ from variants beyond that, see `Forecast.of_margins`; the same
-as in the health report."""
 
 LEAST_SHARE = 0.9
 """How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
@@ -148,7 +145,7 @@ def _with_thresholds(
         return replace(gesture, thresholds=thresholds, rates=None)
     margins = np.log(limit / OTHERS) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
-        miss=round(Forecast.of_margins(margins, UNFORESEEN).rate, DIGITS),
+        miss=round(Forecast.of_margins(margins, UNFORESEEN["another"]).rate, DIGITS),
         false_alarm=round(float((foreign < limit).mean()), DIGITS),
     )
     return replace(gesture, thresholds=thresholds, rates=rates)

@@ -5,10 +5,8 @@ The performances are variants of the demonstrations (`variation`), read by the r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -18,16 +16,12 @@ from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.recognizer import Recognizer
 from app.recognition.rejection import SCORE_FLOOR
+from app.recognition.unforeseen import UNFORESEEN
 from app.recognition.variation import Person, variants
 
 WIDEST_MARGIN = 4.0
 """Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
 compared at all needs to be."""
-
-UNFORESEEN: Final[Mapping[Person, float]] = MappingProxyType({"same": 0.15, "another": 0.2})
-"""Scale by which margins of real takes differ from those of variants, by whose takes they are:
-others also draw a letter with other strokes, which no variant of one demonstration can know.
-Measured on other people's recordings (`docs/results.md`, Health)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
