@@ -85,6 +85,11 @@ class Alignment:
         ``(N,)`` seconds of the query's clock at which it reached each step.
     gesture_time
         ``(N,)`` seconds of the demonstration at which the gesture did.
+    query, gesture
+        ``(N, P, 2)``: what the voter compares, step by step and part by part, x right and y down,
+        in its own unit; NaN where not seen. For `Path` each landmark's place relative to its mean
+        place, in sizes of the gesture: the squared lengths between places that correspond are the
+        costs, but for the N that they are divided by.
     costs
         ``(S, P)`` >= 0: what each pair adds to the voter's distance, part by part; their sum is
         the distance.
@@ -99,6 +104,8 @@ class Alignment:
     pairs: npt.NDArray[np.intp]
     time: FloatArray
     gesture_time: FloatArray
+    query: FloatArray
+    gesture: FloatArray
     costs: FloatArray
     backward: bool
     mirrored: bool
@@ -127,6 +134,8 @@ class Alignment:
             "pairs": self.pairs.tolist(),
             "time": np.round(self.time, DIGITS).tolist(),
             "gesture_time": np.round(self.gesture_time, DIGITS).tolist(),
+            "query": _places(self.query),
+            "gesture": _places(self.gesture),
             "costs": np.round(self.costs, DIGITS).tolist(),
         }
 
@@ -165,6 +174,8 @@ def align(
     known = np.asarray(np.isfinite(left).any(axis=0) & np.isfinite(right).any(axis=0))
     if not known.any():
         return None
+    shape = (len(left), len(parts), 2)
+    shown, gesture_shown = left.reshape(shape), right.reshape(shape)
     left, right = left[:, known], right[:, known]
     pairs = elastic_pairs(left, right, BAND)
     squares = (left[pairs[:, 0]] - right[pairs[:, 1]]) ** 2
@@ -179,6 +190,8 @@ def align(
         pairs=pairs,
         time=start + query.reached,
         gesture_time=example.time,
+        query=shown,
+        gesture=gesture_shown,
         costs=costs.reshape(len(pairs), len(parts), 2).sum(axis=2) / len(left),
         backward=example.reading.backward,
         mirrored=example.mirrored,
@@ -201,6 +214,14 @@ def nearest_example(
     read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
+
+
+def _places(shown: FloatArray) -> list[list[list[float] | None]]:
+    """Round ``(N, P, 2)`` for JSON; what was not seen becomes None."""
+    return [
+        [place if np.isfinite(place).all() else None for place in step]
+        for step in np.round(shown, DIGITS).tolist()
+    ]
 
 
 def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 // Start: load what there is, follow what changes, and keep every part of the page in step.
 
+import { showJoint, showMoment } from "./alignment.js";
 import * as api from "./api.js";
 import { drawClips, drawSamples, followJob, reloadClip, reloadClips } from "./clips.js";
 import { byId, icon } from "./dom.js";
@@ -66,6 +67,8 @@ function drawEverything() {
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
+  follow(["position"], showMoment);
+  follow(["joint"], showJoint);
   follow(["result"], drawOutcome);
   follow(["why", "result", "trial"], drawWhy);
   follow(["why", "timeline"], drawCosts);

@@ -1,13 +1,13 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
-const IN_URL = { view: "view", source: "source", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition",
+const IN_URL = { view: "view", source: "source", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition", joint: "joint",
   panel: "panel", older: "older", newer: "newer", pair: "pair", cell: "cell" };
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 const values = {
   view: null, source: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
   timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, connected: null, loaded: false, health: null, checking: null, recognised: null,
-  clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null,
+  clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null, joint: null,
   panel: null, older: null, newer: null, pair: null, cell: null,
 };
 

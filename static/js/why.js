@@ -1,5 +1,6 @@
 // Why a recognition came out as it did, where the difference lies, and what would have helped.
 
+import { alignmentsOf } from "./alignment.js";
 import * as api from "./api.js";
 import { byId, h, svg } from "./dom.js";
 import { edit } from "./gestures.js";
@@ -128,11 +129,12 @@ export function drawWhy({ why, result, trial }) {
   if (box.hidden) return box.replaceChildren();
   if (asks && !trying) return box.replaceChildren(h("p", { className: "dim" }, "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help."));
   const remedies = why && !why.right ? why.counterfactuals : [];
-  return box.replaceChildren(...[
+  const words = [
     trying,
     why ? h("p", { className: "why-sentence" }, why.sentence) : null,
     remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
-    why ? h("p", { className: "share" }, h("a", { href: api.recognitions.analysisUrl(result.id), download: "" }, "Share as one file"), h("small", { className: "dim" }, " plays without a server")) : null,
     why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
-  ].filter(Boolean));
+    why ? h("p", { className: "share" }, h("a", { href: api.recognitions.analysisUrl(result.id), download: "" }, "Share as one file"), h("small", { className: "dim" }, " plays without a server")) : null,
+  ];
+  return box.replaceChildren(...[h("div", { className: "why-words" }, words), alignmentsOf(why)].filter(Boolean));
 }

@@ -65,6 +65,29 @@ def test_the_alignments_cost_what_the_path_voter_measures(profile: str) -> None:
     ] * voters
 
 
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_path_alignment_can_be_drawn(profile: str) -> None:
+    for alignment in why(recording(square, jitter=0.01), "wedge", profile).alignments:
+        if alignment.voter != "path":
+            continue
+        between = alignment.query[alignment.pairs[:, 0]] - alignment.gesture[alignment.pairs[:, 1]]
+        lengths = np.hypot(between[..., 0], between[..., 1])
+        assert lengths**2 / len(alignment.query) == pytest.approx(alignment.costs)
+
+
+def test_what_a_drawing_does_not_show_is_null_in_json() -> None:
+    query = recording(square, jitter=0.01)
+    unseen = query.xy.copy()
+    unseen[:, [query.landmarks.index("right_index")]] = np.nan
+    hidden = PoseSequence(
+        landmarks=query.landmarks, xy=unseen, time=query.time, frame_size=query.frame_size
+    )
+    posture = why(hidden, "wedge").alignments[1]
+    told = posture.to_dict()["query"]
+    column = posture.parts.index("right_index")
+    assert [step[column] for step in told] == [None] * len(posture.query)
+
+
 def test_moments_are_those_of_the_querys_clock() -> None:
     query = recording(square, frames=60)
     late = PoseSequence(
