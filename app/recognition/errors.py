@@ -44,3 +44,7 @@ class ModelError(RecognitionError):
 
 class EstimatorError(RecognitionError):
     """Raised when a pose estimator cannot be had as asked, or is given what is no image."""
+
+
+class SourceError(RecognitionError):
+    """Raised when a camera or stream cannot be opened, or stops giving frames."""

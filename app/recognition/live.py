@@ -71,10 +71,23 @@ class LiveTakes:
             The landmarks of the frame.
 
         """
-        self._moments.append(moment_of(found, time, self.frame_size))
+        return self.feed_moment(moment_of(found, time, self.frame_size), best_salute(found.hands))
+
+    def feed_moment(self, moment: PoseSequence, salute: float) -> Sight:
+        """Take the next frame, whose landmarks and salute came apart.
+
+        Parameters
+        ----------
+        moment
+            The body in that frame alone, later than in every call before.
+        salute
+            In [0, 1]: how much the best hand salutes (`best_salute`).
+
+        """
+        time = float(moment.time[0])
+        self._moments.append(moment)
         while time - self._moments[0].time[0] > LONGEST_TAKE + LONGEST_SALUTE:
             self._moments.popleft()
-        salute = best_salute(found.hands)
         bracket = self._machine.update(time, salute)
         return Sight(
             salute=salute,
@@ -82,3 +95,10 @@ class LiveTakes:
             state=self._machine.state,
             take=take_from(joined(self._moments), bracket) if bracket else None,
         )
+
+    def finish(self) -> Take | None:
+        """End the stream; return the take that was begun and not closed, if there is one."""
+        if not self._moments:
+            return None
+        bracket = self._machine.finish(float(self._moments[-1].time[0]))
+        return take_from(joined(self._moments), bracket) if bracket else None

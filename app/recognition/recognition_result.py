@@ -88,6 +88,18 @@ class Recognition:
         """The votes that have weight."""
         return {voter: label for voter, label in self.votes.items() if self.weights[voter] > 0}
 
+    @property
+    def margin(self) -> float:
+        """How much nearer `nearest` is than every other gesture, in the unit of `scores`.
+
+        Negative where profile ``paper`` let more votes win over a nearer gesture; infinite where
+        no other can be compared; NaN where an earlier version did not tell `scores`.
+        """
+        if not self.scores.size:
+            return math.nan
+        at = self.gestures.index(self.nearest)
+        return float(np.delete(self.scores, at).min(initial=np.inf) - self.scores[at])
+
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Recognition:
         """Return the recognition that `to_dict` told, or an earlier version did."""

@@ -200,6 +200,24 @@ class Spotter:
             found += self.feed(poses.between(moment, moment))
         return (*found, *self.finish())
 
+    def for_language(self, recognizer: Recognizer) -> Spotter:
+        """Return a spotter of another language that remembers what this one saw and told.
+
+        Gestures of this language that are not told yet are forgotten.
+
+        Raises
+        ------
+        RecognitionError
+            As for a new one.
+
+        """
+        other = Spotter(recognizer, confident=self._confident)
+        other._seen.extend(self._seen)
+        other._looked, other._moving = self._looked, self._moving
+        # Only what ends from now on is taken up: a gesture of the past must not come out today.
+        other._believed, other._reported = self._believed, self._reported
+        return other
+
     def finish(self) -> tuple[Spotted, ...]:
         """End the stream: return what was still awaited."""
         if self._seen:

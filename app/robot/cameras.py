@@ -1,0 +1,152 @@
+"""Cameras of this machine, by OpenCV, and streams from the network, by FFmpeg through PyAV."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+from urllib.parse import urlsplit
+
+import av
+import cv2
+import numpy as np
+from av.container import InputContainer
+
+from app.recognition.errors import SourceError
+from app.recognition.estimation.base import Image
+
+OPEN_SECONDS: Final = 10.0
+"""For a stream to say what it holds: RTSP cameras send a picture that can be decoded alone every
+few seconds."""
+
+SILENT_SECONDS: Final = 5.0
+"""Without a frame for so long, a stream counts as lost. The slowest that a gesture could be seen in
+gives two frames a second (`app.recognition.trajectory.MAX_GAP_SECONDS`)."""
+
+MOST_PIXELS: Final = 16_000_000
+"""Of one frame, as for clips (`VideoLimits`)."""
+
+SCHEMES: Final = ("rtsp", "rtsps", "http", "https", "udp", "rtp", "tcp", "srt")
+"""Of addresses that are opened as streams."""
+
+PROTOCOLS: Final = "rtsp,rtsps,rtp,srtp,udp,tcp,tls,http,https,httpproxy,crypto,srt"
+"""What FFmpeg may open for them; not files, which a playlist from the network could name."""
+
+
+class CameraDevice:
+    """A camera of this machine; a `Camera`.
+
+    Parameters
+    ----------
+    device
+        Its number, from 0, or its device file.
+
+    Raises
+    ------
+    SourceError
+        When it cannot be opened.
+
+    """
+
+    def __init__(self, device: int | str) -> None:
+        self._name = f"camera {device}"
+        self._capture = cv2.VideoCapture(device)
+        if not self._capture.isOpened():
+            raise SourceError(
+                f"{self._name} cannot be opened: there is none, another program uses it, or this "
+                "user may not; see which there are (on Linux: ls /dev/video*) and try again"
+            )
+        # A queue in the driver would make every frame an old one; not every driver obeys.
+        self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+
+    def read(self) -> Image:
+        """Wait for the next frame; see `app.robot.live_source.Camera`."""
+        got, image = self._capture.read()
+        if not got or image is None:
+            raise SourceError(f"{self._name} gave no frame: unplugged, or its driver stopped")
+        return np.ascontiguousarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), np.uint8)
+
+    def close(self) -> None:
+        """Release the camera for other programs."""
+        self._capture.release()
+
+
+class NetworkStream:
+    """A stream from the network, such as a camera's RTSP or MJPEG; a `Camera`.
+
+    Parameters
+    ----------
+    address
+        With its scheme, one of `SCHEMES`.
+
+    Raises
+    ------
+    SourceError
+        When nothing answers, or what answers is no video.
+
+    """
+
+    def __init__(self, address: str) -> None:
+        self._name = without_password(address)
+        self._container = _opened(address, self._name)
+        try:
+            stream = self._container.streams.video[0]
+        except IndexError as error:
+            self.close()
+            raise SourceError(f"{self._name} holds no video; check the address") from error
+        stream.thread_type = "SLICE"  # threads over frames would hold several back
+        self._frames = self._container.decode(stream)
+
+    def read(self) -> Image:
+        """Wait for the next frame; see `app.robot.live_source.Camera`."""
+        while True:
+            try:
+                frame = next(self._frames)
+            except StopIteration as error:
+                raise SourceError(f"{self._name} ended: the sender closed the stream") from error
+            except av.error.InvalidDataError:
+                continue  # a damaged frame is one that was dropped
+            except (av.error.FFmpegError, OSError) as error:
+                raise SourceError(
+                    f"{self._name} broke off ({error.strerror or error}): no frame for "
+                    f"{SILENT_SECONDS:g} s, or the connection failed"
+                ) from error
+            if frame.width * frame.height > MOST_PIXELS:
+                raise SourceError(
+                    f"{self._name} sends {frame.width} x {frame.height} pixels, more than "
+                    f"{MOST_PIXELS / 1e6:g} million; set the camera to a smaller picture"
+                )
+            return np.ascontiguousarray(frame.to_ndarray(format="rgb24"), np.uint8)
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._container.close()
+
+
+def without_password(address: str) -> str:
+    """Return an address as it may be shown and logged: without user name and password."""
+    return re.sub(r"(?<=://)[^/@]*@", "", address)
+
+
+def is_address(text: str) -> bool:
+    """Tell whether a text is the address of a stream."""
+    return "://" in text and urlsplit(text).scheme.lower() in SCHEMES
+
+
+def _opened(address: str, name: str) -> InputContainer:
+    try:
+        return av.open(
+            address,
+            timeout=(OPEN_SECONDS, SILENT_SECONDS),
+            container_options={
+                "protocol_whitelist": PROTOCOLS,
+                "fflags": "nobuffer",
+                "rtsp_transport": "tcp",  # over UDP a lost packet smears the picture for seconds
+            },
+            options={"max_pixels": str(MOST_PIXELS)},
+            metadata_errors="replace",
+        )
+    except (av.error.FFmpegError, OSError) as error:
+        raise SourceError(
+            f"{name} cannot be opened ({error.strerror or error}); check the address, and whether "
+            "the camera is on"
+        ) from error

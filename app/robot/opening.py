@@ -1,0 +1,74 @@
+"""A source by what the user calls it. A further kind of source is one more entry of `KINDS`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from app.robot.cameras import CameraDevice, NetworkStream, is_address, without_password
+from app.robot.clip_source import ClipSource
+from app.robot.live_source import LiveSource
+from app.robot.source import Source
+
+
+@dataclass(frozen=True)
+class SourceKind:
+    """One kind of source, recognised by its text.
+
+    Attributes
+    ----------
+    accepts
+        Tells whether a text names a source of this kind.
+    open
+        Opens it; raises a `RecognitionError` that says what to do when that fails.
+
+    """
+
+    accepts: Callable[[str], bool]
+    open: Callable[[str], Source]
+
+
+def is_device(text: str) -> bool:
+    """Tell whether a text is the number of a camera or its device file."""
+    return re.fullmatch(r"\d{1,2}|/dev/video\d{1,2}", text) is not None
+
+
+def open_camera(text: str) -> Source:
+    """Open a camera of this machine by number or device file."""
+    device = int(text) if text.isdigit() else text
+    return LiveSource(f"camera {text}", partial(CameraDevice, device))
+
+
+def open_stream(address: str) -> Source:
+    """Open a stream from the network."""
+    return LiveSource(without_password(address), partial(NetworkStream, address))
+
+
+KINDS: tuple[SourceKind, ...] = (
+    SourceKind(is_device, open_camera),
+    SourceKind(is_address, open_stream),
+    SourceKind(lambda text: True, ClipSource),
+)
+"""The first that accepts a text opens it. Clips come last: any other text is a file's path."""
+
+
+def open_source(text: str) -> Source:
+    """Open what a user calls a source.
+
+    Parameters
+    ----------
+    text
+        A camera's number (``0``) or device file (``/dev/video0``), a stream's address
+        (``rtsp://...``, ``http://...``), or the path of a clip.
+
+    Raises
+    ------
+    SourceError
+        When a camera or stream cannot be opened.
+    VideoError
+        When a file is no clip.
+
+    """
+    return next(kind for kind in KINDS if kind.accepts(text)).open(text)

@@ -1,0 +1,144 @@
+"""What frames come from: a clip, a camera, a network stream, a recorded bag."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from app.recognition.estimation.base import Image
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame of a source.
+
+    Attributes
+    ----------
+    time
+        Seconds in the source's own clock, greater than in every frame before. A clip's first frame
+        is at 0 s; a live source counts from when it was opened.
+    image
+        ``(height, width, 3)`` RGB, upright, y down.
+    dropped
+        Frames that came since the one before and were left out because newer ones had come;
+        always 0 for a recording.
+
+    """
+
+    time: float
+    image: Image
+    dropped: int = 0
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A live source gives no frames any more, and is being opened again and again.
+
+    Attributes
+    ----------
+    time
+        Seconds in the source's clock.
+    reason
+        One sentence for a person.
+
+    """
+
+    time: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Restored:
+    """A lost source gives frames again.
+
+    Attributes
+    ----------
+    time
+        Seconds in the source's clock.
+    missing
+        Seconds without a frame.
+    attempts
+        How often opening was tried.
+
+    """
+
+    time: float
+    missing: float
+    attempts: int
+
+
+@dataclass(frozen=True)
+class Warned:
+    """Something about the source that a person should know, which does not stop it.
+
+    Attributes
+    ----------
+    time
+        Seconds in the source's clock.
+    reason
+        One sentence for a person.
+
+    """
+
+    time: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Quiet:
+    """Nothing came for a moment: whoever iterates may look after other things.
+
+    Attributes
+    ----------
+    time
+        Seconds in the source's clock.
+
+    """
+
+    time: float
+
+
+Notice = Lost | Restored | Warned | Quiet
+"""What a source may tell between two frames."""
+
+
+class Source(Protocol):
+    """Frames in order, with what happened between them.
+
+    A recording gives every frame as fast as it is asked for, then ends. A live source gives the
+    newest frame, waits for one where there is none, and never ends by itself.
+
+    Attributes
+    ----------
+    name
+        For people, without passwords.
+    live
+        Whether frames that nobody asks for in time are dropped.
+    frame_size
+        Width and height in pixels of the first frame; later ones may differ after a `Restored`.
+
+    """
+
+    @property
+    def name(self) -> str:
+        """What it is called towards people."""
+        ...
+
+    @property
+    def live(self) -> bool:
+        """Whether it is a camera or stream, not a recording."""
+        ...
+
+    @property
+    def frame_size(self) -> tuple[int, int]:
+        """Width and height in pixels of the first frame."""
+        ...
+
+    def __iter__(self) -> Iterator[Frame | Notice]:
+        """Iterate once over the frames and notices."""
+        ...
+
+    def close(self) -> None:
+        """Release the camera or file; nothing more is given. May be called twice."""
+        ...

@@ -1,0 +1,67 @@
+"""A language that a robot listens for, and by what it can be told from every other."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+from app.recognition import Language, Recognizer
+
+
+@dataclass(frozen=True, eq=False)
+class SpokenLanguage:
+    """A language made ready to be recognised.
+
+    Attributes
+    ----------
+    recognizer
+        Of that language.
+    sha256
+        The language's id: the seal of its file (`docs/language-file.md`), the same here, in the
+        studio that exported it, and in whatever a log is compared with.
+
+    """
+
+    recognizer: Recognizer
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        """The language's name."""
+        return self.recognizer.language.name
+
+    @property
+    def revision(self) -> int:
+        """The language's revision."""
+        return self.recognizer.language.revision
+
+    @classmethod
+    def of(cls, language: Language, profile: str = "full") -> Self:
+        """Make a language ready; takes up to a second where it brings no thresholds.
+
+        Raises
+        ------
+        LanguageError
+            When it has no gestures.
+        RecognitionError
+            When there is no such profile.
+
+        """
+        sealed = json.loads(language.to_json())
+        return cls(Recognizer(language, profile), sealed["sha256"])
+
+    @classmethod
+    def load(cls, path: str | Path, profile: str = "full") -> Self:
+        """Read a language file and make it ready.
+
+        Raises
+        ------
+        LanguageError
+            When the file cannot be read or is invalid.
+        RecognitionError
+            When there is no such profile.
+
+        """
+        return cls.of(Language.load(path), profile)

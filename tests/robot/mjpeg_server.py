@@ -1,0 +1,87 @@
+"""A camera as many are: JPEG pictures one after the other over HTTP, on a real socket."""
+
+from __future__ import annotations
+
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from types import TracebackType
+from typing import Self
+
+import cv2
+import numpy as np
+
+FRAME_SIZE = (64, 48)
+BOUNDARY = "picture"
+
+
+def picture(brightness: int) -> bytes:
+    """Return a grey JPEG."""
+    width, height = FRAME_SIZE
+    grey = np.full((height, width, 3), brightness, np.uint8)
+    return cv2.imencode(".jpg", grey)[1].tobytes()
+
+
+class MjpegServer:
+    """Sends pictures until it is left; then its connections break, as when a plug is pulled.
+
+    Parameters
+    ----------
+    port
+        Where it listens; 0 finds a free one.
+    pause
+        Seconds between two pictures.
+    brightness
+        Of all its pictures.
+
+    """
+
+    def __init__(self, port: int = 0, *, pause: float = 0.02, brightness: int = 100) -> None:
+        self._off = threading.Event()
+        jpeg, off = picture(brightness), self._off
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_GET(self) -> None:
+                self.send_response(200)
+                kind = f"multipart/x-mixed-replace; boundary={BOUNDARY}"
+                self.send_header("Content-Type", kind)
+                self.end_headers()
+                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}"
+                try:
+                    while not off.wait(pause):
+                        self.wfile.write(f"{head}\r\n\r\n".encode() + jpeg + b"\r\n")
+                except OSError:
+                    pass  # whoever watched has left
+
+            def log_message(self, format: str, *args: object) -> None:
+                """Say nothing on stderr."""
+
+        class Server(ThreadingHTTPServer):
+            daemon_threads = True
+
+        self._server = Server(("127.0.0.1", port), Handler)
+        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.02,))
+
+    @property
+    def port(self) -> int:
+        """Where it listens."""
+        return self._server.server_port
+
+    @property
+    def address(self) -> str:
+        """What a source is called that watches it, with a password."""
+        return f"http://diver:secret@127.0.0.1:{self.port}/"
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._off.set()
+        self._server.shutdown()
+        self._thread.join()
+        self._server.server_close()

@@ -1,0 +1,93 @@
+"""A live source gives the newest frame, and comes back when its camera does."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Iterator
+from contextlib import closing
+from functools import partial
+from itertools import islice
+
+import pytest
+
+from app.recognition.errors import SourceError
+from app.robot import Frame, Lost, Notice, Quiet, Restored
+from app.robot.cameras import NetworkStream
+from app.robot.live_source import LiveSource
+from app.robot.opening import open_source
+from tests.robot.mjpeg_server import FRAME_SIZE, MjpegServer
+
+
+def quick_to_return(address: str) -> LiveSource:
+    """Watch a stream that is tried again soon after it broke."""
+    return LiveSource("stream", partial(NetworkStream, address), first_wait=0.05)
+
+
+def frames(given: Iterator[Frame | Notice]) -> Iterator[Frame]:
+    return (each for each in given if isinstance(each, Frame))
+
+
+def test_frames_of_a_stream_come_in_order_at_growing_times() -> None:
+    with MjpegServer(brightness=100) as server, closing(open_source(server.address)) as source:
+        assert source.live
+        assert source.frame_size == FRAME_SIZE
+        seen = list(islice(frames(iter(source)), 5))
+    times = [frame.time for frame in seen]
+    assert times == sorted(set(times))
+    assert seen[0].image.shape == (FRAME_SIZE[1], FRAME_SIZE[0], 3)
+    assert seen[0].image.mean() == pytest.approx(100, abs=2)
+
+
+def test_a_slow_reader_gets_the_newest_frame_and_the_count_of_the_others() -> None:
+    with MjpegServer() as server, closing(open_source(server.address)) as source:
+        given = frames(iter(source))
+        first = next(given)
+        clock.sleep(0.5)
+        late = next(given)
+        following = next(given)
+    assert late.dropped >= 3
+    assert late.time - first.time > 0.3  # a queue would have given the frame after the first
+    assert following.dropped <= 1
+
+
+def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
+    with MjpegServer(brightness=50) as server:
+        source = quick_to_return(server.address)
+        given = iter(source)
+        before = next(frames(given))
+    with closing(source):
+        lost = next(each for each in given if isinstance(each, Lost))
+        meanwhile = list(islice(given, 2))  # several attempts fail in this time
+        with MjpegServer(server.port, brightness=200):
+            after = [each for each in islice(given, 20) if not isinstance(each, Quiet)]
+    assert all(isinstance(each, Quiet) for each in meanwhile)
+    restored, frame = after[:2]
+    assert isinstance(restored, Restored)
+    assert isinstance(frame, Frame)
+    assert before.time < lost.time < restored.time <= frame.time
+    assert restored.attempts >= 1
+    assert restored.missing == pytest.approx(restored.time - lost.time, abs=0.01)
+    assert frame.image.mean() == pytest.approx(200, abs=2)
+
+
+def test_a_closed_source_gives_nothing_more() -> None:
+    with MjpegServer() as server:
+        source = open_source(server.address)
+        source.close()
+        source.close()
+        assert list(source) == []
+
+
+def test_a_password_is_not_shown() -> None:
+    with MjpegServer() as server, closing(open_source(server.address)) as source:
+        assert source.name == f"http://127.0.0.1:{server.port}/"
+        address = server.address
+    with pytest.raises(SourceError, match="cannot be opened") as refused:
+        open_source(address)
+    assert "secret" not in str(refused.value)
+
+
+@pytest.mark.parametrize("name", ["63", "/dev/video63"])
+def test_a_camera_that_does_not_exist_is_refused_by_name(name: str) -> None:
+    with pytest.raises(SourceError, match=rf"camera {name} cannot be opened"):
+        open_source(name)
