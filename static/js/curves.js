@@ -2,9 +2,9 @@
 
 import * as api from "./api.js";
 import { h, svg } from "./dom.js";
+import { SALUTE } from "./salute.js";
 
 const HEIGHT = 30; // of the drawing, in its own units
-const SALUTE = 0.5; // A salute's confidence above this opens or closes a take.
 
 const CURVES = [
   { name: "right_wrist", className: "right", text: "right wrist\u2019s speed" },

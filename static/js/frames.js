@@ -1,5 +1,8 @@
 // Frames and their moments: `time` is when each frame is shown, by the container's clock.
 
+/** A range of fewer frames holds no gesture. */
+export const LEAST_FRAMES = 3;
+
 /** The frame that is nearest to a moment. */
 export function nearestFrame(time, seconds) {
   let low = 0;

@@ -24,15 +24,30 @@ function written(event) {
   return [...held.filter(Boolean), name].join("+");
 }
 
+let opening = null; // A view that is being loaded: its keys are not bound yet.
+
+/** Let keys that are pressed before a promise is kept wait for it. */
+export function holdKeys(promise) {
+  opening = promise;
+  promise.finally(() => { if (opening === promise) opening = null; });
+}
+
+const meant = (combination) => bound.findLast((each) => each.keys.includes(combination) && each.when());
+
 function pressed(event) {
   if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
   // An element of a frame is no Element of this window.
   const at = event.target?.closest ? event.target : null;
   if (at?.closest(TYPED_IN)) return;
   // A button that has the focus is pressed with the space bar.
-  if (event.key === " " && at?.closest("button, a, summary, [role=tab]")) return;
+  if (event.key === " " && at?.closest("button, summary, [role=tab], [role=button]")) return;
   const combination = written(event);
-  const found = bound.findLast((each) => each.keys.includes(combination) && each.when());
+  if (opening) {
+    if (event.key === " ") event.preventDefault(); // It would scroll the page.
+    opening.then(() => meant(combination)?.run(event));
+    return;
+  }
+  const found = meant(combination);
   if (!found) return;
   event.preventDefault();
   found.run(event);

@@ -3,11 +3,9 @@
 import { curves, filmstrip, legend } from "./curves.js";
 import { byId, h, icon } from "./dom.js";
 import { moment, plural } from "./format.js";
-import { nearestFrame } from "./frames.js";
+import { LEAST_FRAMES, nearestFrame } from "./frames.js";
 import { seek } from "./playback.js";
 import { selectedClip, selectedRange, state, update } from "./state.js";
-
-const LEAST_FRAMES = 3; // With fewer there is no gesture.
 
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 

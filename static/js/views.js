@@ -1,6 +1,7 @@
 // The views of the page: one is shown at a time, named in the URL, and loaded when first shown.
 
-import { byId, h } from "./dom.js";
+import { byId, h, reconcile } from "./dom.js";
+import { holdKeys } from "./keys.js";
 import { follow, state, update } from "./state.js";
 
 /** The view at the start, which the URL does not name. */
@@ -52,12 +53,15 @@ export const here = (run) => (event) => {
   run();
 };
 
+/** Draw the tabs; a link that has the focus keeps it. */
 function drawTabs(current) {
-  byId("views").replaceChildren(...VIEWS.filter(({ name, passing }) => !passing || name === current).map(({ name, title }) => h("a", {
-    href: address(name),
-    "aria-current": name === current ? "page" : null,
-    onclick: here(() => go(name)),
-  }, title)));
+  reconcile(byId("views"), VIEWS.filter(({ name, passing }) => !passing || name === current), ({ name }) => name, ({ name, title }, known) => {
+    const link = known ?? h("a", { onclick: here(() => go(name)) }, title);
+    link.href = address(name);
+    if (name === current) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+    return link;
+  });
 }
 
 /** Show the view that is selected. */
@@ -68,9 +72,10 @@ async function show() {
   for (const { name } of VIEWS) byId(`view-${name}`).hidden = name !== current;
   const { load } = VIEWS.find((each) => each.name === current);
   if (!load || opened.has(current)) return;
-  opened.set(current, true);
-  const { open } = await load();
-  open(byId(`view-${current}`));
+  const loading = load().then(({ open }) => open(byId(`view-${current}`)));
+  opened.set(current, loading);
+  holdKeys(loading);
+  await loading;
 }
 
 /** Follow what is selected. A view's module exports `open(section)`, called when it is first shown. */

@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Route, expect
 
 from app.recognition.landmarks import POSE_LANDMARKS, SKELETON
+from app.recognition.salute import ENTER_SCORE
 from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -38,6 +39,25 @@ def test_the_page_joins_the_landmarks_by_the_recognisers_bones(open_page: OpenPa
     bones = page.evaluate("async () => (await import('/static/js/skeleton.js')).BONES")
     joined = tuple((POSE_LANDMARKS[start], POSE_LANDMARKS[end]) for start, end in bones)
     assert joined == SKELETON
+
+
+def test_the_page_draws_the_bar_of_the_recognisers_salute(open_page: OpenPage) -> None:
+    page = open_page(scene=False)
+    bar = page.evaluate("async () => (await import('/static/js/salute.js')).SALUTE")
+    assert bar == ENTER_SCORE
+
+
+def test_a_key_pressed_right_after_a_tab_counts_and_a_missing_camera_is_explained(
+    open_page: OpenPage,
+) -> None:
+    page = open_page(scene=False)
+    page.get_by_role("link", name="Live").click()
+    page.keyboard.press("Space")
+    problem = page.locator("#live-problem")
+    expect(problem).to_contain_text("No camera found")
+    expect(problem).to_contain_text("play a clip as if live")
+    expect(problem.get_by_role("button", name="Try again")).to_be_visible()
+    expect(page.get_by_role("link", name="Live")).to_be_focused()
 
 
 def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(

@@ -1,9 +1,8 @@
 // Which part of a clip the demonstration is: a take's stroke, all of a take, or a range by hand.
 
-import { nearestFrame } from "../frames.js";
+import { LEAST_FRAMES, nearestFrame } from "../frames.js";
 
 const SAME_MOMENT = 1e-3; // s, as the server tells a take's own range
-export const LEAST_FRAMES = 3; // With fewer there is no gesture.
 
 const near = (one, other) => Math.abs(one - other) <= SAME_MOMENT;
 

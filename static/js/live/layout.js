@@ -1,6 +1,7 @@
 // The elements of the view, before anything is seen.
 
 import { h } from "../dom.js";
+import { SALUTE } from "../salute.js";
 
 const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "false" }, text);
 const check = (id, text, title, checked) => h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
@@ -36,7 +37,7 @@ export function panel() {
         h("ol", { className: "live-steps", id: "live-steps" }, STEPS.map(([name, text]) => h("li", { id: `live-step-${name}` }, text))),
         h("p", { id: "live-saying", role: "status" }),
         h("label", { className: "live-salute" }, "Salute",
-          h("meter", { id: "live-salute", min: 0, max: 1, low: 0.5, value: 0 }))),
+          h("meter", { id: "live-salute", min: 0, max: 1, low: SALUTE, value: 0 }))),
       controls()),
     h("aside", { className: "live-side", "aria-label": "Recognised live" },
       h("div", { id: "live-result", "aria-live": "polite" }),

@@ -1,11 +1,10 @@
 // What goes on, in words: the salute, the take, and how fast frames are looked at.
 
 import { byId, h } from "../dom.js";
+import { SALUTE } from "../salute.js";
 import { state as page } from "../state.js";
 
 const FEW = 6; // frames a second: below, a stroke of a second is five points, and looks like any other.
-
-const SALUTE = 0.5; // A score above it is a salute, see `ENTER_SCORE`.
 
 /** Which step the diver is in, and what to do, from an answer of the server. */
 function situation({ pose, salute, held, state }) {

@@ -7,12 +7,18 @@ const CLIP_STEP = 1 / 12; // s. A salute is held for 0.3 s: at least three frame
 /** Whether the browser may give this page a camera at all. */
 export const cameraPossible = () => Boolean(navigator.mediaDevices?.getUserMedia);
 
+const INSTEAD = "Without a camera, play a clip as if live.";
+
 const REASONS = {
-  NotAllowedError: ["The camera was not allowed", "Allow it beside the page\u2019s address, where the browser keeps its permissions, then try again."],
-  NotFoundError: ["No camera found", "Plug one in, or play a clip as if live."],
-  NotReadableError: ["The camera does not answer", "Another program may be using it. Close that program, then try again."],
-  OverconstrainedError: ["That camera is gone", "Choose another one, then try again."],
+  NotAllowedError: ["The camera was not allowed", "Allow it for this page, beside its address, and for the browser in the system\u2019s privacy settings. Then try again."],
+  NotFoundError: ["No camera found", "Plug one in, and see that it is switched on. Then try again."],
+  NotReadableError: ["The camera does not answer", "Another program or tab may be using it. Close that one, then try again."],
+  AbortError: ["The camera does not answer", "It failed while it was started. Unplug it and plug it in again, then try again."],
+  OverconstrainedError: ["That camera is gone", "Choose another one, or plug it in again. Then try again."],
 };
+
+/** Why a camera that was watched sends nothing any more. */
+export const CAMERA_LOST = { title: "The camera was lost", text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}` };
 
 /** Say in words why there is no camera: `{ title, text }`. */
 export function whyNoCamera(error) {
@@ -23,17 +29,17 @@ export function whyNoCamera(error) {
     };
   }
   const [title, text] = REASONS[error.name] ?? ["The camera cannot be used", error.message];
-  return { title, text };
+  return { title, text: `${text} ${INSTEAD}` };
 }
 
-/** Show a camera in a video element, and return its stream. */
-export async function showCamera(video, deviceId) {
+/** Show a camera in a video element; `lost()` is called when it sends nothing any more. */
+export async function showCamera(video, deviceId, lost) {
   if (!cameraPossible()) throw new TypeError("no camera");
   const wanted = { width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } };
   const stream = await navigator.mediaDevices.getUserMedia({ video: deviceId ? { ...wanted, deviceId: { exact: deviceId } } : wanted, audio: false });
+  for (const track of stream.getTracks()) track.onended = lost;
   video.srcObject = stream;
   await video.play();
-  return stream;
 }
 
 /** The cameras that can be chosen from; the browser names them once one was allowed. */

@@ -13,7 +13,7 @@ import { drawSeen, overlay } from "./overlay.js";
 import { countDown, record } from "./recording.js";
 import { addResult, clearResults } from "./results.js";
 import { sayState, saySpeed } from "./saying.js";
-import { cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./source.js";
+import { CAMERA_LOST, cameraPossible, cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./source.js";
 
 const COUNT = 3; // s: from the button to where the diver stands.
 const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
@@ -105,10 +105,12 @@ function seen(answer, seconds) {
   if (recording && answer.state === "done" && byId("live-autostop").checked && !ending) ending = setTimeout(endRecording, AFTER_SALUTE);
 }
 
-function ended(reason) {
+function lost(trouble) {
   stop();
-  problem({ title: "The live view ended", text: reason });
+  problem(trouble);
 }
+
+const ended = (reason) => lost({ title: "The live view ended", text: reason });
 
 function listening({ language, gestures, problem: trouble }) {
   const text = trouble ? `Takes are found, but none is recognised: ${trouble}.`
@@ -119,7 +121,7 @@ function listening({ language, gestures, problem: trouble }) {
 
 async function showSource() {
   if (fromClip()) await showClip(video(), api.clips.video(chosenClip().id));
-  else await showCamera(video(), byId("live-cameras").value);
+  else await showCamera(video(), byId("live-cameras").value, () => lost(CAMERA_LOST));
   byId("live-picture").classList.toggle("mirrored", !fromClip());
   drawing?.remove();
   drawing = overlay(video().videoWidth, video().videoHeight);
@@ -138,9 +140,15 @@ async function start() {
   } catch (error) {
     release(video());
     problem(clip ? { title: "The clip cannot be played", text: error.message } : whyNoCamera(error));
+    if (cameraPossible()) drawCameraChoice(); // The one that was chosen may be gone.
     return false;
   } finally {
     button.disabled = false;
+  }
+  // The browser may ask for long whether the camera is allowed.
+  if (state.view !== "live") {
+    stop();
+    return false;
   }
   const opened = openLink({ seen, listening, ended, recognized: (result) => addResult(result, clip) });
   link = opened;
@@ -151,6 +159,7 @@ async function start() {
   if (link !== opened) return false;
   const every = clip && byId("live-every").checked;
   video().onended = () => { if (clip) stop(); };
+  if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
   stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
   if (clip && !every) await video().play();
   return true;
@@ -222,6 +231,7 @@ export function open(section) {
   follow(["language"], ({ language }) => link?.listen(language));
   follow(["view"], ({ view }) => { if (view !== "live") stop(); });
   addEventListener("pagehide", stop);
+  navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
   sayState(null);
   saySpeed(null);
 }

@@ -1,0 +1,54 @@
+"""A camera that is denied, allowed after all, and taken away while it records."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.api.running import Running
+from tests.browser.conftest import WEBGL, OpenPage
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def browser(browser: Browser) -> Iterator[Browser]:
+    """Start a second Chromium, with a camera that a page must be allowed."""
+    executable = shutil.which("chromium") or shutil.which("chromium-browser")
+    args = [*WEBGL, "--use-fake-device-for-media-stream"]
+    started = browser.browser_type.launch(executable_path=executable, args=args)
+    yield started
+    started.close()
+
+
+def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(
+    open_page: OpenPage, server: Running
+) -> None:
+    page = open_page({"view": "live"}, scene=False)
+    page.get_by_role("button", name="Start the camera").click()
+    problem = page.locator("#live-problem")
+    expect(problem).to_contain_text("The camera was not allowed")
+    expect(problem).to_contain_text("Allow it for this page")
+
+    page.context.grant_permissions(["camera"])
+    problem.get_by_role("button", name="Try again").click()
+    expect(problem).to_be_hidden()
+    expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
+    page.keyboard.press("r")
+    expect(page.get_by_role("button", name="Stop recording")).to_be_visible()
+    # What the browser keeps for the recorder, at the latest after a second.
+    page.wait_for_timeout(1500)
+
+    page.context.clear_permissions()
+    expect(problem).to_contain_text("The camera was lost")
+    expect(problem).to_contain_text("What was recorded until then is kept")
+    expect(page.get_by_role("button", name="Start the camera")).to_be_visible()
+    page.get_by_role("button", name="Show it").click()
+    recorded = page.get_by_role("list", name="Clips", exact=True).get_by_role("listitem")
+    expect(recorded.filter(has_text=re.compile(r"camera \d{4}-\d\d-\d\d"))).to_have_count(1)
+    for each in server.studio.clips.all():
+        server.studio.clips.delete(each.clip.id)
