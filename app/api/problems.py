@@ -15,11 +15,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 
 from app.recognition.errors import (
+    BagError,
     GestureError,
     LanguageError,
     ModelError,
     PoseError,
     RecognitionError,
+    TopicError,
     VideoError,
 )
 from app.store import Conflict, NotFound, StoreError
@@ -174,6 +176,8 @@ def _of_recognition(error: RecognitionError) -> ProblemError:
     codes: dict[type, str] = {
         GestureError: "gesture_unusable",
         VideoError: "video_unreadable",
+        BagError: "bag_unreadable",
+        TopicError: "topic_unusable",
         PoseError: "poses_unusable",
     }
     return ProblemError(422, codes.get(type(error), "recognition"), str(error))

@@ -17,6 +17,14 @@ class VideoError(RecognitionError):
     """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
 
 
+class BagError(RecognitionError):
+    """Raised when a dive recording (rosbag2, MCAP) cannot be read, or holds nothing to use."""
+
+
+class TopicError(BagError):
+    """Raised when a dive recording holds several usable topics and none, or another, was named."""
+
+
 class GestureError(RecognitionError):
     """Raised when a demonstration cannot become a gesture, for instance because nothing moves."""
 

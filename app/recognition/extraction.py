@@ -15,7 +15,7 @@ from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import PoseSequence, joined
 from app.recognition.recording import Recording
 from app.recognition.salute import ENTER_SCORE, best_salute
-from app.recognition.video import FrameReader, VideoFrame, VideoInfo, read_frames
+from app.recognition.video import FrameSource, VideoFrame, VideoInfo, read_frames
 from app.recognition.video_limits import VideoLimits
 
 Progress = Callable[[int, int], None]
@@ -65,10 +65,33 @@ def record(
 
     """
     with read_frames(clip, limits) as reader:
-        if estimator is not None:
-            return _record(reader, estimator, progress, observer, water)
-        with closing(create_estimator()) as own:
-            return _record(reader, own, progress, observer, water)
+        return record_frames(
+            reader, estimator=estimator, progress=progress, observer=observer, water=water
+        )
+
+
+def record_frames(
+    frames: FrameSource,
+    *,
+    estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
+    water: WaterCorrection = "auto",
+) -> Recording:
+    """Find body and hands in frames that are open already; see `record`.
+
+    Raises
+    ------
+    VideoError
+        When a frame cannot be read after all, or breaks a limit.
+    ModelError
+        When the default estimator's models are not installed.
+
+    """
+    if estimator is not None:
+        return _record(frames, estimator, progress, observer, water)
+    with closing(create_estimator()) as own:
+        return _record(frames, own, progress, observer, water)
 
 
 def extract_poses(
@@ -154,26 +177,26 @@ class _Collector:
 
 
 def _record(
-    reader: FrameReader,
+    frames: FrameSource,
     estimator: PoseEstimator,
     progress: Progress | None,
     observer: Observer | None,
     water: WaterCorrection,
 ) -> Recording:
     estimator.reset()
-    collector = _Collector(reader.info)
+    collector = _Collector(frames.info)
     done = 0
-    for frame in reader:
+    for frame in frames:
         found = estimator.estimate(corrected(frame.image, water), frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)
         done = frame.index + 1
         if progress is not None:
-            progress(done, _expected_frames(reader.info, frame))
+            progress(done, _expected_frames(frames.info, frame))
     if progress is not None:
         progress(done, done)
-    return collector.recording(reader.warnings)
+    return collector.recording(frames.warnings)
 
 
 def _expected_frames(info: VideoInfo, frame: VideoFrame) -> int:

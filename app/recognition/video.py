@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 import av
 import numpy as np
@@ -29,6 +29,7 @@ from app.recognition.video_limits import VideoLimits
 
 __all__ = [
     "FrameReader",
+    "FrameSource",
     "VideoFrame",
     "VideoInfo",
     "VideoLimits",
@@ -103,6 +104,24 @@ class VideoFrame:
     index: int
     time: float
     image: Image
+
+
+class FrameSource(Protocol):
+    """The frames of one clip, whatever file they lie in."""
+
+    @property
+    def info(self) -> VideoInfo:
+        """What the clip says about itself."""
+        ...
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Say in sentences what was wrong with the frames read so far."""
+        ...
+
+    def __iter__(self) -> Iterator[VideoFrame]:
+        """Go through the frames once, in order."""
+        ...
 
 
 class FrameReader(Iterator[VideoFrame]):

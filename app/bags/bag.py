@@ -1,0 +1,274 @@
+"""A rosbag2 open for reading: its topics, and their messages one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from app.bags.definitions import DEFINITIONS
+from app.bags.unpacking import placed
+from app.recognition.errors import BagError, RecognitionError, TopicError
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Connection, TopicInfo
+    from rosbags.rosbag2 import Reader
+    from rosbags.typesys.store import Typestore
+
+Use = Literal["pictures", "keypoints"]
+
+USES: dict[str, Use] = {
+    "sensor_msgs/msg/Image": "pictures",
+    "sensor_msgs/msg/CompressedImage": "pictures",
+    "ffmpeg_image_transport_msgs/msg/FFMPEGPacket": "pictures",
+    "foxglove_msgs/msg/CompressedVideo": "pictures",
+    "keypoints_interfaces/msg/PoseKeypointsArray": "keypoints",
+    "osg_interfaces/msg/BodyKeypoints": "keypoints",
+    "hri_msgs/msg/Skeleton2D": "keypoints",
+}
+"""What a topic of a type can be used for."""
+
+MOST_TOPICS_NAMED = 8
+"""In a message of one line; a robot records fifty."""
+
+INSTALL = 'install what reads it with: pip install "osg-studio[studio]" (on a robot: [robot])'
+
+
+@dataclass(frozen=True)
+class Topic:
+    """What a recording says about one of its topics.
+
+    Attributes
+    ----------
+    name
+        As in ROS, with its leading slash.
+    type
+        Of its messages, such as ``sensor_msgs/msg/Image``; empty where several types share a name.
+    use
+        ``pictures``, ``keypoints``, or None: nothing that this program understands.
+    messages
+        Count.
+
+    """
+
+    name: str
+    type: str
+    use: Use | None
+    messages: int
+
+    @property
+    def usable(self) -> bool:
+        """Whether a clip can be made of it."""
+        return self.use is not None and self.messages > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Message:
+    """One message of a topic.
+
+    Attributes
+    ----------
+    received
+        Nanoseconds since 1970 by the recording machine's clock.
+    content
+        The message as rosbags gives it, an object with the fields of its definition.
+
+    """
+
+    received: int
+    content: Any
+
+    @property
+    def stamp(self) -> int:
+        """Nanoseconds when it was acquired (its header's stamp), or 0 where the message is mute."""
+        header = getattr(self.content, "header", self.content)
+        stamp = getattr(header, "stamp", getattr(self.content, "timestamp", None))
+        return 0 if stamp is None else int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+class Bag:
+    """A recording that is open; made by `opened_bag`.
+
+    Parameters
+    ----------
+    reader
+        Of rosbags, open.
+    name
+        What to call the recording in messages.
+
+    """
+
+    def __init__(self, reader: Reader, name: str) -> None:
+        self._reader = reader
+        self.name = name
+        self.topics = tuple(_topic(name, info) for name, info in reader.topics.items())
+
+    def topic(self, name: str | None = None) -> Topic:
+        """Return the topic to make a clip of.
+
+        Parameters
+        ----------
+        name
+            The one asked for; None: the only one that can be used.
+
+        Raises
+        ------
+        TopicError
+            When the name is not that of a usable topic, or none is given and several could be.
+        BagError
+            When there is no usable topic at all.
+
+        """
+        usable = [topic for topic in self.topics if topic.usable]
+        if not usable:
+            raise BagError(self._without_use())
+        if name is None:
+            if len(usable) == 1:
+                return usable[0]
+            raise TopicError(
+                f"{self.name} has {len(usable)} topics to choose from: {_listed(usable)}; name one "
+                f"(--topic {usable[0].name})"
+            )
+        for topic in usable:
+            if topic.name == name:
+                return topic
+        raise TopicError(f"{self.name}: {self._refusal(name)}; usable are {_listed(usable)}")
+
+    def messages(self, topic: str) -> Iterator[Message]:
+        """Go through a topic's messages in the order in which they were received.
+
+        Raises
+        ------
+        BagError
+            When the recording is damaged where it is read, or a message is not of its type.
+
+        """
+        connections = [each for each in self._reader.connections if each.topic == topic]
+        if not connections:
+            return
+        kind = connections[0].msgtype
+        with _told(self.name):
+            store = _typestore(connections[0])
+            for _, received, data in self._reader.messages(connections):
+                yield Message(received, store.deserialize_cdr(data, kind))
+
+    def durations(self) -> dict[str, float]:
+        """Return seconds from the first message to the last of every usable topic.
+
+        All of the recording is read for it; what a damaged one does not give is not counted.
+        """
+        usable = {topic.name for topic in self.topics if topic.usable}
+        chosen = [each for each in self._reader.connections if each.topic in usable]
+        spans: dict[str, tuple[int, int]] = {}
+        with suppress(BagError), _told(self.name):
+            for connection, received, _ in self._reader.messages(chosen):
+                first, last = spans.get(connection.topic, (received, received))
+                spans[connection.topic] = min(first, received), max(last, received)
+        return {name: (last - first) / 1e9 for name, (first, last) in spans.items()}
+
+    def _without_use(self) -> str:
+        empty = [topic for topic in self.topics if topic.use]
+        if empty:
+            return (
+                f"{self.name}: its topics of pictures or keypoints have no messages "
+                f"({_listed(empty)}); was the camera running? Record it again"
+            )
+        held = _listed(list(self.topics)) or "no topics at all"
+        return (
+            f"{self.name} holds nothing to recognise gestures in, only {held}; record a topic of "
+            f"{', '.join(kind.replace('/msg/', '/') for kind in USES)}"
+        )
+
+    def _refusal(self, name: str) -> str:
+        for topic in self.topics:
+            if topic.name == name:
+                state = "has no messages" if topic.use else f"is of type {topic.type}"
+                return f"topic {name} {state} and cannot be used"
+        return f"there is no topic {name!r}"
+
+
+@contextmanager
+def opened_bag(path: str | Path) -> Iterator[Bag]:
+    """Open a recording: a rosbag2 folder, its one file, or a zip of either.
+
+    Raises
+    ------
+    BagError
+        When it is none, is damaged, or the packages that read it are not installed.
+
+    """
+    place = Path(path)
+    try:
+        from rosbags.rosbag2 import Reader
+    except ModuleNotFoundError as error:
+        raise BagError(
+            f"{place.name} is a dive recording and {error.name} is not installed; {INSTALL}"
+        ) from error
+    with ExitStack() as open_things:
+        found = open_things.enter_context(placed(place))
+        with _told(place.name):
+            reader = open_things.enter_context(Reader(found))
+            bag = Bag(reader, place.name)
+        yield bag
+
+
+def _topic(name: str, info: TopicInfo) -> Topic:
+    kind = info.msgtype or ""
+    return Topic(name, kind, USES.get(kind), info.msgcount)
+
+
+def _typestore(connection: Connection) -> Typestore:
+    """Return what reads the messages of a connection, by the recording's own definition first."""
+    from rosbags.interfaces import MessageDefinitionFormat
+    from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+    kind, definition = connection.msgtype, connection.msgdef
+    if definition.format == MessageDefinitionFormat.MSG:
+        store = get_typestore(Stores.EMPTY)
+        store.register(get_types_from_msg(definition.data, kind))
+        return store
+    if definition.format == MessageDefinitionFormat.IDL:
+        store = get_typestore(Stores.EMPTY)
+        for part in definition.data.split("=" * 80 + "\n"):
+            text = part.partition("\n")[2] if part.startswith("IDL: ") else part
+            if text.strip():
+                store.register(get_types_from_idl(text))
+        return store
+    # These types' layout is the same in every distribution since.
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    if kind not in store.fielddefs:
+        raise BagError(
+            f"messages of topic {connection.topic} are of type {kind}, whose definition the "
+            "recording does not hold; record it with storage mcap, which keeps definitions"
+        )
+    return store
+
+
+@contextmanager
+def _told(name: str) -> Iterator[None]:
+    """Turn whatever a reader trips over in a damaged recording into one line."""
+    try:
+        yield
+    except (RecognitionError, MemoryError, OSError):
+        raise
+    # rosbags checks little of what it reads: struct.error, IndexError, KeyError, AssertionError
+    # and those of three compression libraries and SQLite all mean the same here.
+    except Exception as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise BagError(
+            f"{name} is damaged or cut short ({reason}); copy it again, or repair it with "
+            "`ros2 bag reindex` or `mcap recover`"
+        ) from error
+
+
+def _listed(topics: list[Topic]) -> str:
+    shown = [
+        f"{topic.name} ({topic.type.replace('/msg/', '/')}, {topic.messages} messages)"
+        for topic in topics[:MOST_TOPICS_NAMED]
+    ]
+    more = [f"{len(topics) - MOST_TOPICS_NAMED} more"] if len(topics) > MOST_TOPICS_NAMED else []
+    return ", ".join(shown + more)

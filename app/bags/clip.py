@@ -1,0 +1,134 @@
+"""From a dive recording to what a clip gives: landmarks, and a video to look at."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from app.bags.bag import Bag, Topic, opened_bag
+from app.bags.frames import BagFrames
+from app.bags.keypoints import keypoint_recording
+from app.bags.skeleton_picture import skeleton_picture
+from app.bags.video_file import VideoFile
+from app.recognition.estimation.base import Body, FrameLandmarks, PoseEstimator
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.extraction import Observer, Progress, record_frames
+from app.recognition.recording import Recording
+from app.recognition.video import VideoFrame
+from app.recognition.video_limits import VideoLimits
+
+
+def record_bag(
+    path: str | Path,
+    topic: str | None = None,
+    *,
+    video: Path | None = None,
+    estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
+    limits: VideoLimits | None = None,
+    water: WaterCorrection = "auto",
+) -> Recording:
+    """Find body and hands in a dive recording, as `app.recognition.extraction.record` in a clip.
+
+    Pictures go from the recording to the models directly; recorded keypoints need no models.
+
+    Parameters
+    ----------
+    path
+        A rosbag2 folder, its one file, or a zip of either.
+    topic
+        Which of its topics; None: the only one that can be used.
+    video
+        Where to write a copy that players show (`VideoFile`): the same pictures at the same times,
+        or the skeleton on black where only keypoints were recorded. None: nowhere.
+    estimator, progress, observer, limits, water
+        See `app.recognition.extraction.record`.
+
+    Raises
+    ------
+    BagError
+        When it is no dive recording, is damaged, or holds no such topic.
+    TopicError
+        When several topics could be used and none is named.
+    VideoError
+        When a limit is broken.
+    ModelError
+        When the default estimator's models are not installed.
+
+    """
+    with opened_bag(path) as bag:
+        chosen = bag.topic(topic)
+        if chosen.use == "keypoints":
+            recording = keypoint_recording(bag, chosen, limits)
+            return _shown(recording, video, progress, observer)
+        return _watched(bag, chosen, video, estimator, progress, observer, limits, water)
+
+
+def _watched(
+    bag: Bag,
+    topic: Topic,
+    video: Path | None,
+    estimator: PoseEstimator | None,
+    progress: Progress | None,
+    observer: Observer | None,
+    limits: VideoLimits | None,
+    water: WaterCorrection,
+) -> Recording:
+    """Let the models see every picture, and copy it for players on the way."""
+    frames = BagFrames(bag, topic, limits)
+    with ExitStack() as open_files:
+        file = None
+        if video is not None:
+            size = (frames.info.width, frames.info.height)
+            file = open_files.enter_context(VideoFile(video, *size))
+
+        def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+            if file is not None:
+                file.add(frame.image, frame.time)
+            if observer is not None:
+                observer(frame, found)
+
+        return record_frames(
+            frames, estimator=estimator, progress=progress, observer=observe, water=water
+        )
+
+
+def _shown(
+    recording: Recording,
+    video: Path | None,
+    progress: Progress | None,
+    observer: Observer | None,
+) -> Recording:
+    """Draw the skeleton frame by frame where somebody wants to look at it."""
+    recording = _with_even_size(recording)
+    poses, confidence = recording.poses, recording.poses.confidence
+    assert confidence is not None
+    if video is None and observer is None:
+        return recording
+    with ExitStack() as open_files:
+        file = None
+        if video is not None:
+            file = open_files.enter_context(VideoFile(video, *poses.frame_size))
+        for index, time in enumerate(poses.time.tolist()):
+            image = skeleton_picture(poses.xy[index], poses.frame_size)
+            if file is not None:
+                file.add(image, time)
+            if observer is not None:
+                seen = bool(poses.seen[index].any())
+                body = Body(poses.xy[index], confidence[index], 1.0) if seen else None
+                frame = VideoFrame(index, time, image)
+                observer(frame, FrameLandmarks(body, recording.hands[index]))
+            if progress is not None:
+                progress(index + 1, len(poses))
+    return recording
+
+
+def _with_even_size(recording: Recording) -> Recording:
+    """Make width and height even, as the usual video codecs want; the landmarks stay."""
+    size = np.array(recording.poses.frame_size)
+    width, height = (int(side) for side in np.maximum(2, size // 2 * 2))
+    return replace(recording, poses=replace(recording.poses, frame_size=(width, height)))

@@ -1,0 +1,185 @@
+"""A topic of pictures as the frames of a clip, with the recording's own timestamps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import cv2
+import numpy as np
+from av.error import FFmpegError
+
+from app.bags.bag import Bag, Message, Topic
+from app.bags.pictures import PacketDecoder, raw_image
+from app.recognition.errors import BagError, VideoError
+from app.recognition.estimation.base import Image
+from app.recognition.frame_clock import FrameClock
+from app.recognition.video import VideoFrame, VideoInfo
+from app.recognition.video_limits import VideoLimits
+
+RAW = "sensor_msgs/msg/Image"
+
+
+class BagFrames(Iterator[VideoFrame]):
+    """The frames of one topic, read one at a time (`app.recognition.video.FrameSource`).
+
+    Time is the stamp in the messages' headers, when the picture was taken; where a topic begins
+    without, it is when the messages were received. A last odd row or column of pixels is left out,
+    since the usual video codecs store even sizes only and the clip and its landmarks shall agree.
+
+    Parameters
+    ----------
+    bag
+        Open until the last frame is read.
+    topic
+        One of its usable topics of pictures.
+    limits
+        What the clip may cost.
+
+    Attributes
+    ----------
+    info
+        Size and count of the frames.
+
+    Raises
+    ------
+    BagError
+        When no message holds a readable picture.
+    VideoError
+        When a limit is broken.
+
+    """
+
+    def __init__(self, bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> None:
+        self._topic = topic
+        self._limits = limits or VideoLimits()
+        self._limits.require_frames(topic.messages)
+        self._unreadable = 0
+        self._resized = 0
+        self._reason = ""
+        self._broken = ""
+        self._first_stamp: int | None = None
+        self._clock = FrameClock()
+        self._by_header: bool | None = None
+        self._count = 0
+        self._pictures = self._read(bag)
+        self._next = next(self._pictures, None)
+        if self._next is None:
+            raise BagError(
+                f"{bag.name}: no picture of topic {topic.name} can be read "
+                f"({self._reason or self._broken or 'it is empty'})"
+            )
+        height, width = self._next[1].shape[:2]
+        self.info = VideoInfo(
+            width=width,
+            height=height,
+            duration=None,
+            frames=topic.messages,
+            rotation=0,
+            codec=topic.type,
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Say in sentences what was wrong with the frames read so far."""
+        found = []
+        name, total = self._topic.name, self._topic.messages
+        if self._broken:
+            found.append(f"{self._count} of {total} messages were read, then: {self._broken}")
+        if self._unreadable:
+            found.append(
+                f"{self._unreadable} of {total} pictures of {name} were left out: {self._reason}"
+            )
+        if self._resized:
+            found.append(
+                f"{self._resized} of {self._count} pictures had another size than the first and "
+                f"were scaled to {self.info.width} x {self.info.height}"
+            )
+        if self._by_header is False:
+            found.append(
+                f"messages of {name} say not when they were taken; time is when they were received"
+            )
+        if self._clock.repaired:
+            found.append(
+                f"{self._clock.repaired} of {self._count} messages had no timestamp, or one not "
+                "later than that of the message before; their time is estimated"
+            )
+        return tuple(found)
+
+    def __next__(self) -> VideoFrame:
+        """Read the next frame.
+
+        Raises
+        ------
+        VideoError
+            When a limit is broken.
+
+        """
+        picture, self._next = self._next, None
+        if picture is None:
+            picture = next(self._pictures)
+        stamp, image = picture
+        time = self._clock.seconds(None if stamp is None else stamp / 1e9)
+        self._limits.require_seconds(time)
+        self._limits.require_frames(self._count + 1)
+        self._count += 1
+        return VideoFrame(index=self._count - 1, time=time, image=self._fitted(image))
+
+    def _read(self, bag: Bag) -> Iterator[tuple[int | None, Image]]:
+        """Go through the readable pictures, with nanoseconds after the first one's stamp."""
+        decoder = PacketDecoder(self._limits)
+        messages = bag.messages(self._topic.name)
+        try:
+            for message in messages:
+                yield from self._decoded(message, decoder)
+            yield from ((self._relative(stamp), _even(image)) for stamp, image in decoder.rest())
+        except (BagError, FFmpegError) as error:
+            self._broken = str(error)
+
+    def _decoded(
+        self, message: Message, decoder: PacketDecoder
+    ) -> Iterator[tuple[int | None, Image]]:
+        content: Any = message.content
+        stamp = self._stamp(message)
+        try:
+            if self._topic.type == RAW:
+                yield self._relative(stamp), _even(raw_image(content, self._limits))
+                return
+            stated = getattr(content, "encoding", None) or getattr(content, "format", "")
+            data = np.asarray(content.data, dtype=np.uint8).tobytes()
+            for taken, image in decoder.decode(data, str(stated), stamp):
+                yield self._relative(taken), _even(image)
+        except VideoError:
+            raise
+        except (BagError, FFmpegError, ValueError) as error:
+            self._unreadable += 1
+            self._reason = self._reason or str(error)
+
+    def _stamp(self, message: Message) -> int:
+        """Return when a message was taken, by the clock that the first one decided for."""
+        if self._by_header is None:
+            self._by_header = message.stamp > 0
+        return message.stamp if self._by_header else message.received
+
+    def _relative(self, stamp: int) -> int | None:
+        """Return nanoseconds after the first stamp, exactly; None where there is no stamp."""
+        if not stamp:
+            return None
+        if self._first_stamp is None:
+            self._first_stamp = stamp
+        return stamp - self._first_stamp
+
+    def _fitted(self, image: Image) -> Image:
+        size = (self.info.width, self.info.height)
+        if image.shape[1::-1] == size:
+            return image
+        self._resized += 1
+        return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def _even(image: Image) -> Image:
+    """Leave out a last odd row or column, unless it is the only one."""
+    height, width = image.shape[:2]
+    if min(height, width) < 2:
+        raise BagError(f"a picture has {width} x {height} pixels; the recording is damaged")
+    return np.ascontiguousarray(image[: height // 2 * 2, : width // 2 * 2])

@@ -1,0 +1,252 @@
+"""A topic of recorded keypoints as a `Recording`, without any pose model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.bags.bag import Bag, Message, Topic
+from app.bags.salute_topic import SaluteTrack, salute_track
+from app.recognition.errors import BagError
+from app.recognition.estimation.base import Hand
+from app.recognition.frame_clock import FrameClock
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.video_limits import VideoLimits
+
+ASSUMED_SIZE = (1280, 720)
+"""Width and height in pixels where a recording tells fractions of a picture and nothing of the
+picture: the published port's camera (a ZED) at its default resolution."""
+
+LARGEST_FRACTION = 10.0
+"""Pictures away from the picture's corner that a landmark may lie: one that a model places beyond
+the edge is one or two away; what is farther is a number gone wrong."""
+
+SKELETON_2D = (
+    "nose",
+    "neck",
+    "right_shoulder",
+    "right_elbow",
+    "right_wrist",
+    "left_shoulder",
+    "left_elbow",
+    "left_wrist",
+    "right_hip",
+    "right_knee",
+    "right_ankle",
+    "left_hip",
+    "left_knee",
+    "left_ankle",
+    "right_eye",
+    "left_eye",
+    "right_ear",
+    "left_ear",
+)
+"""Landmarks of ``hri_msgs/Skeleton2D`` by index (REP-155): OpenPose's 18 of COCO."""
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """One message's landmarks.
+
+    Attributes
+    ----------
+    xy
+        ``(33, 2)`` of `POSE_LANDMARKS`; NaN: not seen or not told.
+    confidence
+        ``(33,)`` in [0, 1]; 0 where not seen, 1 where a message gives none.
+    size
+        Width and height of the picture in pixels, or None where `xy` are fractions of it.
+    told
+        Names that the message has.
+
+    """
+
+    xy: FloatArray
+    confidence: FloatArray
+    size: tuple[int, int] | None
+    told: frozenset[str]
+
+
+def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> Recording:
+    """Read a topic of keypoints, and the salute that was recorded beside it.
+
+    Time is the headers' stamps, or when the messages were received where they have none.
+
+    Raises
+    ------
+    BagError
+        When no message can be read, or none has a landmark that is known here.
+    VideoError
+        When the topic is longer than `limits` allow.
+
+    """
+    limits = limits or VideoLimits()
+    limits.require_frames(topic.messages)
+    reader = _READERS[topic.type]
+    gathered = _Gathered()
+    try:
+        for message in bag.messages(topic.name):
+            gathered.add(message, reader(message.content), limits)
+    except BagError as error:
+        if not gathered.posed:
+            raise
+        gathered.broken = str(error)
+    if not any(posed.told for posed in gathered.posed):
+        raise BagError(
+            f"{bag.name}: no message of {topic.name} names a landmark that is known here, such as "
+            "right_wrist; is it a topic of a body?"
+        )
+    return _recording(gathered, salute_track(bag, topic, gathered.by_header), bag, topic)
+
+
+@dataclass
+class _Gathered:
+    """What was read so far, with the time of each."""
+
+    posed: list[Posed] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    stamps: list[int] = field(default_factory=list)
+    clock: FrameClock = field(default_factory=FrameClock)
+    by_header: bool = True
+    broken: str = ""
+
+    def add(self, message: Message, posed: Posed, limits: VideoLimits) -> None:
+        if not self.posed:
+            self.by_header = message.stamp > 0
+        stamp = message.stamp if self.by_header else message.received
+        first = self.stamps[0] if self.stamps else stamp
+        seconds = self.clock.seconds((stamp - first) / 1e9 if stamp else None)
+        limits.require_seconds(seconds)
+        self.posed.append(posed)
+        self.seconds.append(seconds)
+        self.stamps.append(stamp)
+
+
+def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic) -> Recording:
+    size = next((posed.size for posed in gathered.posed if posed.size), None)
+    warnings = []
+    if size is None:
+        size = salute.frame_size or _picture_size(bag)
+    if size is None:
+        size = ASSUMED_SIZE
+        warnings.append(
+            f"{topic.name} tells fractions of a picture whose size the recording does not hold; "
+            f"{size[0]} x {size[1]} is taken"
+        )
+    stamps = np.array(gathered.stamps, dtype=np.int64)
+    poses = PoseSequence(
+        landmarks=POSE_LANDMARKS,
+        xy=np.stack([_pixels(posed, size) for posed in gathered.posed]),
+        confidence=np.stack([posed.confidence for posed in gathered.posed]),
+        time=np.array(gathered.seconds),
+        frame_size=size,
+    )
+    hands: tuple[tuple[Hand, ...], ...] = salute.hands_at(stamps)
+    return Recording(
+        poses=poses,
+        hands=hands,
+        salute=salute.at(stamps),
+        warnings=(*warnings, *_warnings(gathered, salute, topic)),
+    )
+
+
+def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[str]:
+    frames, clock = len(gathered.posed), gathered.clock
+    found = [f"there is no picture: the skeleton is drawn from the keypoints of {topic.name}"]
+    if gathered.broken:
+        found.append(f"{frames} of {topic.messages} messages were read, then: {gathered.broken}")
+    if not gathered.by_header:
+        found.append(
+            f"messages of {topic.name} say not when the picture was taken; time is when they were "
+            "received"
+        )
+    if clock.repaired:
+        found.append(
+            f"{clock.repaired} of {frames} messages had no timestamp, or one not later than that "
+            "of the message before; their time is estimated"
+        )
+    if nobody := sum(not posed.told for posed in gathered.posed):
+        found.append(f"no person in {nobody} of {frames} messages")
+    told = frozenset[str]().union(*(posed.told for posed in gathered.posed))
+    if missing := [name for name in POSE_LANDMARKS if name not in told]:
+        found.append(f"{topic.name} has no {', '.join(missing)}")
+    if salute.topic is None:
+        found.append(
+            "the recording holds no topic of the salute; choose the gesture's range by hand, or "
+            "record the salute beside the keypoints"
+        )
+    elif not salute.any:
+        found.append(f"no salute in {salute.topic}; choose the gesture's range by hand")
+    return found
+
+
+def _pixels(posed: Posed, size: tuple[int, int]) -> FloatArray:
+    """Return landmarks in pixels of a picture of `size`."""
+    if posed.size is None:
+        return posed.xy * size
+    return posed.xy * (size[0] / posed.size[0], size[1] / posed.size[1])
+
+
+def _picture_size(bag: Bag) -> tuple[int, int] | None:
+    """Return the size of the raw pictures or the camera that were recorded too."""
+    for kind in ("sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/Image"):
+        for topic in bag.topics:
+            if topic.type == kind and topic.messages:
+                content = next(bag.messages(topic.name)).content
+                if content.width and content.height:
+                    return int(content.width), int(content.height)
+    return None
+
+
+def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] | None) -> Posed:
+    """Sort named points into the landmarks that are known here; others are left out."""
+    xy, confidence = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
+    told = set()
+    farthest = LARGEST_FRACTION * (1 if size is None else max(size))
+    for name, x, y, belief in points:
+        if name not in POSE_LANDMARKS:
+            continue
+        told.add(name)
+        # NaN is not nearer than anything.
+        if abs(x) <= farthest and abs(y) <= farthest:
+            row = POSE_LANDMARKS.index(name)
+            xy[row] = x, y
+            confidence[row] = 1.0 if np.isnan(belief) else min(max(belief, 0.0), 1.0)
+    return Posed(xy, confidence, size, frozenset(told))
+
+
+def _published(content: Any) -> Posed:
+    """Read the published port's message: MediaPipe's names, fractions of the picture."""
+    points = [(str(p.name).lower(), float(p.x), float(p.y), np.nan) for p in content.keypoints]
+    return _posed(points, None)
+
+
+def _ours(content: Any) -> Posed:
+    """Read our own message: pixels, NaN where not seen."""
+    points = [
+        (str(p.name).lower(), float(p.x), float(p.y), float(p.confidence))
+        for p in content.keypoints
+    ]
+    width, height = int(content.image_width), int(content.image_height)
+    return _posed(points, (width, height) if width and height else None)
+
+
+def _ros4hri(content: Any) -> Posed:
+    """Read ROS4HRI's skeleton: fractions of the picture, confidence 0 where not seen."""
+    points = [
+        (name, float(p.x) if p.c else np.nan, float(p.y), float(p.c))
+        for name, p in zip(SKELETON_2D, content.skeleton, strict=True)
+    ]
+    return _posed(points, None)
+
+
+_READERS: dict[str, Callable[[Any], Posed]] = {
+    "keypoints_interfaces/msg/PoseKeypointsArray": _published,
+    "osg_interfaces/msg/BodyKeypoints": _ours,
+    "hri_msgs/msg/Skeleton2D": _ros4hri,
+}

@@ -1,0 +1,40 @@
+"""What kind of dive recording a file or folder is, by its content."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+BagKind = Literal["mcap", "sqlite3", "zip", "folder", "ros1"]
+"""A single file of either storage, an archive of a recording's folder, the folder itself, and the
+format of ROS 1, which is known only to be refused by name."""
+
+METADATA = "metadata.yaml"
+"""The file that makes a folder a rosbag2."""
+
+_BEGINNINGS: dict[bytes, BagKind] = {
+    b"\x89MCAP0\r\n": "mcap",
+    b"SQLite format 3\0": "sqlite3",
+    b"PK\x03\x04": "zip",
+    b"#ROSBAG V": "ros1",
+}
+
+
+def bag_kind(head: bytes) -> BagKind | None:
+    """Return what kind of recording begins with `head`, or None; a zip may hold anything else."""
+    return next((kind for start, kind in _BEGINNINGS.items() if head.startswith(start)), None)
+
+
+def kind_of(path: Path) -> BagKind | None:
+    """Return what kind of recording lies at `path`, or None when it is none or not there."""
+    if path.is_dir():
+        return "folder" if (path / METADATA).is_file() else None
+    if not path.is_file():
+        return None
+    with path.open("rb") as file:
+        return bag_kind(file.read(max(map(len, _BEGINNINGS))))
+
+
+def is_bag(path: Path) -> bool:
+    """Tell whether `path` is to be read as a dive recording and not as a video file."""
+    return kind_of(path) is not None

@@ -1,0 +1,173 @@
+"""Pictures in messages: raw ones in ROS's encodings, and compressed ones through FFmpeg."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+import av
+import cv2
+import numpy as np
+from av.codec.context import CodecContext
+from av.video.codeccontext import VideoCodecContext
+
+from app.recognition.errors import BagError
+from app.recognition.estimation.base import Image
+from app.recognition.video_limits import VideoLimits
+
+NANOSECONDS = Fraction(1, 1_000_000_000)
+
+_Conversion = Callable[[Any], Any]
+
+_CHANNELS: dict[str, tuple[int, int | None]] = {
+    "rgb8": (3, None),
+    "bgr8": (3, cv2.COLOR_BGR2RGB),
+    "8UC3": (3, cv2.COLOR_BGR2RGB),
+    "rgba8": (4, cv2.COLOR_RGBA2RGB),
+    "bgra8": (4, cv2.COLOR_BGRA2RGB),
+    "8UC4": (4, cv2.COLOR_BGRA2RGB),
+    "mono8": (1, cv2.COLOR_GRAY2RGB),
+    "8UC1": (1, cv2.COLOR_GRAY2RGB),
+    # ROS names a Bayer pattern by its first two pixels, OpenCV by two of its second row.
+    "bayer_rggb8": (1, cv2.COLOR_BayerBG2RGB),
+    "bayer_bggr8": (1, cv2.COLOR_BayerRG2RGB),
+    "bayer_gbrg8": (1, cv2.COLOR_BayerGR2RGB),
+    "bayer_grbg8": (1, cv2.COLOR_BayerGB2RGB),
+    "yuv422": (2, cv2.COLOR_YUV2RGB_UYVY),
+    "uyvy": (2, cv2.COLOR_YUV2RGB_UYVY),
+    "yuv422_yuy2": (2, cv2.COLOR_YUV2RGB_YUY2),
+    "yuyv": (2, cv2.COLOR_YUV2RGB_YUY2),
+}
+"""Of each encoding with 8 bits: bytes a pixel, and OpenCV's conversion to RGB; None: it is RGB."""
+
+_DEEP = {"rgb16": "rgb8", "bgr16": "bgr8", "mono16": "mono8", "16UC1": "mono8"}
+"""Encodings with 16 bits, and what they are once the upper 8 are kept."""
+
+ENCODINGS = (*_CHANNELS, *_DEEP)
+
+_CODECS = {"h264": "h264", "libx264": "h264", "h265": "hevc", "hevc": "hevc", "vp9": "vp9"}
+"""FFmpeg's decoder for what packets call their format."""
+
+
+def raw_image(message: Any, limits: VideoLimits) -> Image:
+    """Return the picture of a ``sensor_msgs/Image``.
+
+    Raises
+    ------
+    BagError
+        When its encoding is not known, or its data is not as large as it says.
+    VideoError
+        When it is larger than `limits` allow.
+
+    """
+    height, width, encoding = int(message.height), int(message.width), str(message.encoding)
+    limits.require_pixels(width, height)
+    shallow = _DEEP.get(encoding, encoding)
+    if shallow not in _CHANNELS:
+        raise BagError(
+            f"pictures are encoded as {encoding[:40]!r}, which is not known; record them as one of "
+            f"{', '.join(ENCODINGS)}"
+        )
+    channels, conversion = _CHANNELS[shallow]
+    pixels = _pixels(message, channels, 2 if encoding in _DEEP else 1)
+    if conversion is None:
+        return np.ascontiguousarray(pixels)
+    return np.asarray(cv2.cvtColor(np.ascontiguousarray(pixels), conversion), dtype=np.uint8)
+
+
+def _pixels(message: Any, channels: int, depth: int) -> Image:
+    """Cut the padding off the rows, and keep the upper byte of deep pixels."""
+    height, width, step = int(message.height), int(message.width), int(message.step)
+    row = width * channels * depth
+    data = np.asarray(message.data, dtype=np.uint8)
+    if not row or not height or step < row or data.size < step * (height - 1) + row:
+        raise BagError(
+            f"a picture says {width} x {height} of {message.encoding}, {step} bytes a row, and "
+            f"holds {data.size} bytes; the recording is damaged"
+        )
+    padded = np.zeros(step * height, dtype=np.uint8)
+    padded[: min(data.size, padded.size)] = data[: padded.size]
+    rows = padded.reshape(height, step)[:, :row]
+    if depth == 2:
+        rows = rows[:, 0 if message.is_bigendian else 1 :: 2]
+    return rows.reshape(height, width, channels) if channels > 1 else rows.reshape(height, width)
+
+
+class PacketDecoder:
+    """Turns compressed pictures or packets of a video stream into RGB.
+
+    Parameters
+    ----------
+    limits
+        How large a picture may be.
+
+    """
+
+    def __init__(self, limits: VideoLimits) -> None:
+        self._limits = limits
+        self._codec: VideoCodecContext | None = None
+
+    def decode(self, data: bytes, stated: str, stamp: int) -> Iterator[tuple[int, Image]]:
+        """Decode one message.
+
+        Parameters
+        ----------
+        data
+            A JPEG, a PNG, or a packet of a video stream.
+        stated
+            What the message calls its format; of pictures, the content decides.
+        stamp
+            Nanoseconds; the picture that comes of the data gets it, also when others come first.
+
+        Yields
+        ------
+        Stamp and ``(height, width, 3)`` RGB of every picture that is complete now.
+
+        Raises
+        ------
+        BagError
+            When the format is not known.
+        FFmpegError
+            When the data is damaged.
+
+        """
+        # Not one decoder for all PNGs: FFmpeg's adds what is left of the picture before.
+        if self._codec is None or self._codec.name == "png":
+            self._codec = self._opened(data, stated)
+        packet = av.Packet(data)
+        packet.pts, packet.time_base = stamp, NANOSECONDS
+        yield from self._pictures(packet)
+
+    def rest(self) -> Iterator[tuple[int, Image]]:
+        """Give the pictures that a stream with reordered frames still holds back."""
+        if self._codec is not None:
+            yield from self._pictures(None)
+
+    def _pictures(self, packet: av.Packet[Any] | None) -> Iterator[tuple[int, Image]]:
+        assert self._codec is not None
+        for frame in self._codec.decode(packet):
+            self._limits.require_pixels(frame.width, frame.height)
+            image = frame.to_ndarray(format="rgb24")
+            yield int(frame.pts or 0), np.asarray(image, dtype=np.uint8)
+
+    def _opened(self, data: bytes, stated: str) -> VideoCodecContext:
+        codec = CodecContext.create(_codec_of(data, stated), "r")
+        assert isinstance(codec, VideoCodecContext)
+        codec.options = {"max_pixels": str(self._limits.pixels)}
+        return codec
+
+
+def _codec_of(data: bytes, stated: str) -> str:
+    if data[:2] == b"\xff\xd8":
+        return "mjpeg"
+    if data[:4] == b"\x89PNG":
+        return "png"
+    # ffmpeg_image_transport appends the pixel format: "h264;yuv420p;bgr8".
+    for word in stated.lower().replace(";", " ").replace("_", " ").split():
+        if word in _CODECS:
+            return _CODECS[word]
+    raise BagError(
+        f"pictures are compressed as {stated[:40]!r}, which is not known; record JPEG, PNG, H.264, "
+        "H.265 or VP9"
+    )

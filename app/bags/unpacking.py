@@ -1,0 +1,176 @@
+"""A recording's place on disk while it is read: archives are unpacked, single files get an ending.
+
+What an archive says about itself is not believed: names never become paths, sizes are counted
+while they are written.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+
+from app.bags.kind import METADATA, BagKind, bag_kind, kind_of
+from app.recognition.errors import BagError
+
+MOST_ENTRIES = 1000
+"""Of an archive. A recording split every minute for a whole day has 1440 files; nobody uploads a
+day at once, and a directory of a million entries takes minutes to read."""
+
+MOST_BYTES = 4 * 512 * 1024 * 1024
+"""Unpacked: four times what may be uploaded. Pictures in a recording are compressed already, raw
+ones by their noise to a half or a third at best; what shrinks further is no recording."""
+
+ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
+"""By which rosbags tells the two storages apart."""
+
+_CHUNK = 1024 * 1024
+
+
+@contextmanager
+def placed(path: Path) -> Iterator[Path]:
+    """Give the place from which a recording can be read; what was unpacked there goes at the end.
+
+    Raises
+    ------
+    BagError
+        When `path` is no dive recording, or an archive that cannot be unpacked safely.
+
+    """
+    kind = _known_kind(path)
+    if kind == "folder":
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="bag-") as made:
+        folder = Path(made)
+        if kind == "zip":
+            yield _unpacked(path, folder)
+        else:
+            place = folder / f"recording{ENDINGS[kind]}"
+            _stand_in(path.resolve(), place)
+            yield place
+
+
+def _known_kind(path: Path) -> BagKind:
+    if not path.exists():
+        raise BagError(f"{path} does not exist; give the path of a dive recording")
+    kind = kind_of(path)
+    if kind is None:
+        raise BagError(
+            f"{path.name} is no dive recording: neither a folder with {METADATA} nor an MCAP, "
+            "sqlite3 or zip file; give a recording made by `ros2 bag record`"
+        )
+    if kind == "ros1":
+        raise BagError(
+            f"{path.name} is a recording of ROS 1; convert it with `rosbags-convert --src "
+            f"{path.name} --dst FOLDER` (pip install rosbags) and use the folder"
+        )
+    return kind
+
+
+def _stand_in(path: Path, place: Path) -> None:
+    """Let `place` stand for the file at `path`, without copying it where the system can."""
+    for way in (os.symlink, os.link, shutil.copyfile):
+        try:
+            way(path, place)
+        except OSError:
+            continue
+        return
+    raise BagError(f"{path.name} can be neither linked nor copied to {place.parent}; free space")
+
+
+def _unpacked(path: Path, folder: Path) -> Path:
+    """Unpack an archive of a recording's folder, or of its one file, flat into `folder`."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            _unpack(archive, _wanted(archive, path.name), path.name, folder)
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, RuntimeError) as error:
+        raise BagError(
+            f"{path.name} is a damaged, encrypted or unusual zip ({error}); pack the recording's "
+            "folder again, without a password"
+        ) from error
+    if (folder / METADATA).is_file():
+        return folder
+    files = sorted(folder.iterdir())
+    if len(files) != 1:
+        raise BagError(
+            f"{path.name} holds {len(files)} storage files and no {METADATA}, so their order is "
+            "not known; pack the recording's whole folder"
+        )
+    return files[0]
+
+
+def _wanted(archive: zipfile.ZipFile, name: str) -> list[zipfile.ZipInfo]:
+    """Return the entries that make up the recording, after a look at all of them."""
+    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    if len(entries) > MOST_ENTRIES:
+        raise BagError(
+            f"{name} has {len(entries)} entries, more than the limit of {MOST_ENTRIES}; pack one "
+            "recording's folder"
+        )
+    for entry in entries:
+        parts = PurePosixPath(entry.filename.replace("\\", "/")).parts
+        leaves = ".." in parts or any("/" in part or ":" in part for part in parts[:1])
+        if leaves or stat.S_ISLNK(entry.external_attr >> 16):
+            raise BagError(
+                f"{name} has an entry that leads out of its folder ({entry.filename[:80]!r}); "
+                "pack the recording's folder again, without links"
+            )
+    wanted = [entry for entry in entries if _belongs(_base(entry))]
+    if not any(_base(entry) != METADATA for entry in wanted):
+        raise BagError(
+            f"{name} holds no dive recording (no .mcap and no .db3 file); pack a folder made by "
+            "`ros2 bag record`"
+        )
+    if len({_base(entry) for entry in wanted}) < len(wanted):
+        raise BagError(f"{name} holds more than one dive recording; pack one folder at a time")
+    if (total := sum(entry.file_size for entry in wanted)) > MOST_BYTES:
+        raise _too_large(name, total)
+    return wanted
+
+
+def _base(entry: zipfile.ZipInfo) -> str:
+    return PurePosixPath(entry.filename.replace("\\", "/")).name
+
+
+def _belongs(base: str) -> bool:
+    """Tell whether a file is part of a recording; hidden ones are notes of the Mac's Finder."""
+    stem = base.removesuffix(".zstd")
+    return not base.startswith(".") and (base == METADATA or stem.endswith((".mcap", ".db3")))
+
+
+def _unpack(
+    archive: zipfile.ZipFile, entries: list[zipfile.ZipInfo], name: str, folder: Path
+) -> None:
+    left = MOST_BYTES
+    for entry in entries:
+        with archive.open(entry) as packed, (folder / _base(entry)).open("wb") as file:
+            while chunk := packed.read(_CHUNK):
+                left -= len(chunk)
+                if left < 0:
+                    raise _too_large(name, MOST_BYTES)
+                file.write(chunk)
+
+
+def _too_large(name: str, size: int) -> BagError:
+    return BagError(
+        f"{name} unpacks to {size / 1e9:.1f} GB or more, beyond the limit of "
+        f"{MOST_BYTES / 1e9:.1f} GB; cut out the part with the gestures (`ros2 bag convert`)"
+    )
+
+
+def is_bag_archive(path: Path) -> bool:
+    """Tell whether the zip at `path` looks like a dive recording; names alone are read."""
+    with path.open("rb") as file:
+        if bag_kind(file.read(8)) != "zip":
+            return False
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return any(_belongs(PurePosixPath(name).name) for name in archive.namelist())
+    except zipfile.BadZipFile:
+        return False

@@ -1,0 +1,200 @@
+"""What is in a recording, and how one that cannot be used is refused."""
+
+from __future__ import annotations
+
+import sqlite3
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+
+from app.bags.bag import opened_bag
+from app.bags.clip import record_bag
+from app.bags.frames import BagFrames
+from app.recognition.errors import BagError, TopicError, VideoError
+from tests.api.recordings import recording_of
+from tests.bags.bag_files import (
+    START,
+    Storage,
+    compressed,
+    file_of,
+    message,
+    published_rows,
+    raw,
+    stamps,
+    store,
+    write_bag,
+    zip_of,
+    zipped,
+)
+from tests.recognition.damaged_clips import picture
+
+STORAGES: tuple[Storage, ...] = ("mcap", "sqlite3")
+
+
+def text(words: str) -> object:
+    return message("std_msgs/msg/String", words)
+
+
+@pytest.fixture
+def camera(tmp_path: Path) -> Path:
+    """Return a bag with ten raw pictures, one second of them, and a topic of text."""
+    rows = [
+        ("/camera", raw(picture(index), "rgb8", stamp), stamp)
+        for index, stamp in enumerate(stamps(np.linspace(0, 1, 10).tolist()))
+    ]
+    return write_bag(tmp_path / "dive", [*rows, ("/log", text("start"), START)])
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize("form", ["folder", "file", "zip", "zip of the file"])
+def test_topics_are_listed_with_type_count_and_duration(
+    tmp_path: Path, storage: Storage, form: str
+) -> None:
+    folder = write_bag(tmp_path / "dive", published_rows(recording_of("line")), storage)
+    path = {
+        "folder": lambda: folder,
+        "file": lambda: file_of(folder),
+        "zip": lambda: zipped(folder),
+        "zip of the file": lambda: zip_of(
+            tmp_path / "one.zip", {file_of(folder).name: file_of(folder).read_bytes()}
+        ),
+    }[form]()
+    # What a file is, its content decides.
+    path = path.rename(tmp_path / "received")
+    recording = recording_of("line")
+    with opened_bag(path) as bag:
+        listed = {topic.name: topic for topic in bag.topics}
+        assert set(listed) == {"/pose_keypoints", "/vulcan_salute_detected", "/camera_info"}
+        keypoints = bag.topic()
+        assert keypoints == listed["/pose_keypoints"]
+        assert keypoints.type == "keypoints_interfaces/msg/PoseKeypointsArray"
+        assert keypoints.use == "keypoints"
+        assert keypoints.messages == len(recording.poses)
+        assert bag.durations() == {"/pose_keypoints": pytest.approx(recording.poses.duration)}
+        assert not listed["/vulcan_salute_detected"].usable
+
+
+def test_old_recordings_without_definitions_are_read_by_the_known_ones(tmp_path: Path) -> None:
+    rows = list(published_rows(recording_of("line")))
+    with Writer(tmp_path / "old", version=8, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connections = {
+            topic: writer.add_connection(topic, content.__msgtype__, typestore=store)
+            for topic, content, _ in rows[:2]
+        }
+        for topic, content, received in rows:
+            if topic in connections:
+                data = store.serialize_cdr(content, content.__msgtype__)
+                writer.write(connections[topic], received, data)
+    with sqlite3.connect(file_of(tmp_path / "old")) as database:
+        database.execute("DROP TABLE message_definitions")
+        database.execute("UPDATE schema SET schema_version = 3")
+    database.close()
+    assert len(record_bag(tmp_path / "old").poses) == len(recording_of("line").poses)
+
+
+def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> None:
+    rows = [(name, raw(picture(0), "rgb8", START), START) for name in ("/left", "/right")]
+    bag_path = write_bag(tmp_path / "stereo", rows)
+    with opened_bag(bag_path) as bag:
+        with pytest.raises(TopicError, match=r"2 topics to choose from: /left \(sensor_msgs/Image"):
+            bag.topic()
+        assert bag.topic("/right").name == "/right"
+        with pytest.raises(TopicError, match=r"no topic '/middle'; usable are /left .*, /right"):
+            bag.topic("/middle")
+    with opened_bag(camera) as bag, pytest.raises(TopicError, match=r"/log is of type std_msgs"):
+        bag.topic("/log")
+
+
+def test_a_recording_with_nothing_to_use_says_what_it_holds(tmp_path: Path) -> None:
+    only_text = write_bag(tmp_path / "text", [("/log", text("hello"), START)])
+    with (
+        opened_bag(only_text) as bag,
+        pytest.raises(BagError, match=r"only /log \(std_msgs/String, 1 messages\); record a topic"),
+    ):
+        bag.topic()
+
+
+def test_a_topic_without_messages_is_refused(tmp_path: Path) -> None:
+    with Writer(tmp_path / "dive", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        writer.add_connection("/camera", "sensor_msgs/msg/Image", typestore=store)
+    with (
+        opened_bag(tmp_path / "dive") as bag,
+        pytest.raises(BagError, match=r"have no messages.*was the camera running"),
+    ):
+        bag.topic()
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize("share", [0.05, 0.5, 0.98])
+def test_a_recording_cut_short_is_told_in_one_line(
+    camera: Path, tmp_path: Path, storage: Storage, share: float
+) -> None:
+    rows = [("/camera", raw(picture(0), "rgb8", START + i), START + i) for i in range(30)]
+    file = file_of(write_bag(tmp_path / "whole", rows, storage))
+    content = file.read_bytes()
+    file.write_bytes(content[: int(len(content) * share)])
+    with pytest.raises(BagError, match="damaged or cut short") as raised:
+        record_bag(file)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_flipped_bytes_give_frames_or_one_line_and_nothing_else(tmp_path: Path, seed: int) -> None:
+    storage = STORAGES[seed % 2]
+    rows = [
+        ("/camera", compressed(picture(i), ".jpg", START + i * 10**8), START + i * 10**8)
+        for i in range(8)
+    ]
+    file = file_of(write_bag(tmp_path / "dive", rows, storage))
+    random = np.random.default_rng(seed)
+    content = bytearray(file.read_bytes())
+    for place in random.integers(0, len(content), 30):
+        content[place] = random.integers(0, 256)
+    file.write_bytes(content)
+    said, frames = "", 1
+    try:
+        with opened_bag(file) as bag:
+            frames = len(list(BagFrames(bag, bag.topic())))
+    except (BagError, VideoError) as error:
+        said = str(error)
+    assert 0 < frames <= 8
+    assert "\n" not in said
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "no dive recording"),
+        (b"not a bag at all", "no dive recording"),
+        (b"#ROSBAG V2.0\n", "ROS 1; convert it with `rosbags-convert"),
+        (b"PK\x03\x04" + bytes(60), "damaged, encrypted or unusual zip"),
+        (b"SQLite format 3\0" + bytes(60), "damaged or cut short"),
+    ],
+)
+def test_what_is_no_recording_is_refused(tmp_path: Path, content: bytes, words: str) -> None:
+    path = tmp_path / "file.mcap"
+    path.write_bytes(content)
+    with pytest.raises(BagError, match=words):
+        record_bag(path)
+    with pytest.raises(BagError, match="does not exist"):
+        record_bag(tmp_path / "nowhere")
+
+
+def test_without_what_reads_recordings_the_command_to_install_it_is_told(
+    camera: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "rosbags.rosbag2", None)
+    with pytest.raises(BagError, match=r'pip install "osg-studio\[studio\]"'):
+        record_bag(camera)
+
+
+def test_a_database_that_is_no_recording_is_refused(tmp_path: Path) -> None:
+    database = sqlite3.connect(tmp_path / "contacts.db3")
+    database.execute("CREATE TABLE person (name TEXT)")
+    database.commit()
+    database.close()
+    with pytest.raises(BagError, match="missing tables"):
+        record_bag(tmp_path / "contacts.db3")
