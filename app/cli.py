@@ -20,17 +20,20 @@ from pydantic import ValidationError
 from app import __version__
 from app.check_command import check
 from app.clip_argument import (
+    ClipReading,
     Demonstration,
+    EstimatorOption,
+    HandsOption,
+    WaterOption,
     clip_and_span,
     demonstration_poses,
     read_clip,
     spotted_takes,
-    take_by_hand,
 )
 from app.evaluate_command import evaluate
-from app.recognition import Gesture, Language, Recognition, Recognizer, Take, takes_in
+from app.recognition import Gesture, Language, Recognition, Recognizer, Take
 from app.recognition.errors import RecognitionError
-from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.recognizer import PROFILES
@@ -41,11 +44,6 @@ from app.terminal import describe, people, progress_bar, show_explanation, show_
 DEFAULT_PROFILE = "full"
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
-
-WaterOption = Annotated[
-    WaterCorrection,
-    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
-]
 
 command_line = typer.Typer(
     name="osg-studio",
@@ -126,11 +124,14 @@ def define(
     output: Annotated[Path, typer.Option(help="Language file to write.")],
     author: Annotated[str, typer.Option(help="Who made it.")] = "",
     water: WaterOption = "auto",
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
 ) -> None:
     """Make a language from one demonstration clip per gesture."""
+    reading = ClipReading(water, estimator, hands)
     gestures = []
     for demonstration in [Demonstration.parse(text) for text in demonstrations]:
-        poses = demonstration_poses(demonstration, water)
+        poses = demonstration_poses(demonstration, reading)
         gesture = Gesture.from_demonstration(demonstration.label, poses)
         people.print(
             f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
@@ -160,6 +161,8 @@ def recognize(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     water: WaterOption = "auto",
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
 ) -> None:
     """Name the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
@@ -168,12 +171,12 @@ def recognize(
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
     spotter = Spotter(recognizer) if without_salutes else None
-    recording = read_clip(path, water)
+    read = read_clip(path, ClipReading(water, estimator, hands), spoken)
+    recording = read.recording
     if spotter is not None:
         results = spotted_takes(spotter, recording, span)
     else:
-        chosen = [take_by_hand(recording, span)] if span else takes_in(recording)
-        results = [(take, recognizer.recognize(take.poses)) for take in chosen]
+        results = [(take, recognizer.recognize(take.poses)) for take in read.takes(span)]
     takes = [take for take, _ in results]
     explanations = [
         explain(Situation.of_take(recognizer, take), expected)

@@ -3,14 +3,102 @@
 from __future__ import annotations
 
 import re
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from app.recognition import PoseSequence, Recognition, Recording, Take, record, takes_in
-from app.recognition.errors import GestureError
+import typer
+
+from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
+from app.recognition.errors import GestureError, VideoError
+from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
+from app.recognition.requirements import require_landmarks
 from app.recognition.spotting import Spotter
+from app.recognition.takes import LONGEST_TAKE
 from app.terminal import people, progress_bar
+
+WaterOption = Annotated[
+    WaterCorrection,
+    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
+]
+
+EstimatorOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the body: onnx, mediapipe, or yolo-pose:FILE.onnx, an Ultralytics export.",
+    ),
+]
+
+HandsOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class ClipReading:
+    """How clips are turned into landmarks.
+
+    Attributes
+    ----------
+    water
+        Whether colour and contrast are corrected first.
+    estimator, hands
+        What finds body and hands, see `create_estimator`.
+
+    """
+
+    water: WaterCorrection = "auto"
+    estimator: str = "onnx"
+    hands: str = MEDIAPIPE_HANDS
+
+
+@dataclass(frozen=True, eq=False)
+class ReadClip:
+    """What was read from a clip.
+
+    Attributes
+    ----------
+    recording
+        The landmarks.
+    salutes
+        Whether its source can show a hand, and so a salute.
+
+    """
+
+    recording: Recording
+    salutes: bool
+
+    def takes(self, span: tuple[float, float] | None) -> list[Take]:
+        """Return the range given by hand, or what lies between salutes.
+
+        The whole recording where its source cannot show a salute.
+
+        Raises
+        ------
+        GestureError
+            When fewer than two frames are left, or the whole is longer than a gesture may be.
+
+        """
+        if span is not None:
+            return [take_by_hand(self.recording, span)]
+        if self.salutes:
+            return list(takes_in(self.recording))
+        poses = self.recording.poses
+        if poses.duration > LONGEST_TAKE:
+            raise GestureError(
+                f"a recording of {poses.duration:.0f} s without hands has no salutes to cut it at, "
+                f"and a gesture lasts at most {LONGEST_TAKE:g} s; give the range by hand, "
+                f"CLIP@START-END, or find gestures anywhere with --without-salutes"
+            )
+        return [take_by_hand(self.recording, (float(poses.time[0]), float(poses.time[-1])))]
 
 
 @dataclass(frozen=True)
@@ -61,7 +149,7 @@ def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
 
 
 def demonstration_poses(
-    demonstration: Demonstration, water: WaterCorrection = "auto"
+    demonstration: Demonstration, reading: ClipReading | None = None
 ) -> PoseSequence:
     """Return the stroke of the only closed take of a clip, or of the range given by hand.
 
@@ -72,10 +160,7 @@ def demonstration_poses(
 
     """
     clip = demonstration.clip
-    recording = read_clip(clip, water)
-    if demonstration.span:
-        return take_by_hand(recording, demonstration.span).poses
-    takes = takes_in(recording)
+    takes = read_clip(clip, reading).takes(demonstration.span)
     closed = [take for take in takes if take.closed]
     if len(closed) != 1:
         found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
@@ -125,10 +210,38 @@ def spotted_takes(
     ]
 
 
-def read_clip(clip: Path, water: WaterCorrection = "auto") -> Recording:
-    """Extract a clip's landmarks behind a progress bar, and print the recording's warnings."""
-    with progress_bar(clip.name) as advance:
-        recording = record(clip, progress=advance, water=water)
+def read_clip(
+    clip: Path, reading: ClipReading | None = None, language: Language | None = None
+) -> ReadClip:
+    """Extract a clip's landmarks behind a progress bar, and print the recording's warnings.
+
+    Parameters
+    ----------
+    clip
+        The clip's file.
+    reading
+        How to read it; None: with the installed models.
+    language
+        What is to be recognised: a source without the landmarks it needs is refused before any
+        frame is looked at.
+
+    Raises
+    ------
+    LandmarkError
+        When the source lacks a landmark of the language.
+    VideoError
+        When there is no clip, or none that can be read.
+
+    """
+    how = reading or ClipReading()
+    if not clip.exists():
+        raise VideoError(f"{clip} is not a file; give the path of a clip")
+    with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
+        if language is not None:
+            require_landmarks(language, landmarks_of(estimator), f"estimator {how.estimator}")
+        with progress_bar(clip.name) as advance:
+            recording = record(clip, estimator=estimator, progress=advance, water=how.water)
+        read = ReadClip(recording, salutes=finds_hands(estimator))
     for warning in recording.warnings:
         people.print(f"{clip}: {warning}")
-    return recording
+    return read

@@ -13,6 +13,23 @@ class PoseError(RecognitionError):
     """Raised when a pose sequence is malformed or cannot be used for what was asked."""
 
 
+class LandmarkError(PoseError):
+    """Raised when a source of poses lacks a landmark that a language follows.
+
+    Parameters
+    ----------
+    message
+        What is wrong and what to do.
+    landmark
+        The missing landmark's name.
+
+    """
+
+    def __init__(self, message: str, landmark: str) -> None:
+        super().__init__(message)
+        self.landmark = landmark
+
+
 class VideoError(RecognitionError):
     """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
 

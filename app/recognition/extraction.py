@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.recognition.estimation import create_estimator
+from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
 from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
 from app.recognition.landmarks import POSE_LANDMARKS
@@ -45,7 +45,8 @@ def record(
     clip
         The video file.
     estimator
-        What finds the landmarks; it is reset first and left open. None: the default one.
+        What finds the landmarks; it is reset first and left open. None: the default one. The poses
+        have those landmarks that it can find at all.
     progress
         Called after every frame.
     observer
@@ -105,7 +106,12 @@ def extract_poses(
     return record(clip, estimator=estimator, progress=progress, water=water).poses
 
 
-def moment_of(found: FrameLandmarks, time: float, frame_size: tuple[int, int]) -> PoseSequence:
+def moment_of(
+    found: FrameLandmarks,
+    time: float,
+    frame_size: tuple[int, int],
+    landmarks: tuple[str, ...] = POSE_LANDMARKS,
+) -> PoseSequence:
     """Return what was found in one frame as a recording of that frame alone.
 
     Parameters
@@ -116,6 +122,8 @@ def moment_of(found: FrameLandmarks, time: float, frame_size: tuple[int, int]) -
         Seconds.
     frame_size
         Width and height of the image in pixels.
+    landmarks
+        Those to keep: what the estimator can find at all (`landmarks_of`).
 
     """
     xy, visibility = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
@@ -123,20 +131,22 @@ def moment_of(found: FrameLandmarks, time: float, frame_size: tuple[int, int]) -
         seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
         xy = np.where(seen, found.body.xy, np.nan)
         visibility = np.clip(np.nan_to_num(found.body.visibility), 0, 1)
-    return PoseSequence(
+    moment = PoseSequence(
         landmarks=POSE_LANDMARKS,
         xy=xy[None],
         confidence=visibility[None],
         time=np.array([time]),
         frame_size=frame_size,
     )
+    return moment if landmarks == POSE_LANDMARKS else moment.select(landmarks)
 
 
 class _Collector:
     """Gathers the landmarks of one frame after another into a `Recording`."""
 
-    def __init__(self, info: VideoInfo) -> None:
+    def __init__(self, info: VideoInfo, estimator: PoseEstimator) -> None:
         self._info = info
+        self._landmarks, self._hands_sought = landmarks_of(estimator), finds_hands(estimator)
         self._moments: list[PoseSequence] = []
         self._hands: list[tuple[Hand, ...]] = []
         self._salute: list[float] = []
@@ -144,7 +154,8 @@ class _Collector:
 
     def add(self, time: float, found: FrameLandmarks) -> None:
         self._without_body += found.body is None
-        self._moments.append(moment_of(found, time, (self._info.width, self._info.height)))
+        size = (self._info.width, self._info.height)
+        self._moments.append(moment_of(found, time, size, self._landmarks))
         hands = tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
         self._hands.append(hands)
         self._salute.append(best_salute(hands))
@@ -163,6 +174,8 @@ class _Collector:
         found = []
         if self._without_body:
             found.append(f"no person in {self._without_body} of {frames} frames")
+        if not self._hands_sought:
+            return tuple(found)
         if not any(self._hands):
             found.append(
                 f"no hand in any of {frames} frames, so no salute can be seen; choose the "
@@ -184,7 +197,7 @@ def _record(
     water: WaterCorrection,
 ) -> Recording:
     estimator.reset()
-    collector = _Collector(frames.info)
+    collector = _Collector(frames.info, estimator)
     done = 0
     for frame in frames:
         found = estimator.estimate(corrected(frame.image, water), frame.time)

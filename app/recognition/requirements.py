@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import get_args
 
+from app.recognition.errors import LandmarkError
 from app.recognition.landmarks import HIPS, SHOULDERS
 from app.recognition.language import Language
 from app.recognition.models import ModelName
@@ -49,3 +51,32 @@ def requirements_of(language: Language) -> Requirements:
     ends = {end for limb in limbs_of(salient) for end in limb}
     limbs = tuple(sorted((ends & known) - {*salient, *torso}))
     return Requirements(salient, limbs, torso, get_args(ModelName))
+
+
+def require_landmarks(language: Language, landmarks: Collection[str], source: str) -> None:
+    """Refuse a source of poses that lacks what a language's gestures follow.
+
+    Parameters
+    ----------
+    language
+        The language to recognise.
+    landmarks
+        Names of the landmarks that the source gives, seen or not.
+    source
+        What it is called, for the message.
+
+    Raises
+    ------
+    LandmarkError
+        Naming the first landmark that is missing, the gesture that follows it, and what to do.
+
+    """
+    for gesture in language.gestures:
+        for name in gesture.salient:
+            if name not in landmarks:
+                raise LandmarkError(
+                    f"{source} gives no landmark {name!r}, which {gesture.label!r} of "
+                    f"{language.name!r} follows; it gives {', '.join(landmarks)}. Use another "
+                    f"source, or define the gesture by landmarks that this one has",
+                    name,
+                )

@@ -1,7 +1,12 @@
 """What a language needs is what its gestures follow."""
 
+import pytest
+
 from app.recognition import Gesture, Language
-from app.recognition.requirements import requirements_of
+from app.recognition.errors import LandmarkError
+from app.recognition.landmark_sets import COCO_17
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.requirements import require_landmarks, requirements_of
 from tests.recognition.strategies import circle, line, recording
 
 
@@ -23,3 +28,21 @@ def test_a_language_needs_the_landmarks_its_gestures_follow() -> None:
 def test_an_empty_language_needs_no_landmark_of_a_gesture() -> None:
     needed = requirements_of(Language("empty"))
     assert needed.salient == needed.limbs == ()
+
+
+def test_a_source_that_has_what_is_followed_will_do() -> None:
+    language = Language("pool", [Gesture.from_demonstration("circle", recording(circle))])
+    for landmarks in (POSE_LANDMARKS, COCO_17):
+        require_landmarks(language, landmarks, "the source")
+
+
+def test_a_source_that_lacks_a_landmark_is_refused_with_its_name() -> None:
+    pointed = Gesture.from_demonstration(
+        "pointed", recording(circle, hand="right_index"), salient=["right_index"]
+    )
+    language = Language("pool", [Gesture.from_demonstration("line", recording(line)), pointed])
+    with pytest.raises(
+        LandmarkError, match=r"yolo-pose gives no landmark 'right_index', which 'pointed' of 'pool'"
+    ) as refused:
+        require_landmarks(language, COCO_17, "yolo-pose")
+    assert refused.value.landmark == "right_index"

@@ -1,4 +1,4 @@
-"""Pose and hand landmarks from images: one protocol, two backends."""
+"""Pose and hand landmarks from images: one protocol, several backends."""
 
 from app.recognition.estimation.base import (
     Body,
@@ -8,7 +8,12 @@ from app.recognition.estimation.base import (
     PoseEstimator,
     Side,
 )
-from app.recognition.estimation.factory import Backend, create_estimator
+from app.recognition.estimation.factory import (
+    Backend,
+    create_estimator,
+    finds_hands,
+    landmarks_of,
+)
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
 from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
 from app.recognition.estimation.session import Provider, available_providers
@@ -26,4 +31,6 @@ __all__ = [
     "Side",
     "available_providers",
     "create_estimator",
+    "finds_hands",
+    "landmarks_of",
 ]

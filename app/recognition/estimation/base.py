@@ -30,7 +30,8 @@ class Body:
     Attributes
     ----------
     xy
-        ``(33, 2)`` pixels, x right, y down; may lie outside the image.
+        ``(33, 2)`` pixels, x right, y down, in the order of `POSE_LANDMARKS`; may lie outside the
+        image. NaN: not seen, or not among the landmarks that the estimator's model has.
     visibility
         ``(33,)`` in [0, 1]: the model's belief that the landmark is in view and not hidden.
     score

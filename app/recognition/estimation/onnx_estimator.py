@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -64,15 +65,9 @@ class OnnxPoseEstimator:
             raise EstimatorError(f"threads is {threads}; at least one is needed")
         check_provider(provider)
 
-        def load(name: ModelName, signature: Signature) -> ModelSession:
-            path = model_path(name, models)
-            return ModelSession(path, signature, threads=max(1, threads // 2), provider=provider)
-
-        persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
-        palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
-        self._body = BodyTracker(persons, load("pose_landmark_full", POSE_SIGNATURE))
-        model = HandModel(load("hand_landmark_full", HAND_SIGNATURE))
-        self._hands = HandTracker(palms, model, hands)
+        share = max(1, threads // 2)
+        self._body = body_tracker(models, threads=share, provider=provider)
+        self._hands = hand_tracker(models, search=hands, threads=share, provider=provider)
         self._helper = ThreadPoolExecutor(1, "hands") if threads > 1 else None
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
@@ -110,3 +105,25 @@ class OnnxPoseEstimator:
         if self._helper is not None:
             self._helper.shutdown()
         del self._body, self._hands
+
+
+def body_tracker(models: Path | None = None, *, threads: int, provider: Provider) -> BodyTracker:
+    """Load MediaPipe's body models; see `OnnxPoseEstimator` for parameters and errors."""
+    load = partial(_session, models, threads, provider)
+    persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
+    return BodyTracker(persons, load("pose_landmark_full", POSE_SIGNATURE))
+
+
+def hand_tracker(
+    models: Path | None = None, *, search: HandSearch, threads: int, provider: Provider
+) -> HandTracker:
+    """Load MediaPipe's hand models; see `OnnxPoseEstimator` for parameters and errors."""
+    load = partial(_session, models, threads, provider)
+    palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
+    return HandTracker(palms, HandModel(load("hand_landmark_full", HAND_SIGNATURE)), search)
+
+
+def _session(
+    models: Path | None, threads: int, provider: Provider, name: ModelName, signature: Signature
+) -> ModelSession:
+    return ModelSession(model_path(name, models), signature, threads=threads, provider=provider)

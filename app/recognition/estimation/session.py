@@ -81,7 +81,7 @@ class ModelSession:
         if not path.is_file():
             raise ModelError(f"no model file {path}; run `osg-studio models install`")
         self.input_size = signature.input_size
-        self._session = _load(path, threads, provider)
+        self._session = opened(path, threads, provider, remedy="run `osg-studio models install`")
         self._input, self._outputs = _matched(path, self._session, signature)
         self._pixels = np.empty((self.input_size, self.input_size, 3), np.uint8)
         self._tensor = np.empty((1, self.input_size, self.input_size, 3), np.float32)
@@ -131,7 +131,24 @@ def available_providers() -> tuple[Provider, ...]:
     return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
 
 
-def _load(path: Path, threads: int, provider: Provider) -> Any:
+def opened(path: Path, threads: int, provider: Provider, *, remedy: str) -> Any:
+    """Open a model file in ONNX Runtime, set up as all models here are.
+
+    Parameters
+    ----------
+    path, threads, provider
+        As in `ModelSession`.
+    remedy
+        What to do about a file that cannot be loaded, for the message.
+
+    Raises
+    ------
+    ModelError
+        When the runtime cannot load the file.
+    EstimatorError
+        When the provider does not start.
+
+    """
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1
@@ -143,9 +160,7 @@ def _load(path: Path, threads: int, provider: Provider) -> Any:
         session = onnxruntime.InferenceSession(str(path), options, providers=list(chain))
     except Exception as error:  # the runtime's exceptions share no base but Exception
         reason = str(error).splitlines()[0]
-        raise ModelError(
-            f"{path} cannot be loaded ({reason}); run `osg-studio models install`"
-        ) from error
+        raise ModelError(f"{path} cannot be loaded ({reason}); {remedy}") from error
     if chain[0] not in session.get_providers():
         raise EstimatorError(
             f"provider {provider!r} does not start here, its driver or libraries are missing; "

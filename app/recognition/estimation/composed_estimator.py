@@ -1,0 +1,99 @@
+"""An estimator put together of what finds the body and what finds the hands."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
+from app.recognition.estimation.hands import HandTracker
+
+
+class BodyFinder(Protocol):
+    """Finds one person's body in the frames of one clip, in order."""
+
+    def track(self, image: Image, time: float) -> Body | None:
+        """Return the body in `image`, taken at `time` seconds, or None where none is seen."""
+        ...
+
+    def reset(self) -> None:
+        """Forget the person, before another clip."""
+        ...
+
+
+class HandFinder(Protocol):
+    """Finds that person's hands in the same frames."""
+
+    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return up to two hands in `image`, larger first, given the body in it."""
+        ...
+
+    def reset(self) -> None:
+        """Forget the hands, before another clip."""
+        ...
+
+
+class TrackedHands:
+    """MediaPipe's hands beside another body; a `HandFinder`.
+
+    Parameters
+    ----------
+    tracker
+        Its ``search`` should be ``"palm"`` where the body has no fingers: the ends of the arms
+        cannot be looked at then.
+
+    """
+
+    def __init__(self, tracker: HandTracker) -> None:
+        self._tracker = tracker
+
+    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return up to two hands in `image`, larger first."""
+        return self._tracker.complete(image, self._tracker.follow(image), body)
+
+    def reset(self) -> None:
+        """Forget the hands."""
+        self._tracker.reset()
+
+
+class ComposedEstimator:
+    """Body by one model, hands by another; a `PoseEstimator`.
+
+    Parameters
+    ----------
+    body
+        What finds the body.
+    hands
+        What finds the hands; None: nobody looks for them, and there is no salute.
+    landmarks
+        Names of the landmarks that the body can have.
+
+    """
+
+    def __init__(
+        self, body: BodyFinder, hands: HandFinder | None, landmarks: tuple[str, ...]
+    ) -> None:
+        self._body, self._hands = body, hands
+        self.landmarks = landmarks
+        self.finds_hands = hands is not None
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        body = self._body.track(image, time)
+        return FrameLandmarks(body, self._hands.find(image, body) if self._hands else ())
+
+    def reset(self) -> None:
+        """Forget what was tracked so far; to be called before another clip."""
+        self._body.reset()
+        if self._hands:
+            self._hands.reset()
+
+    def close(self) -> None:
+        """Release the models; the estimator cannot be used afterwards."""
+        del self._body, self._hands

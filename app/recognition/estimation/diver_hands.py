@@ -1,0 +1,197 @@
+"""The paper's own hands: a YOLOv7 hand detector and a classifier with heat maps of hand keypoints.
+
+Shapes and preparation are those of the repository the pair comes from (MeCO-AUV/robo_chat_gest):
+detector 416 x 416, RGB, letterboxed; classifier 192 x 192, the square around the box, BGR. The
+published ROS port feeds the classifier a stretched box instead, which is empty for a hand at the
+image's edge, and publishes cells of the heat map as if they were image coordinates; here a hand
+beyond the edge is padded with black, and keypoints are pixels of the image.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.errors import ModelError
+from app.recognition.estimation.base import SIDES, Body, Hand, Image, Side, check_image
+from app.recognition.estimation.hands import MOST_HANDS
+from app.recognition.estimation.letterbox import Letterbox
+from app.recognition.estimation.planar_model import PlanarModel
+from app.recognition.estimation.region import ZERO_BORDER, Region
+from app.recognition.estimation.session import Provider
+from app.recognition.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
+from app.recognition.poses import FloatArray
+
+DETECTOR_SIDE: Final = 416
+KEYPOINTS_SIDE: Final = 192
+"""Pixels of the two inputs, where the files leave them open."""
+
+DETECTION: Final = 7
+"""Columns of the detector's output: image in the batch, box (corners), class, score."""
+
+LEAST_SCORE: Final = 0.5
+"""Belief in a hand from which one counts, as in the published port."""
+
+LEAST_PEAK: Final = 0.1
+"""Mean height of the heat maps' peaks from which there is a hand. Maps are trained towards peaks of
+1; where all stay below a tenth of that, the highest cells mean nothing."""
+
+MEAN: Final = np.array([0.485, 0.456, 0.406])
+DEVIATION: Final = np.array([0.229, 0.224, 0.225])
+"""ImageNet's, which the classifier's own repository takes from values in 0 to 255 before it divides
+by 255; repeated here, for the weights were trained for some such scale and not for 0 to 1."""
+
+QUARTER: Final = 0.25
+"""Cells by which a peak is moved towards its higher neighbour (Xiao et al. 2018): a cell is four
+pixels of the input, a finger fifteen wide."""
+
+
+class DiverHands:
+    """Finds hands in a whole image; a `HandFinder`.
+
+    Parameters
+    ----------
+    detector, keypoints
+        The two ONNX files.
+    threads, provider
+        As in `OnnxPoseEstimator`.
+
+    Raises
+    ------
+    ModelError
+        When a file is missing, damaged, or gives something else; the message names the shape seen
+        and the shape needed.
+    EstimatorError
+        When the provider is not available here.
+
+    """
+
+    def __init__(
+        self, detector: Path, keypoints: Path, *, threads: int = 1, provider: Provider = "cpu"
+    ) -> None:
+        self._detector = PlanarModel(
+            detector,
+            "a YOLOv7 hand detector",
+            side=DETECTOR_SIDE,
+            threads=threads,
+            provider=provider,
+        )
+        self._keypoints = PlanarModel(
+            keypoints,
+            "a hand-keypoint classifier with heat maps",
+            side=KEYPOINTS_SIDE,
+            threads=threads,
+            provider=provider,
+        )
+        _boxes(self._detector.blank(), detector)
+        _heat_maps(self._keypoints.blank(), keypoints)
+        width, height = self._keypoints.input_size
+        if width != height:
+            raise ModelError(
+                f"{keypoints} takes images of {width} x {height}, needed: square ones, for a hand "
+                f"is cut out as a square"
+            )
+
+    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return up to two hands in `image`, larger first.
+
+        Parameters
+        ----------
+        image
+            ``(height, width, 3)`` RGB, upright.
+        body
+            The body in the image, which tells a hand's side by its nearer wrist; the models do
+            not. Without one every hand is called a right one, which the salute does not ask for.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._detector.input_size)
+        planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
+        rows = _boxes(self._detector.run(planes), self._detector.path)
+        best = rows[np.argsort(-rows[:, 6], kind="stable")][:MOST_HANDS]
+        found = (
+            self._hand(image, letterbox.to_image(row[1:5].reshape(2, 2)), float(row[6]), body)
+            for row in best
+            if row[6] >= LEAST_SCORE
+        )
+        return tuple(sorted((hand for hand in found if hand), key=lambda hand: -hand.size))
+
+    def reset(self) -> None:
+        """Do nothing: every image is looked at by itself."""
+
+    def _hand(self, image: Image, box: FloatArray, score: float, body: Body | None) -> Hand | None:
+        centre, side = box.mean(axis=0), float((box[1] - box[0]).max())
+        region = Region(float(centre[0]), float(centre[1]), side)
+        if not region.usable:
+            return None
+        size = self._keypoints.input_size[0]
+        pixels = region.crop(image, size, ZERO_BORDER)[:, :, ::-1]
+        planes = ((pixels - MEAN) / DEVIATION / 255).transpose(2, 0, 1)
+        maps = _heat_maps(self._keypoints.run(planes), self._keypoints.path)
+        belief = float(np.clip(maps.max(axis=(1, 2)).mean(), 0, 1))
+        if not belief >= LEAST_PEAK:
+            return None
+        cells = np.array([maps.shape[2], maps.shape[1]])
+        xy = region.to_image(peaks(maps) / cells * size, size)
+        return Hand(xy, _side_of(xy, body), min(score, 1.0) * belief)
+
+
+def peaks(maps: npt.NDArray[np.float32]) -> FloatArray:
+    """Return ``(K, 2)`` the highest cells of heat maps ``(K, rows, columns)``, column then row.
+
+    A peak inside the map is moved by a `QUARTER` towards its higher neighbour, across and down.
+    """
+    count, rows, columns = maps.shape
+    row, column = np.divmod(maps.reshape(count, -1).argmax(axis=1), columns)
+    every = np.arange(count)
+    beside = (
+        maps[every, row, np.minimum(column + 1, columns - 1)]
+        - maps[every, row, np.maximum(column - 1, 0)]
+    )
+    below = (
+        maps[every, np.minimum(row + 1, rows - 1), column]
+        - maps[every, np.maximum(row - 1, 0), column]
+    )
+    inside = (column > 0) & (column < columns - 1), (row > 0) & (row < rows - 1)
+    shift = np.stack([np.sign(beside) * inside[0], np.sign(below) * inside[1]], axis=1)
+    return np.stack([column, row], axis=1) + QUARTER * shift
+
+
+def _boxes(outputs: list[npt.NDArray[np.float32]], path: Path) -> FloatArray:
+    """Return the detector's rows ``(N, 7)``."""
+    first = outputs[0]
+    if first.ndim != 2 or first.shape[1] != DETECTION:
+        raise ModelError(
+            f"{path} gives {[output.shape for output in outputs]}, needed: (hands, {DETECTION}), a "
+            f"YOLOv7 hand detector exported with suppression inside (--end2end)"
+        )
+    return np.asarray(first, dtype=np.float64)
+
+
+def _heat_maps(outputs: list[npt.NDArray[np.float32]], path: Path) -> npt.NDArray[np.float32]:
+    """Return the heat maps ``(21, rows, columns)``, wherever among the outputs they stand."""
+    for output in outputs:
+        if output.ndim == 4 and output.shape[:2] == (1, len(HAND_LANDMARKS)):
+            return np.asarray(output[0])
+    raise ModelError(
+        f"{path} gives {[output.shape for output in outputs]}, needed: (1, {len(HAND_LANDMARKS)}, "
+        f"rows, columns), the heat maps of a hand-keypoint classifier"
+    )
+
+
+def _side_of(xy: FloatArray, body: Body | None) -> Side:
+    if body is None:
+        return "right"
+    wrists = [body.xy[POSE_LANDMARKS.index(f"{side}_wrist")] for side in SIDES]
+    distances = [float(np.linalg.norm(wrist - xy[0])) for wrist in wrists]
+    if not np.isfinite(distances).any():
+        return "right"
+    return SIDES[int(np.nanargmin(distances))]

@@ -1,0 +1,102 @@
+"""A user's own ONNX model on colour planes: loaded once, asked what shapes it has, run per frame.
+
+MediaPipe's pinned models are in `session`; these are files that the user brings, so a wrong one is
+the usual mistake, and the message tells the shape seen beside the shape needed.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.errors import ModelError
+from app.recognition.estimation.session import Provider, check_provider, opened
+
+TYPES: Final = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
+"""What exports take: single or half precision."""
+
+
+class PlanarModel:
+    """An ONNX model that takes one image as ``(1, 3, height, width)``.
+
+    Parameters
+    ----------
+    path
+        The user's model file.
+    purpose
+        What the file should be, for messages: ``"a YOLO-pose export"``.
+    side
+        Pixels of the input where the file leaves them open (dynamic axes).
+    threads, provider
+        As in `session.ModelSession`.
+
+    Attributes
+    ----------
+    path, purpose
+        See above.
+    input_size
+        Width and height of the image it takes, pixels.
+
+    Raises
+    ------
+    ModelError
+        When the file is missing, damaged, or takes something else.
+    EstimatorError
+        When the provider is not available here.
+
+    """
+
+    def __init__(
+        self, path: Path, purpose: str, *, side: int, threads: int, provider: Provider
+    ) -> None:
+        check_provider(provider)
+        self.path, self.purpose = path, purpose
+        needed = f"{purpose} is needed"
+        if not path.is_file():
+            raise ModelError(f"no model file {path}; {needed}")
+        self._session = opened(path, threads, provider, remedy=needed)
+        inputs = self._session.get_inputs()
+        shape = tuple(inputs[0].shape) if len(inputs) == 1 else ()
+        if len(shape) != 4 or inputs[0].type not in TYPES or not _takes_planes(shape):
+            raise ModelError(
+                f"{path} takes {[(tuple(one.shape), one.type) for one in inputs]}, needed: one "
+                f"image (1, 3, height, width) of tensor(float); {needed}"
+            )
+        self._name, self._type = inputs[0].name, TYPES[inputs[0].type]
+        height, width = (extent if isinstance(extent, int) else side for extent in shape[2:])
+        self.input_size = (width, height)
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """What the exporting program wrote about the model."""
+        return dict(self._session.get_modelmeta().custom_metadata_map)
+
+    def run(self, planes: npt.NDArray[np.floating]) -> list[npt.NDArray[np.float32]]:
+        """Run the model.
+
+        Parameters
+        ----------
+        planes
+            ``(3, height, width)`` in the model's own scale.
+
+        Returns
+        -------
+        Its outputs in the file's order.
+
+        """
+        tensor = np.ascontiguousarray(planes[None], dtype=self._type)
+        outputs: list[Any] = self._session.run(None, {self._name: tensor})
+        return [np.asarray(output, dtype=np.float32) for output in outputs]
+
+    def blank(self) -> list[npt.NDArray[np.float32]]:
+        """Run the model on black: files with dynamic axes tell their output's shape only so."""
+        width, height = self.input_size
+        return self.run(np.zeros((3, height, width), np.float32))
+
+
+def _takes_planes(shape: tuple[int | str | None, ...]) -> bool:
+    """Tell whether an input is a batch of one, or of a size left open, of three planes."""
+    return shape[1] == 3 and (shape[0] == 1 or not isinstance(shape[0], int))

@@ -1,0 +1,138 @@
+"""Other people's sets of landmarks, by the names this program knows them by.
+
+A set is a tuple in the order of its source; None stands for what has no counterpart among
+`POSE_LANDMARKS`. Neck and mid-hip of OpenPose are such: OpenPose makes the neck of the shoulders,
+and both would only repeat what shoulders and hips say.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from app.recognition.landmarks import POSE_LANDMARKS
+
+LandmarkSet = tuple[str | None, ...]
+
+COCO_17: Final = (
+    "nose",
+    "left_eye",
+    "right_eye",
+    "left_ear",
+    "right_ear",
+    "left_shoulder",
+    "right_shoulder",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist",
+    "right_wrist",
+    "left_hip",
+    "right_hip",
+    "left_knee",
+    "right_knee",
+    "left_ankle",
+    "right_ankle",
+)
+"""COCO's keypoints (Lin et al. 2014), which YOLO-pose, RTMPose, MoveNet and HRNet find."""
+
+COCO_18: Final[LandmarkSet] = (
+    "nose",
+    None,  # neck
+    "right_shoulder",
+    "right_elbow",
+    "right_wrist",
+    "left_shoulder",
+    "left_elbow",
+    "left_wrist",
+    "right_hip",
+    "right_knee",
+    "right_ankle",
+    "left_hip",
+    "left_knee",
+    "left_ankle",
+    "right_eye",
+    "left_eye",
+    "right_ear",
+    "left_ear",
+)
+"""OpenPose's COCO model, and ROS's `hri_msgs/Skeleton2D`."""
+
+BODY_25: Final[LandmarkSet] = (
+    "nose",
+    None,  # neck
+    "right_shoulder",
+    "right_elbow",
+    "right_wrist",
+    "left_shoulder",
+    "left_elbow",
+    "left_wrist",
+    None,  # middle of the hips
+    "right_hip",
+    "right_knee",
+    "right_ankle",
+    "left_hip",
+    "left_knee",
+    "left_ankle",
+    "right_eye",
+    "left_eye",
+    "right_ear",
+    "left_ear",
+    "left_foot_index",  # big toe
+    None,  # left small toe
+    "left_heel",
+    "right_foot_index",
+    None,  # right small toe
+    "right_heel",
+)
+"""OpenPose's default model (Cao et al. 2019)."""
+
+_SIDES: Final = {"left": "left", "l": "left", "right": "right", "r": "right"}
+
+_PARTS: Final = {
+    **{name: name for name in ("nose", "mouth_left", "mouth_right")},
+    **{
+        part: part
+        for name in POSE_LANDMARKS
+        if (part := re.sub("^(left|right)_", "", name)) != name
+    },
+    "big_toe": "foot_index",
+}
+"""Names of a landmark without its side, in snake_case, and what they are called here."""
+
+
+def landmark_named(name: str) -> str | None:
+    """Return the landmark that another program's name means.
+
+    The side may stand before or behind, as a word or a letter, in any case: ``left_wrist``,
+    ``LWrist``, ``wristL``, ``Wrist.L`` and ``LEFT_WRIST`` are the same.
+
+    Returns
+    -------
+    One of `POSE_LANDMARKS`, or None where the name means none of them.
+
+    """
+    words = _words(name)
+    plain = "_".join(words)
+    if plain in POSE_LANDMARKS:
+        return plain
+    for side, part in ((words[0], words[1:]), (words[-1], words[:-1])) if words else ():
+        known = _PARTS.get("_".join(part))
+        if side in _SIDES and known is not None:
+            found = f"{_SIDES[side]}_{known}"
+            return found if found in POSE_LANDMARKS else None
+    return None
+
+
+def missing_from(landmarks: tuple[str, ...]) -> tuple[str, ...]:
+    """Return those of `POSE_LANDMARKS` that a source does not give, in their order."""
+    return tuple(name for name in POSE_LANDMARKS if name not in landmarks)
+
+
+def _words(name: str) -> list[str]:
+    """Split a name at punctuation and at changes of case, in lower case."""
+    parted = re.sub(
+        r"(?<=[a-z0-9])(?=[A-Z])|(?<=\b[LR])(?=[A-Z][a-z])|(?<=\bleft)(?=[a-z])|(?<=\bright)(?=[a-z])",
+        " ",
+        name,
+    )
+    return [word.lower() for word in re.split(r"[^A-Za-z0-9]+", parted) if word]

@@ -1,0 +1,80 @@
+"""The one person that is followed where several are seen."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from app.recognition.estimation.suppression import overlaps
+from app.recognition.poses import FloatArray
+from app.recognition.trajectory import MAX_GAP_SECONDS
+
+SAME_PERSON: Final = 0.3
+"""Least intersection over union of a person's boxes in two frames. An arm that is stretched out
+between them halves it; two people beside each other share less."""
+
+PATIENCE_SECONDS: Final = MAX_GAP_SECONDS
+"""How long a person who is out of sight is waited for. A longer gap is not bridged in a trajectory
+either, so the gesture is lost and another person may be followed."""
+
+
+class SubjectChoice:
+    """Keeps to one person from frame to frame.
+
+    First the most prominent: the largest box, weighted by the detector's belief. Then whoever is
+    where that person was, however large others become; two divers of one size would otherwise take
+    turns. Frames are to be given in order of time.
+    """
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget whom was followed."""
+        self._box: FloatArray | None = None
+        self._since = -np.inf
+
+    def choose(self, boxes: FloatArray, scores: FloatArray, time: float) -> int | None:
+        """Return which of N people in a frame is the one, or None where they are not seen.
+
+        Parameters
+        ----------
+        boxes
+            ``(N, 2, 2)`` corners (left, top) and (right, bottom), pixels.
+        scores
+            ``(N,)`` belief in each, in [0, 1].
+        time
+            Seconds.
+
+        """
+        if not len(boxes):
+            return None
+        chosen = self._again(boxes)
+        if chosen is None:
+            if self._box is not None and 0 <= time - self._since <= PATIENCE_SECONDS:
+                return None
+            chosen = int(np.argmax(prominence(boxes, scores)))
+        self._box, self._since = boxes[chosen], time
+        return chosen
+
+    def _again(self, boxes: FloatArray) -> int | None:
+        if self._box is None:
+            return None
+        shared = overlaps(self._box, boxes)
+        nearest = int(np.argmax(shared))
+        return nearest if shared[nearest] >= SAME_PERSON else None
+
+
+def prominence(boxes: FloatArray, scores: FloatArray) -> FloatArray:
+    """Return ``(N,)`` how much each person stands out: area of the box times belief."""
+    sides = np.clip(boxes[:, 1] - boxes[:, 0], 0, None)
+    return np.asarray(sides.prod(axis=1) * scores, dtype=np.float64)
+
+
+def boxes_around(xy: FloatArray) -> FloatArray:
+    """Return ``(N, 2, 2)`` boxes around the seen points of N people ``(N, K, 2)``.
+
+    Every person has at least one point that is not NaN.
+    """
+    return np.stack([np.nanmin(xy, axis=1), np.nanmax(xy, axis=1)], axis=1)

@@ -1,0 +1,105 @@
+"""Other pose estimators on the command line: real inference from a clip to a label."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.recognition import Language
+from app.recognition.landmark_sets import COCO_17
+from tests.command_line import OsgStudio
+from tests.marker_clips import RATE, marker_clip
+from tests.recognition.demonstrations import pool
+from tests.recognition.estimation.marker_models import save_yolo_pose
+from tests.recognition.strategies import circle, line, recording
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a model that finds markers, as an Ultralytics export with ``imgsz=320`` would."""
+    return save_yolo_pose(tmp_path_factory.mktemp("model") / "markers-pose.onnx", side=320)
+
+
+def arguments(model: Path) -> tuple[str, ...]:
+    # Correcting the colours would repaint the markers.
+    return ("--estimator", f"yolo-pose:{model}", "--hands", "none", "--water", "off")
+
+
+@pytest.mark.slow
+def test_a_language_defined_and_recognised_by_yolo_pose(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    clips = {
+        shape.__name__: marker_clip(tmp_path / f"{shape.__name__}.mkv", shape)
+        for shape in (circle, line)
+    }
+    file = tmp_path / "pool.json"
+    defined = osg_studio(
+        "define",
+        *(f"{label}={clip}" for label, clip in clips.items()),
+        *("--name", "pool", "--output", file),
+        *arguments(model),
+    )
+    assert defined.code == 0, defined.error
+    language = Language.load(file)
+    for gesture in language.gestures:
+        assert gesture.salient == ("right_wrist",)
+        assert gesture.trajectory is not None
+        assert set(gesture.trajectory.landmarks) <= set(COCO_17)
+    again = marker_clip(tmp_path / "again.mkv", circle, frames=24)
+    ended = osg_studio("recognize", again, "--language", file, "--json", *arguments(model))
+    assert ended.code == 0, ended.error
+    (take,) = json.loads(ended.out)["takes"]
+    assert take["label"] == "circle"
+    assert (take["start"], take["end"]) == (0, pytest.approx(23 / RATE, abs=0.01))
+
+
+@pytest.mark.slow
+def test_a_language_of_mediapipe_is_understood_by_yolo_pose(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle, line=line).save(file)
+    clip = marker_clip(tmp_path / "line.mkv", line)
+    ended = osg_studio("recognize", clip, "--language", file, "--json", *arguments(model))
+    assert ended.code == 0, ended.error
+    assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
+
+
+def test_a_language_that_follows_a_finger_is_refused_before_the_clip_is_read(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    from app.recognition import Gesture
+
+    file = tmp_path / "pool.json"
+    poses = recording(circle, hand="right_index")
+    pointed = Gesture.from_demonstration("pointed", poses, salient=["right_index"])
+    Language("fingers", [pointed]).save(file)
+    clip = tmp_path / "unread.mkv"
+    clip.write_text("no video at all")
+    ended = osg_studio("recognize", clip, "--language", file, *arguments(model))
+    assert ended.code == 2
+    assert "gives no landmark 'right_index', which 'pointed' of 'fingers' follows" in ended.error
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--estimator", "yolo-pose"), "yolo-pose needs its model file"),
+        (("--estimator", "yolo-pose:nowhere.onnx"), "no model file nowhere.onnx"),
+        (("--estimator", "openpose"), "unknown backend 'openpose'"),
+        (("--hands", "two"), "unknown hands 'two'"),
+        (("--estimator", "mediapipe", "--hands", "none"), "finds the hands itself"),
+    ],
+)
+def test_what_cannot_be_used_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path, options: tuple[str, ...], message: str
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle).save(file)
+    ended = osg_studio("recognize", file, "--language", file, *options)
+    assert (ended.code, ended.out) == (2, "")
+    assert message in ended.error
+    assert ended.error.count("\n") == 1
