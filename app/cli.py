@@ -117,7 +117,8 @@ def define(
         list[str],
         typer.Argument(
             metavar="LABEL=CLIP...",
-            help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without.",
+            help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without. "
+            "A dive recording does too, as LABEL=BAG or LABEL=BAG@/TOPIC.",
         ),
     ],
     name: Annotated[str, typer.Option(help="Name of the language.")],
@@ -146,7 +147,8 @@ def define(
 @command_line.command()
 def recognize(
     clip: Annotated[
-        str, typer.Argument(help="Clip with gestures between salutes, or CLIP@START-END.")
+        str,
+        typer.Argument(help="Clip or rosbag2 with gestures between salutes, or CLIP@START-END."),
     ],
     language: Annotated[Path, typer.Option(help="Language file.")],
     profile: Annotated[
@@ -160,6 +162,10 @@ def recognize(
         bool, typer.Option("--without-salutes", help="Find gestures anywhere in the clip.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    topic: Annotated[
+        str | None,
+        typer.Option(help="Of a dive recording with several, the topic to look at."),
+    ] = None,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -171,7 +177,7 @@ def recognize(
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
     spotter = Spotter(recognizer) if without_salutes else None
-    read = read_clip(path, ClipReading(water, estimator, hands), spoken)
+    read = read_clip(path, ClipReading(water, estimator, hands, topic), spoken)
     recording = read.recording
     if spotter is not None:
         results = spotted_takes(spotter, recording, span)

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
+from app.bags import bag_and_topic, holds_keypoints, is_bag, record_bag
 from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
 from app.recognition.errors import GestureError, VideoError
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
@@ -52,12 +54,15 @@ class ClipReading:
         Whether colour and contrast are corrected first.
     estimator, hands
         What finds body and hands, see `create_estimator`.
+    topic
+        Of a dive recording, which one; None: the one that the clip names, or the only one.
 
     """
 
     water: WaterCorrection = "auto"
     estimator: str = "onnx"
     hands: str = MEDIAPIPE_HANDS
+    topic: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +223,7 @@ def read_clip(
     Parameters
     ----------
     clip
-        The clip's file.
+        The clip's file, or a dive recording as ``BAG`` or ``BAG@/TOPIC``.
     reading
         How to read it; None: with the installed models.
     language
@@ -231,17 +236,46 @@ def read_clip(
         When the source lacks a landmark of the language.
     VideoError
         When there is no clip, or none that can be read.
+    BagError
+        When it is a dive recording and cannot be read, or has no such topic.
 
     """
     how = reading or ClipReading()
-    if not clip.exists():
-        raise VideoError(f"{clip} is not a file; give the path of a clip")
+    path, named = bag_and_topic(str(clip))
+    topic = how.topic or named
+    if not path.exists():
+        raise VideoError(f"{path} is not a file; give the path of a clip")
+    as_bag = is_bag(path) or path.is_dir() or topic is not None
+    if as_bag and holds_keypoints(path, topic):
+        read = _read_keypoints(path, topic, language)
+    else:
+        read = _read_pictures(path, topic, how, language, as_bag)
+    for warning in read.recording.warnings:
+        people.print(f"{clip}: {warning}")
+    return read
+
+
+def _read_keypoints(path: Path, topic: str | None, language: Language | None) -> ReadClip:
+    """Read recorded keypoints, whose landmarks are known when they are read."""
+    recording = record_bag(path, topic)
+    poses = recording.poses
+    if language is not None:
+        names = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
+        require_landmarks(language, names, f"{path.name}{f'@{topic}' if topic else ''}")
+    return ReadClip(recording, salutes=True)
+
+
+def _read_pictures(
+    path: Path, topic: str | None, how: ClipReading, language: Language | None, as_bag: bool
+) -> ReadClip:
     with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
         if language is not None:
             require_landmarks(language, landmarks_of(estimator), f"estimator {how.estimator}")
-        with progress_bar(clip.name) as advance:
-            recording = record(clip, estimator=estimator, progress=advance, water=how.water)
-        read = ReadClip(recording, salutes=finds_hands(estimator))
-    for warning in recording.warnings:
-        people.print(f"{clip}: {warning}")
-    return read
+        with progress_bar(path.name) as advance:
+            if as_bag:
+                recording = record_bag(
+                    path, topic, estimator=estimator, progress=advance, water=how.water
+                )
+            else:
+                recording = record(path, estimator=estimator, progress=advance, water=how.water)
+        return ReadClip(recording, salutes=finds_hands(estimator))

@@ -4,6 +4,7 @@ A recording is read in place. An image topic becomes a clip by way of the same m
 file, and a topic of recorded keypoints becomes one without them.
 """
 
-from app.bags.kind import BagKind, bag_kind, is_bag
+from app.bags.clip import holds_keypoints, record_bag
+from app.bags.kind import bag_and_topic, is_bag
 
-__all__ = ["BagKind", "bag_kind", "is_bag"]
+__all__ = ["bag_and_topic", "holds_keypoints", "is_bag", "record_bag"]

@@ -68,6 +68,12 @@ def record_bag(
         return _watched(bag, chosen, video, estimator, progress, observer, limits, water)
 
 
+def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
+    """Tell whether the topic that `record_bag` would take holds keypoints; raises as it does."""
+    with opened_bag(path) as bag:
+        return bag.topic(topic).use == "keypoints"
+
+
 def _watched(
     bag: Bag,
     topic: Topic,

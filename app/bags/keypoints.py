@@ -13,6 +13,7 @@ from app.bags.salute_topic import SaluteTrack, salute_track
 from app.recognition.errors import BagError
 from app.recognition.estimation.base import Hand
 from app.recognition.frame_clock import FrameClock
+from app.recognition.landmark_sets import COCO_18, landmark_named, missing_from
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recording import Recording
@@ -25,28 +26,6 @@ picture: the published port's camera (a ZED) at its default resolution."""
 LARGEST_FRACTION = 10.0
 """Pictures away from the picture's corner that a landmark may lie: one that a model places beyond
 the edge is one or two away; what is farther is a number gone wrong."""
-
-SKELETON_2D = (
-    "nose",
-    "neck",
-    "right_shoulder",
-    "right_elbow",
-    "right_wrist",
-    "left_shoulder",
-    "left_elbow",
-    "left_wrist",
-    "right_hip",
-    "right_knee",
-    "right_ankle",
-    "left_hip",
-    "left_knee",
-    "left_ankle",
-    "right_eye",
-    "left_eye",
-    "right_ear",
-    "left_ear",
-)
-"""Landmarks of ``hri_msgs/Skeleton2D`` by index (REP-155): OpenPose's 18 of COCO."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +152,7 @@ def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[st
     if nobody := sum(not posed.told for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
     told = frozenset[str]().union(*(posed.told for posed in gathered.posed))
-    if missing := [name for name in POSE_LANDMARKS if name not in told]:
+    if missing := missing_from(tuple(told)):
         found.append(f"{topic.name} has no {', '.join(missing)}")
     if salute.topic is None:
         found.append(
@@ -208,8 +187,8 @@ def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] 
     xy, confidence = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
     told = set()
     farthest = LARGEST_FRACTION * (1 if size is None else max(size))
-    for name, x, y, belief in points:
-        if name not in POSE_LANDMARKS:
+    for said, x, y, belief in points:
+        if (name := landmark_named(said)) is None:
             continue
         told.add(name)
         # NaN is not nearer than anything.
@@ -222,16 +201,13 @@ def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] 
 
 def _published(content: Any) -> Posed:
     """Read the published port's message: MediaPipe's names, fractions of the picture."""
-    points = [(str(p.name).lower(), float(p.x), float(p.y), np.nan) for p in content.keypoints]
+    points = [(str(p.name), float(p.x), float(p.y), np.nan) for p in content.keypoints]
     return _posed(points, None)
 
 
 def _ours(content: Any) -> Posed:
     """Read our own message: pixels, NaN where not seen."""
-    points = [
-        (str(p.name).lower(), float(p.x), float(p.y), float(p.confidence))
-        for p in content.keypoints
-    ]
+    points = [(str(p.name), float(p.x), float(p.y), float(p.confidence)) for p in content.keypoints]
     width, height = int(content.image_width), int(content.image_height)
     return _posed(points, (width, height) if width and height else None)
 
@@ -239,8 +215,8 @@ def _ours(content: Any) -> Posed:
 def _ros4hri(content: Any) -> Posed:
     """Read ROS4HRI's skeleton: fractions of the picture, confidence 0 where not seen."""
     points = [
-        (name, float(p.x) if p.c else np.nan, float(p.y), float(p.c))
-        for name, p in zip(SKELETON_2D, content.skeleton, strict=True)
+        (name or "", float(p.x) if p.c else np.nan, float(p.y), float(p.c))
+        for name, p in zip(COCO_18, content.skeleton, strict=True)
     ]
     return _posed(points, None)
 

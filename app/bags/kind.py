@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Literal
 
@@ -33,6 +34,14 @@ def kind_of(path: Path) -> BagKind | None:
         return None
     with path.open("rb") as file:
         return bag_kind(file.read(max(map(len, _BEGINNINGS))))
+
+
+def bag_and_topic(text: str) -> tuple[Path, str | None]:
+    """Split ``BAG@/TOPIC``; a file whose very name looks so is taken as it is."""
+    match = re.fullmatch(r"(.+)@(/[\w/]+)", text)
+    if match is None or Path(text).exists():
+        return Path(text), None
+    return Path(match[1]), match[2]
 
 
 def is_bag(path: Path) -> bool:

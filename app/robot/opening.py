@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
+from app.bags import bag_and_topic, is_bag
+from app.robot.bag_source import BagSource
 from app.robot.cameras import CameraDevice, NetworkStream, is_address, without_password
 from app.robot.clip_source import ClipSource
 from app.robot.live_source import LiveSource
@@ -46,9 +48,15 @@ def open_stream(address: str) -> Source:
     return LiveSource(without_password(address), partial(NetworkStream, address))
 
 
+def is_recording(text: str) -> bool:
+    """Tell whether a text names a dive recording, with or without its topic."""
+    return is_bag(bag_and_topic(text)[0])
+
+
 KINDS: tuple[SourceKind, ...] = (
     SourceKind(is_device, open_camera),
     SourceKind(is_address, open_stream),
+    SourceKind(is_recording, BagSource),
     SourceKind(lambda text: True, ClipSource),
 )
 """The first that accepts a text opens it. Clips come last: any other text is a file's path."""
@@ -61,7 +69,8 @@ def open_source(text: str) -> Source:
     ----------
     text
         A camera's number (``0``) or device file (``/dev/video0``), a stream's address
-        (``rtsp://...``, ``http://...``), or the path of a clip.
+        (``rtsp://...``, ``http://...``), the path of a dive recording (``BAG`` or
+        ``BAG@/TOPIC``) or of a clip.
 
     Raises
     ------
@@ -69,6 +78,8 @@ def open_source(text: str) -> Source:
         When a camera or stream cannot be opened.
     VideoError
         When a file is no clip.
+    BagError
+        When a dive recording cannot be read, or has no such topic of pictures.
 
     """
     return next(kind for kind in KINDS if kind.accepts(text)).open(text)

@@ -16,6 +16,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from app.bags.definitions import DEFINITIONS
 from app.recognition import Recording
 from app.recognition.estimation.base import Image
+from app.recognition.landmark_sets import COCO_18
 from app.recognition.poses import FloatArray
 
 START = 1_763_731_234_123_456_789
@@ -159,16 +160,16 @@ def our_rows(recording: Recording) -> Iterator[Row]:
         yield "/osg/hands", hands, stamp + DELAY
 
 
-def skeleton_rows(recording: Recording, names: tuple[str, ...]) -> Iterator[Row]:
-    """Give ROS4HRI's skeletons of the landmarks `names`; the neck is not seen."""
+def skeleton_rows(recording: Recording) -> Iterator[Row]:
+    """Give ROS4HRI's skeletons; the neck is not seen."""
     poses = recording.poses
     width, height = poses.frame_size
     kind = "hri_msgs/msg/NormalizedPointOfInterest2D"
     for index, stamp in enumerate(stamps(poses.time)):
         points = []
-        for name in names:
-            known = name in poses.landmarks
-            x, y = poses.xy[index][poses.landmarks.index(name)] if known else (0.0, 0.0)
+        for name in COCO_18:
+            known = name is not None
+            x, y = poses.xy[index][poses.landmarks.index(name)] if name else (0.0, 0.0)
             points.append(message(kind, x / width, y / height, float(known)))
         yield (
             "/humans/bodies/diver/skeleton2d",

@@ -10,7 +10,7 @@ import pytest
 
 from app.bags.bag import opened_bag
 from app.bags.clip import record_bag
-from app.bags.keypoints import ASSUMED_SIZE, SKELETON_2D
+from app.bags.keypoints import ASSUMED_SIZE
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
 from app.recognition.extraction import Observer
@@ -65,7 +65,7 @@ def test_recorded_keypoints_come_out_as_the_gestures_that_went_in(
 
 def test_a_skeleton_of_ros4hri_fills_the_landmarks_that_it_has(tmp_path: Path) -> None:
     recording = recording_of("line")
-    with_size = list(skeleton_rows(recording, SKELETON_2D))
+    with_size = list(skeleton_rows(recording))
     read = record_bag(write_bag(tmp_path / "dive", with_size))
     width, height = ASSUMED_SIZE
     scale = np.array([width / 640, height / 480])
