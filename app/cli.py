@@ -39,6 +39,7 @@ from app.recognition.osg_reference import from_reference, is_reference, to_refer
 from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.spotting import Spotter
+from app.robot_command import robot
 from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
 DEFAULT_PROFILE = "full"
@@ -58,6 +59,7 @@ models_command = typer.Typer(
 command_line.add_typer(models_command, name="models")
 command_line.command()(evaluate)
 command_line.command()(check)
+command_line.command()(robot)
 
 
 class FileFormat(StrEnum):

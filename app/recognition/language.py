@@ -15,10 +15,9 @@ from app.recognition.errors import LanguageError
 from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
 from app.recognition.landmarks import SKELETON
-from app.recognition.language_file import read_document, write_document
+from app.recognition.language_file import read_content, read_document, write_document
 from app.recognition.language_schema import (
     FORMAT,
-    MAX_FILE_BYTES,
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
@@ -228,13 +227,7 @@ class Language:
             When it cannot be read or is invalid; see `from_json`.
 
         """
-        try:
-            with Path(path).open("rb") as file:
-                # One byte more than is admitted tells that there is more, however much it is.
-                content = file.read(MAX_FILE_BYTES + 1)
-        except OSError as error:
-            raise LanguageError(f"cannot read {path}: {error.strerror}") from error
-        return cls.from_json(content)
+        return cls.from_json(read_content(path))
 
 
 def _check_text(text: Any, most: int, pointer: str) -> None:

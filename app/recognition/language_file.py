@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -35,6 +36,23 @@ def write_document(document: LanguageDocument) -> str:
     content["sha256"] = seal(content)
     lines = ",\n".join(f"{_compact(key)}: {_value(key, value)}" for key, value in content.items())
     return f"{{\n{lines}\n}}\n"
+
+
+def read_content(path: str | Path) -> bytes:
+    """Read a file that may be a language file, and no more of it than one can hold.
+
+    Raises
+    ------
+    LanguageError
+        When it cannot be read.
+
+    """
+    try:
+        with Path(path).open("rb") as file:
+            # One byte more than is admitted tells that there is more, however much it is.
+            return file.read(MAX_FILE_BYTES + 1)
+    except OSError as error:
+        raise LanguageError(f"cannot read {path}: {error.strerror}") from error
 
 
 def read_document(text: str | bytes) -> LanguageDocument:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.bags import bag_and_topic, is_bag
+from app.recognition.video import FrameReader
 from app.robot.bag_source import BagSource
 from app.robot.cameras import CameraDevice, NetworkStream, is_address, without_password
-from app.robot.clip_source import ClipSource
 from app.robot.live_source import LiveSource
+from app.robot.recorded_source import RecordedSource
 from app.robot.source import Source
 
 
@@ -53,11 +54,17 @@ def is_recording(text: str) -> bool:
     return is_bag(bag_and_topic(text)[0])
 
 
+def open_clip(path: str) -> Source:
+    """Open a video file."""
+    reader = FrameReader(path)
+    return RecordedSource(path, reader, reader.close)
+
+
 KINDS: tuple[SourceKind, ...] = (
     SourceKind(is_device, open_camera),
     SourceKind(is_address, open_stream),
     SourceKind(is_recording, BagSource),
-    SourceKind(lambda text: True, ClipSource),
+    SourceKind(lambda text: True, open_clip),
 )
 """The first that accepts a text opens it. Clips come last: any other text is a file's path."""
 

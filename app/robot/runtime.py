@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from typing import Final
@@ -88,13 +87,13 @@ class Runtime:
         self._water = water
         self._changes = changes
         self._observer = observer
-        self._stopped = threading.Event()
+        self._stopped = False
         self._drops = DropCount()
         self._time = 0.0
 
     def stop(self) -> None:
         """End after the frame that is looked at now; may be called anywhere, also by a signal."""
-        self._stopped.set()
+        self._stopped = True
 
     def __iter__(self) -> Iterator[Event]:
         """Look at frames and give what happens, in order.
@@ -112,12 +111,10 @@ class Runtime:
             self._time = given.time
             yield from self._new_language()
             yield from self._look(given) if isinstance(given, Frame) else self._heed(given)
-            if self._stopped.is_set():
+            if self._stopped:
                 break
         yield from self._listener.finish()
-        yield SourceEnded(
-            self._time, self._drops.frames, self._drops.dropped, self._stopped.is_set()
-        )
+        yield SourceEnded(self._time, self._drops.frames, self._drops.dropped, self._stopped)
 
     def _opened(self) -> SourceOpened:
         source = self._source

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Self
 
 from app.recognition import Language, Recognizer
+from app.recognition.language_file import read_content, seal
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,30 +39,30 @@ class SpokenLanguage:
         return self.recognizer.language.revision
 
     @classmethod
-    def of(cls, language: Language, profile: str = "full") -> Self:
-        """Make a language ready; takes up to a second where it brings no thresholds.
+    def load(cls, path: str | Path, profile: str = "full") -> Self:
+        """Read a language file and make it ready; up to a second where it brings no thresholds.
 
         Raises
         ------
         LanguageError
-            When it has no gestures.
+            When the file cannot be read or is invalid, or the language has no gestures.
         RecognitionError
             When there is no such profile.
 
         """
-        sealed = json.loads(language.to_json())
-        return cls(Recognizer(language, profile), sealed["sha256"])
+        return cls.from_json(read_content(path), profile)
 
     @classmethod
-    def load(cls, path: str | Path, profile: str = "full") -> Self:
-        """Read a language file and make it ready.
+    def from_json(cls, text: str | bytes, profile: str = "full") -> Self:
+        """Make ready what a language file says; see `load`.
 
         Raises
         ------
         LanguageError
-            When the file cannot be read or is invalid.
+            When the text is invalid, or the language has no gestures.
         RecognitionError
             When there is no such profile.
 
         """
-        return cls.of(Language.load(path), profile)
+        recognizer = Recognizer(Language.from_json(text), profile)
+        return cls(recognizer, seal(json.loads(text)))

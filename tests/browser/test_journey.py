@@ -134,7 +134,9 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     dialog = page.get_by_role("dialog", name="Export")
     expect(dialog.get_by_role("radio", name="OSG Studio language")).to_be_checked()
     expect(dialog.get_by_text("left wrist, right wrist")).to_be_visible()
-    expect(dialog.locator("#export-command")).to_contain_text("--language Table-2-eight-signs.json")
+    expect(dialog.locator("#export-command")).to_have_text(
+        "osg-studio robot --language Table-2-eight-signs.json --source 0"
+    )
     picture(page, "export")
     with page.expect_download() as download:
         dialog.get_by_role("link", name="Download").click()

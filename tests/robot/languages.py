@@ -2,18 +2,40 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from functools import cache
 
-from app.recognition import Gesture, Language, takes_in
-from app.robot import SpokenLanguage
+from app.recognition import Gesture, Language, PoseSequence, Recording, takes_in
+from app.robot import Event, Hearing, SpokenLanguage
 from tests.api.recordings import recording_of
 
 
 @cache
-def spoken(*labels: str, revision: int = 1) -> SpokenLanguage:
+def language_of(*labels: str, revision: int = 1) -> Language:
     """Return a language of shapes of `tests.api.recordings`."""
     gestures = [
         Gesture.from_demonstration(label, takes_in(recording_of(label))[0].poses)
         for label in labels
     ]
-    return SpokenLanguage.of(Language("pool", gestures, revision=revision))
+    made = datetime(2026, 11, 21, tzinfo=UTC)  # else two of the same gestures would differ
+    return Language("pool", gestures, created=made, revision=revision).calibrated()
+
+
+@cache
+def spoken(*labels: str, revision: int = 1) -> SpokenLanguage:
+    """Return a language of shapes made ready."""
+    return SpokenLanguage.from_json(language_of(*labels, revision=revision).to_json())
+
+
+def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:
+    """Return what a listener is fed, frame by frame."""
+    poses = recording.poses
+    return [
+        (poses.between(time, time), salute)
+        for time, salute in zip(poses.time.tolist(), recording.salute.tolist(), strict=True)
+    ]
+
+
+def heard(listener: Hearing, recording: Recording) -> list[Event]:
+    """Feed a whole recording without ending the stream."""
+    return [event for frame in moments_of(recording) for event in listener.feed(*frame)]

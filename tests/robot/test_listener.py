@@ -12,21 +12,9 @@ from app.recognition.live import LONGEST_SALUTE
 from app.recognition.takes import LONGEST_TAKE, TakeState
 from app.robot import Event, Listener, StateChanged, TakeRecognized, TakeRejected
 from tests.api.recordings import RATE, recording_of
-from tests.robot.languages import spoken
+from tests.robot.languages import heard, moments_of, spoken
 
 SHAPES = ("circle", "line", "circle backwards")
-
-
-def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:
-    poses = recording.poses
-    return [
-        (poses.between(time, time), salute)
-        for time, salute in zip(poses.time.tolist(), recording.salute.tolist(), strict=True)
-    ]
-
-
-def heard(listener: Listener, recording: Recording) -> list[Event]:
-    return [event for frame in moments_of(recording) for event in listener.feed(*frame)]
 
 
 def cut(recording: Recording, end: float) -> Recording:

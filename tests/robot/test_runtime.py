@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from app.recognition import RecognitionError, record, takes_in
+from app.recognition import RecognitionError, record
 from app.recognition.errors import LanguageError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.takes import TakeState
@@ -24,18 +23,16 @@ from app.robot import (
     SourceLost,
     SourceOpened,
     SourceRestored,
+    SourceWarned,
     SpokenLanguage,
     StateChanged,
-    TakeRecognized,
     open_source,
 )
 from app.robot.cameras import NetworkStream
 from app.robot.live_source import LiveSource
-from tests.conftest import ROOT
+from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.robot.languages import spoken
 from tests.robot.mjpeg_server import MjpegServer
-
-TABLE = ROOT / "languages" / "osg-table-2.json"
 
 
 @pytest.fixture(scope="module")
@@ -44,32 +41,37 @@ def estimator(installed_models: None) -> Iterator[PoseEstimator]:
         yield opened
 
 
-@pytest.mark.slow
-def test_a_clip_says_what_its_recording_says(estimator: PoseEstimator, sample_clips: Path) -> None:
-    clip = sample_clips / "line-test-1.mp4"
-    language = SpokenLanguage.load(TABLE)
-    times: list[float] = []
+def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=6)
+    looked_at: list[float] = []
     with closing(open_source(str(clip))) as source:
         runtime = Runtime(
             source,
             estimator,
-            Listener(language),
-            observer=lambda frame, found: times.append(frame.time),
+            Listener(spoken("circle")),
+            observer=lambda frame, found: looked_at.append(frame.time),
         )
         told = list(runtime)
-    recording = record(clip, estimator=estimator)
-    assert times == recording.poses.time.tolist()
-    (take,) = takes_in(recording)
-    (said,) = [event for event in told if isinstance(event, TakeRecognized)]
-    assert (said.start, said.end) == (take.start, take.end)
-    expected = language.recognizer.recognize(take.poses)
-    assert said.recognition.to_dict() == expected.to_dict()
-    opened, changed, *_, ended = told
-    assert opened == SourceOpened(0.0, str(clip), False, recording.poses.frame_size, None)
-    assert isinstance(changed, LanguageChanged)
-    assert changed.sha256 == said.sha256
-    assert ended == SourceEnded(times[-1], len(times), 0, False)
-    assert all(before.time <= after.time for before, after in pairwise(told))
+    assert looked_at == record(clip, estimator=estimator).poses.time.tolist()
+    assert told == [
+        SourceOpened(0.0, str(clip), False, (WIDTH, HEIGHT), None),
+        LanguageChanged(0.0, "pool", spoken("circle").sha256, 1, ("circle",)),
+        StateChanged(0.0, TakeState.idle),
+        SourceEnded(looked_at[-1], 6, 0, False),
+    ]
+
+
+def test_a_damaged_clip_is_looked_at_as_far_as_it_goes_and_told(
+    estimator: PoseEstimator, tmp_path: Path
+) -> None:
+    whole = write_clip(tmp_path / "whole.mkv", frames=50)
+    clip = cut_off(whole, 0.6)
+    with closing(open_source(str(clip))) as source:
+        *_, warned, ended = Runtime(source, estimator, Listener(spoken("circle")))
+    assert isinstance(warned, SourceWarned)
+    assert "the clip is" in warned.reason
+    assert isinstance(ended, SourceEnded)
+    assert 0 < ended.frames < 50
 
 
 def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator) -> None:

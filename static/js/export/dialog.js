@@ -7,7 +7,7 @@ import { state } from "../state.js";
 import { attempt, toast } from "../toasts.js";
 
 const FORMATS = {
-  "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio recognize dive.mp4 --language ${file}` },
+  "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio robot --language ${file} --source 0` },
   "osg-reference": { title: "Published OSG format", text: "For the published ROS node: images and salient keypoints only. Movement, thresholds and commands are left out.", command: (file) => `osg-studio convert ${file} language.json` },
 };
 

@@ -1,0 +1,55 @@
+"""A recording as a source: every frame, at the recording's own timestamps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from app.recognition.video import FrameSource
+from app.robot.source import Frame, Notice, Warned
+
+
+class RecordedSource:
+    """A video file or dive recording; a `Source` that is not live.
+
+    Parameters
+    ----------
+    name
+        For people.
+    frames
+        Its frames, open.
+    release
+        Closes what they are read from; may be called twice.
+
+    """
+
+    live = False
+
+    def __init__(self, name: str, frames: FrameSource, release: Callable[[], None]) -> None:
+        self.name = name
+        self._frames = frames
+        self._release = release
+
+    @property
+    def frame_size(self) -> tuple[int, int]:
+        """Width and height in pixels of every frame."""
+        return self._frames.info.width, self._frames.info.height
+
+    def __iter__(self) -> Iterator[Frame | Notice]:
+        """Give every frame, then what was wrong with the recording.
+
+        Raises
+        ------
+        VideoError
+            When it breaks a limit after all.
+
+        """
+        time = 0.0
+        for frame in self._frames:
+            time = frame.time
+            yield Frame(time, frame.image)
+        for warning in self._frames.warnings:
+            yield Warned(time, warning)
+
+    def close(self) -> None:
+        """Close the recording; it must not be iterated any more."""
+        self._release()

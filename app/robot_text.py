@@ -1,0 +1,59 @@
+"""A robot's events in words, for the person who watches its terminal."""
+
+from __future__ import annotations
+
+from app.robot import (
+    Event,
+    FramesDropped,
+    LanguageChanged,
+    LanguageRefused,
+    SourceLost,
+    SourceOpened,
+    SourceRestored,
+    SourceWarned,
+    TakeRecognized,
+    TakeRejected,
+)
+
+
+def sentence_of(event: Event) -> str:
+    """Return an event in words; empty for what a person sees anyway or need not know."""
+    if isinstance(event, TakeRecognized | TakeRejected):
+        return _about_take(event)
+    if isinstance(event, LanguageChanged | LanguageRefused):
+        return _about_language(event)
+    return _about_source(event)
+
+
+def _about_take(event: TakeRecognized | TakeRejected) -> str:
+    span = f"{event.start:.2f} - {event.end:.2f} s"
+    if isinstance(event, TakeRecognized):
+        return f"{span}: {event.label} ({event.confidence:.2f})"
+    return f"{span}: rejected, {event.reason}"
+
+
+def _about_language(event: LanguageChanged | LanguageRefused) -> str:
+    if isinstance(event, LanguageRefused):
+        return (
+            f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
+        )
+    return (
+        f"listening for {event.name!r}, revision {event.revision}, {event.sha256[:8]}: "
+        f"{', '.join(event.gestures)}"
+    )
+
+
+def _about_source(event: Event) -> str:
+    match event:
+        case SourceOpened(source=source, frame_size=(width, height)):
+            return f"watching {source}, {width} x {height} pixels"
+        case SourceWarned(reason=reason):
+            return reason
+        case SourceLost(reason=reason):
+            return f"source lost: {reason}; it is opened again and again"
+        case SourceRestored(missing=missing):
+            return f"source restored after {missing:.1f} s"
+        case FramesDropped(seconds=seconds, dropped=dropped, frames=frames):
+            return f"{dropped} of {dropped + frames} frames dropped in {seconds:.0f} s"
+        case _:
+            return ""

@@ -1,0 +1,121 @@
+"""Every event becomes one line of JSON that obeys the published schema."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any, get_args
+
+import jsonschema
+import pytest
+
+from app.recognition.takes import TakeState
+from app.robot import (
+    Event,
+    FramesDropped,
+    LanguageChanged,
+    LanguageRefused,
+    Listener,
+    SourceEnded,
+    SourceLost,
+    SourceOpened,
+    SourceRestored,
+    SourceWarned,
+    StateChanged,
+    TakeRecognized,
+    TakeRejected,
+)
+from app.robot.messages import (
+    MESSAGES,
+    SCHEMA_FILE,
+    generated_schema,
+    line_of,
+    message_of,
+    published_schema,
+)
+from tests.api.recordings import recording_of
+from tests.robot.languages import heard, spoken
+
+SCHEMA = json.loads(published_schema())
+SEAL = "0123456789abcdef" * 4
+
+
+def recognized(command: str | dict[str, Any] | None = None) -> TakeRecognized:
+    told = heard(Listener(spoken("circle", "line")), recording_of("line"))
+    (said,) = [event for event in told if isinstance(event, TakeRecognized)]
+    return replace(said, command=command)
+
+
+def rejected() -> TakeRejected:
+    told = heard(Listener(spoken("circle")), recording_of("line"))
+    (said,) = [event for event in told if isinstance(event, TakeRejected)]
+    return said
+
+
+EVENTS: list[Event] = [
+    SourceOpened(0.0, "reef", True, (640, 480), datetime(2026, 11, 21, 13, 0, tzinfo=UTC)),
+    SourceOpened(0.0, "dive.mp4", False, (640, 480), None),
+    SourceWarned(2.0, "the clip is damaged"),
+    SourceLost(2.0, "unplugged"),
+    SourceRestored(4.0, 2.0, 3),
+    SourceEnded(9.0, 120, 4, True),
+    FramesDropped(10.0, 10.0, 3, 200),
+    StateChanged(1.0, TakeState.recording),
+    LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲")),
+    LanguageRefused(5.0, "/format: not a language file", SEAL, 3),
+    recognized(),
+    recognized("Come here"),
+    recognized({"turn": 90}),
+    rejected(),
+    replace(rejected(), recognition=None),
+]
+
+
+def test_every_kind_of_event_is_tried() -> None:
+    assert {type(event) for event in EVENTS} == set(get_args(Event))
+
+
+@pytest.mark.parametrize("event", EVENTS, ids=lambda event: type(event).__name__)
+def test_a_line_obeys_the_schema_and_can_be_read_back(event: Event) -> None:
+    line = line_of(event)
+    assert line.isascii()
+    assert "\n" not in line
+    content = json.loads(line)
+    assert next(iter(content)) == "event"
+    jsonschema.Draft202012Validator(SCHEMA).validate(content)
+    assert MESSAGES.validate_json(line) == message_of(event)
+
+
+def test_a_recognition_tells_what_was_said_when_and_in_which_language() -> None:
+    said = recognized("Come here")
+    content = json.loads(line_of(said))
+    assert content.pop("margin") == said.recognition.margin
+    assert content == {
+        "event": "take_recognized",
+        "time": said.time,
+        "start": said.start,
+        "end": said.end,
+        "closed": True,
+        "label": "line",
+        "nearest": "line",
+        "confidence": said.confidence,
+        "command": "Come here",
+        "sha256": said.sha256,
+        "revision": 1,
+    }
+
+
+def test_a_margin_to_no_other_gesture_is_null() -> None:
+    assert json.loads(line_of(rejected()))["margin"] is None
+
+
+def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
+    assert published_schema() == generated_schema(), (
+        f"write generated_schema() to app/robot/schema/{SCHEMA_FILE}; a change that refuses lines "
+        "that were written before needs a new version"
+    )
+
+
+def test_the_schema_is_a_valid_one_of_2020_12() -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)

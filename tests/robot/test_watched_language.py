@@ -1,0 +1,88 @@
+"""A language file is read again when it was replaced, or when somebody asks."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from app.recognition import LanguageError, RecognitionError
+from app.robot import SpokenLanguage
+from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
+from tests.robot.languages import language_of, spoken
+
+PATIENCE = 20.0
+"""Seconds until a test gives up; what is awaited comes within two looks at the file."""
+
+
+def save(path: Path, *labels: str, revision: int = 1) -> SpokenLanguage:
+    language_of(*labels, revision=revision).save(path)
+    return spoken(*labels, revision=revision)
+
+
+def news(language: WatchedLanguage) -> SpokenLanguage | RecognitionError:
+    end = clock.monotonic() + PATIENCE
+    while clock.monotonic() < end:
+        if change := language.changes():
+            return change
+        clock.sleep(0.05)
+    raise AssertionError("nothing new was told")
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "pool.json"
+
+
+def test_the_first_language_has_the_seal_of_its_file(file: Path) -> None:
+    saved = save(file, "circle")
+    with WatchedLanguage(file) as language:
+        assert language.first.sha256 == saved.sha256
+        assert f'"sha256": "{saved.sha256}"' in file.read_text()
+        assert language.changes() is None
+
+
+def test_a_replaced_file_is_read_and_told_once(file: Path) -> None:
+    save(file, "circle")
+    with WatchedLanguage(file) as language:
+        saved = save(file, "circle", "line", revision=2)
+        change = news(language)
+        assert isinstance(change, SpokenLanguage)
+        assert (change.sha256, change.revision) == (saved.sha256, 2)
+        clock.sleep(3 * LOOK_EVERY)
+        assert language.changes() is None
+
+
+@pytest.mark.parametrize(
+    ("spoil", "reason"),
+    [
+        (lambda file: file.write_text('{"format": '), "not JSON"),
+        (lambda file: file.write_text("{}"), "/format"),
+        (lambda file: file.unlink(), "cannot read"),
+    ],
+    ids=["cut short", "another file", "gone"],
+)
+def test_a_broken_file_is_told_once_and_its_successor_is_spoken(
+    file: Path, spoil: Callable[[Path], object], reason: str
+) -> None:
+    save(file, "circle")
+    with WatchedLanguage(file) as language:
+        spoil(file)
+        refused = news(language)
+        assert isinstance(refused, LanguageError)
+        assert reason in str(refused)
+        save(file, "circle", "line", revision=2)
+        change = news(language)
+        assert isinstance(change, SpokenLanguage)
+        assert change.revision == 2
+
+
+def test_who_asks_is_answered_also_when_nothing_changed(file: Path) -> None:
+    saved = save(file, "circle")
+    with WatchedLanguage(file) as language:
+        language.reload()
+        change = news(language)
+    assert isinstance(change, SpokenLanguage)
+    assert change.sha256 == saved.sha256
