@@ -31,11 +31,14 @@ from app.clip_argument import (
     spotted_takes,
 )
 from app.evaluate_command import evaluate
+from app.phrase_command import phrase
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.proteus import SUFFIX as PROTEUS_SUFFIX
+from app.recognition.proteus import to_proteus
 from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.spotting import Spotter
@@ -60,13 +63,15 @@ command_line.add_typer(models_command, name="models")
 command_line.command()(evaluate)
 command_line.command()(check)
 command_line.command()(robot)
+command_line.command()(phrase)
 
 
 class FileFormat(StrEnum):
-    """The two language files that can be written."""
+    """The language files that can be written."""
 
     osg_studio = "osg-studio"
     osg_reference = "osg-reference"
+    proteus = "proteus"
 
 
 @command_line.callback(invoke_without_command=True)
@@ -226,15 +231,24 @@ def convert(
     source: Annotated[Path, typer.Argument(metavar="IN", help="Language file, ours or published.")],
     target: Annotated[Path, typer.Argument(metavar="OUT", help="File to write.")],
     file_format: Annotated[
-        FileFormat, typer.Option("--format", help="Format to write.")
-    ] = FileFormat.osg_studio,
+        FileFormat | None,
+        typer.Option(
+            "--format",
+            help="Format to write: proteus for OUT.ldf, otherwise osg-studio if left out.",
+        ),
+    ] = None,
 ) -> None:
-    """Convert between our language file and the published implementation's."""
+    """Convert between our language file and the published implementation's, or write PROTEUS's."""
     language = read_language(source)
+    if file_format is None:
+        proteus = target.suffix == PROTEUS_SUFFIX
+        file_format = FileFormat.proteus if proteus else FileFormat.osg_studio
     if any(gesture.trajectory is None for gesture in language.gestures):
         people.print(f"{source}: pictures only, no trajectories: the published format has none")
     if file_format is FileFormat.osg_reference:
         target.write_text(to_reference(language), encoding="utf-8")
+    elif file_format is FileFormat.proteus:
+        target.write_text(to_proteus(language), encoding="utf-8")
     else:
         language.save(target)
     people.print(f"{target}: {len(language.gestures)} gestures as {file_format.value}")

@@ -10,6 +10,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.recognition import Gesture, Language, find_takes
+from app.recognition.grammar import Grammar
+from app.recognition.phrase import Group, OneOf, Phrase, Slot, SlotType
 
 FOLDER = Path(__file__).resolve().parent
 CREATED = datetime(2026, 11, 21, tzinfo=UTC)
@@ -37,9 +39,67 @@ TABLE_2 = (
 )
 """Joshi and Sattar 2025, Table 2; its first three rows are Table 1."""
 
+PHRASES = Grammar(
+    start="circle",
+    end="circle",
+    cancel="line",
+    slot_types=(
+        SlotType("number", "number", {"three": 3}),
+        SlotType("how long", "text", {"infinity": "until told otherwise"}),
+    ),
+    phrases=(
+        Phrase(
+            "come here",
+            (OneOf(("sweep",)),),
+            command={"do": "come_here"},
+            says="come here",
+        ),
+        Phrase(
+            "go to the waypoint",
+            (OneOf(("triangle",)), Slot("waypoint", "number", least=0, default=1)),
+            command={"do": "go_to_waypoint", "waypoint": "{waypoint}"},
+            says="go to waypoint {waypoint}",
+        ),
+        Phrase(
+            "align",
+            (OneOf(("square",)), Slot("times", "number", least=0, default=1)),
+            command={"do": "align", "times": "{times}"},
+            says="align yourself[, {times} times]",
+        ),
+        Phrase(
+            "keep aligned",
+            (OneOf(("square",)), Slot("how_long", "how long")),
+            command={"do": "align", "until": "{how_long}"},
+            says="align yourself {how_long}",
+        ),
+        Phrase(
+            "survey",
+            (
+                OneOf(("wedge",)),
+                Slot("metres", "number"),
+                Group((OneOf(("square",)), Slot("turns", "number")), least=0),
+            ),
+            command={"do": "survey", "metres": "{metres}", "turns": "{turns}"},
+            says="survey {metres} metres ahead[, then turn {turns} times]",
+        ),
+    ),
+)
+"""What Table 2 leaves to the robot: readiness opens and closes a message, stop cancels it, and the
+number three counts."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One language that comes with the program."""
+
+    name: str
+    entries: tuple[Entry, ...]
+    grammar: Grammar | None = None
+
+
 LANGUAGES = {
-    "osg-table-1": ("Table 1: three signs", TABLE_2[:3]),
-    "osg-table-2": ("Table 2: eight signs", TABLE_2),
+    "osg-table-1": Sample("Table 1: three signs", TABLE_2[:3]),
+    "osg-table-2": Sample("Table 2: eight signs", TABLE_2, PHRASES),
 }
 
 
@@ -55,12 +115,13 @@ def gesture(entry: Entry) -> Gesture:
 def main() -> None:
     """Write every language beside this file."""
     gestures = {entry.label: gesture(entry) for entry in TABLE_2}
-    for stem, (name, entries) in LANGUAGES.items():
+    for stem, sample in LANGUAGES.items():
         language = Language(
-            name=name,
-            gestures=[gestures[entry.label] for entry in entries],
+            name=sample.name,
+            gestures=[gestures[entry.label] for entry in sample.entries],
             author="OSG Studio, after Joshi and Sattar 2025",
             created=CREATED,
+            grammar=sample.grammar,
         )
         language.calibrated().save(FOLDER / f"{stem}.json")
 

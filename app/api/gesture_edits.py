@@ -86,7 +86,9 @@ def with_change(
         changed = _with_salient(gesture, change.salient)
     switches = switched(changed.switches, change.direction, change.tempo, change.mirror)
     changed = replace(changed, switches=switches, **fields)
-    gestures = [changed if member is gesture else member for member in language.gestures]
+    if changed.label != gesture.label:
+        language = language.renamed(gesture.label, changed.label)  # and in its phrases
+    gestures = [changed if each.label == changed.label else each for each in language.gestures]
     return replace(language, gestures=gestures)
 
 

@@ -16,10 +16,10 @@ from app.api.gesture_edits import (
 )
 from app.api.language_drafts import editing
 from app.api.languages import ExpectedRevision, Revision, announced
-from app.api.problems import documented
+from app.api.problems import ProblemError, documented
 from app.api.schemas import GestureChange, GestureDraft, LanguageView
 from app.api.studio import CurrentStudio
-from app.recognition import Gesture, Language
+from app.recognition import Gesture, Language, LanguageError
 from app.recognition.png import encode_png
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
@@ -71,7 +71,7 @@ def change_gesture(
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
-@router.delete("/{label:path}", responses=documented(404, 412))
+@router.delete("/{label:path}", responses=documented(404, 409, 412))
 def remove_gesture(
     language_id: str,
     label: str,
@@ -79,10 +79,14 @@ def remove_gesture(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Take a gesture out; the revisions before still have it."""
+    """Take a gesture out that no phrase needs; the revisions before still have it."""
 
     def edited(language: Language) -> Language:
-        return language.without(gesture_in(language, label).label)
+        gesture_in(language, label)
+        try:
+            return language.without(label)
+        except LanguageError as error:
+            raise ProblemError(409, "gesture_needed", str(error)) from error
 
     edit = editing(f"Remove {label}", edited)
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)

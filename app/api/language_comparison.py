@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from app.recognition import Language
 from app.recognition.gesture import Gesture
+from app.recognition.grammar import Grammar
 
 Kind = Literal["added", "removed", "changed", "same"]
 
@@ -79,7 +80,28 @@ def language_words(older: Language, newer: Language) -> list[str]:
     shared = [label for label in newer.labels if label in older.labels]
     if shared != [label for label in older.labels if label in newer.labels]:
         words.append("the gestures are in another order")
-    return words
+    return words + _grammar_words(older.grammar, newer.grammar)
+
+
+def _grammar_words(older: Grammar | None, newer: Grammar | None) -> list[str]:
+    if older is None or newer is None:
+        if older is newer:
+            return []
+        return ["the phrases were taken out" if newer is None else "phrases were added"]
+    before = {phrase.name: phrase for phrase in older.phrases}
+    after = {phrase.name: phrase for phrase in newer.phrases}
+    words = [
+        *(f"the phrase {_quoted(name)} is new" for name in after.keys() - before.keys()),
+        *(f"the phrase {_quoted(name)} is gone" for name in before.keys() - after.keys()),
+        *(
+            f"the phrase {_quoted(name)} was changed"
+            for name in after.keys() & before.keys()
+            if after[name] != before[name]
+        ),
+    ]
+    if replace(older, phrases=()) != replace(newer, phrases=()):
+        words.append("what frames the phrases, or fills their slots, was changed")
+    return sorted(words)
 
 
 def _same_demonstration(gesture: Gesture, candidates: dict[str, Gesture]) -> str | None:

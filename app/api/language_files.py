@@ -18,6 +18,8 @@ from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.language_schema import FORMAT, VERSION
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.proteus import SUFFIX as PROTEUS_SUFFIX
+from app.recognition.proteus import to_proteus
 from app.recognition.requirements import requirements_of
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -30,6 +32,18 @@ class FileFormat(StrEnum):
     """Ours: everything."""
     OSG_REFERENCE = "osg-reference"
     """The published implementation's: images and salient keypoints only."""
+    PROTEUS = "proteus"
+    """A PROTEUS language definition file: names and kinds of the gestures only."""
+
+    @property
+    def media_type(self) -> str:
+        """What a file of the format is sent as."""
+        return "application/xml" if self is FileFormat.PROTEUS else "application/json"
+
+    @property
+    def suffix(self) -> str:
+        """How the name of a file of the format ends."""
+        return PROTEUS_SUFFIX if self is FileFormat.PROTEUS else ".json"
 
 
 @router.post(
@@ -59,7 +73,10 @@ async def import_language(
     response_class=Response,
     responses={
         **documented(404),
-        200: {"description": "The language file", "content": {"application/json": {}}},
+        200: {
+            "description": "The language file",
+            "content": {"application/json": {}, "application/xml": {}},
+        },
     },
 )
 def export_language(
@@ -73,12 +90,17 @@ def export_language(
     document = state.revision.document
     if format is FileFormat.OSG_REFERENCE:
         document = to_reference(studio.language(state))
-    name = quote(f"{state.revision.name}.json", safe="")
+    elif format is FileFormat.PROTEUS:
+        document = to_proteus(studio.language(state))
+    plain, name = (
+        f"language{format.suffix}",
+        quote(f"{state.revision.name}{format.suffix}", safe=""),
+    )
     headers = {
-        "Content-Disposition": f"attachment; filename=\"language.json\"; filename*=utf-8''{name}",
+        "Content-Disposition": f"attachment; filename=\"{plain}\"; filename*=utf-8''{name}",
         "ETag": tag_of(state),
     }
-    return Response(document, media_type="application/json", headers=headers)
+    return Response(document, media_type=format.media_type, headers=headers)
 
 
 class ExportedFile(BaseModel):
@@ -115,6 +137,7 @@ def describe_export(
     documents = {
         FileFormat.OSG_STUDIO: state.revision.document,
         FileFormat.OSG_REFERENCE: to_reference(language),
+        FileFormat.PROTEUS: to_proteus(language),
     }
     return ExportView(
         name=language.name,

@@ -24,6 +24,7 @@ from app.api.schemas import (
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
+from app.recognition.grammar_entry import grammar_entry_of, grammar_of
 from app.store import LanguageState, LanguageStore
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)
@@ -82,11 +83,17 @@ def change_language(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Rename a language or its author."""
-    fields = change.model_dump(exclude_none=True)
+    """Rename a language or its author, or say which sequences of its gestures are phrases."""
+    fields = change.model_dump(exclude={"grammar"}, exclude_none=True)
+    if "grammar" in change.model_fields_set:
+        fields["grammar"] = None if change.grammar is None else grammar_of(change.grammar)
     if not fields:
         return answered(studio, studio.languages.get(language_id), response)
-    words = {"name": f"Rename to {change.name}", "author": f"Name {change.author} as author"}
+    words = {
+        "name": f"Rename to {change.name}",
+        "author": f"Name {change.author} as author",
+        "grammar": "Change the phrases",
+    }
     told = ", ".join(words[field] for field in fields)
     edit = editing(told, lambda language: replace(language, **fields))
     return announced(studio, studio.languages.edit(language_id, edit, expected), response)
@@ -135,6 +142,7 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
     return LanguageView(
         **_summary_of(state).model_dump(),
         gestures=[gesture_view(state, gesture) for gesture in language.gestures],
+        grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
     )
 
 

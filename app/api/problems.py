@@ -24,6 +24,8 @@ from app.recognition.errors import (
     TopicError,
     VideoError,
 )
+from app.recognition.language_file import document_steps
+from app.recognition.strict_json import pointer_to
 from app.store import Conflict, NotFound, StoreError
 
 MEDIA_TYPE = "application/problem+json"
@@ -226,5 +228,4 @@ def _fault(item: Mapping[str, Any]) -> Fault:
         return Fault(pointer="", detail=item["msg"], parameter=name)
     if item["type"] == "json_invalid":
         return Fault(pointer="", detail=f"not JSON: {item['ctx']['error']}")
-    pointer = "".join(f"/{str(step).replace('~', '~0').replace('/', '~1')}" for step in steps)
-    return Fault(pointer=pointer, detail=item["msg"])
+    return Fault(pointer=pointer_to(*document_steps(tuple(steps))), detail=item["msg"])

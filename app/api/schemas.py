@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.extraction.messages import Pose
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.grammar_schema import GrammarEntry
 from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
 from app.store import JobStatus
 
@@ -114,10 +115,11 @@ class LanguageDraft(Body):
 
 
 class LanguageChange(Body):
-    """What to change about a language."""
+    """What to change about a language; what is left out stays."""
 
     name: Name | None = None
     author: Author | None = None
+    grammar: GrammarEntry | None = Field(default=None, description="The phrases; null: none")
 
 
 class LanguageRevert(Body):
@@ -200,6 +202,7 @@ class LanguageView(LanguageSummary):
     """A language with its gestures."""
 
     gestures: list[GestureView]
+    grammar: GrammarEntry | None = Field(description="Null: gestures stand for themselves")
 
 
 class RevisionView(BaseModel):

@@ -42,9 +42,9 @@ class Finding:
     code
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``empty``.
+        ``empty``, and of the grammar ``phrases_`` with one of `ambiguity.AmbiguityKind`.
     gestures
-        Labels of the gestures it is about.
+        Labels of the gestures it is about; none where it is about phrases.
     message
         What is wrong and why that matters, in one sentence or two.
     below_bar

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from app.recognition.alarm import Alarm, alarms
+from app.recognition.ambiguity import find_ambiguities
 from app.recognition.contrast import Contrast, contrast
 from app.recognition.finding import Finding, demonstration_findings, visible_share
 from app.recognition.forecast import Forecast
@@ -115,6 +116,8 @@ def check_health(
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
+    if language.grammar is not None:
+        findings += [each.finding() for each in find_ambiguities(language.grammar)]
     return HealthReport(
         language=language.name,
         revision=language.revision,

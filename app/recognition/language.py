@@ -14,6 +14,8 @@ from app.recognition.calibration import RULE, calibrated
 from app.recognition.errors import LanguageError
 from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
+from app.recognition.grammar import Grammar
+from app.recognition.grammar_entry import grammar_entry_of, grammar_of
 from app.recognition.landmarks import SKELETON
 from app.recognition.language_file import read_content, read_document, write_document
 from app.recognition.language_schema import (
@@ -22,6 +24,7 @@ from app.recognition.language_schema import (
     VERSION,
     LanguageDocument,
 )
+from app.recognition.placeholders import listed
 from app.recognition.strict_json import pointer_to
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
@@ -54,6 +57,8 @@ class Language:
         Pairs of landmarks joined by a bone, for drawing.
     thresholds_for
         The `fingerprint` of the gestures that the thresholds were made for; empty: for none.
+    grammar
+        Its phrases; None where every gesture stands for itself.
 
     Raises
     ------
@@ -69,6 +74,7 @@ class Language:
     revision: int = 1
     skeleton: tuple[tuple[str, str], ...] = SKELETON
     thresholds_for: str = ""
+    grammar: Grammar | None = None
 
     def __post_init__(self) -> None:
         """Validate, and bring the fields to their kept form."""
@@ -91,6 +97,8 @@ class Language:
                     pointer_to("gestures", index, "label"),
                 )
             labels.add(gesture.label)
+        if self.grammar is not None:
+            self.grammar.require(labels)
         object.__setattr__(self, "created", _utc_second(self.created))
 
     @property
@@ -153,12 +161,32 @@ class Language:
         Raises
         ------
         LanguageError
-            When there is none.
+            When there is none, or a phrase needs it.
 
         """
         unwanted = self.gesture(label)
+        if self.grammar is not None and (users := self.grammar.users_of(label)):
+            raise LanguageError(
+                f"{label!r} cannot be taken out, it is needed by {listed(users)}: change the "
+                "phrases first",
+                "/grammar",
+            )
         kept = tuple(gesture for gesture in self.gestures if gesture is not unwanted)
         return replace(self, gestures=kept, revision=self.revision + 1)
+
+    def renamed(self, label: str, new: str) -> Language:
+        """Return the same revision with another label for a gesture, also in its phrases.
+
+        Raises
+        ------
+        LanguageError
+            When there is no such gesture, or another one has the new label.
+
+        """
+        gesture = replace(self.gesture(label), label=new)
+        gestures = [gesture if each.label == label else each for each in self.gestures]
+        grammar = self.grammar and self.grammar.renamed(label, gesture.label)
+        return replace(self, gestures=gestures, grammar=grammar)
 
     def to_json(self) -> str:
         """Write the language file's text; the same language gives the same text."""
@@ -173,6 +201,7 @@ class Language:
             skeleton=[list(bone) for bone in self.skeleton],
             settings=dict(SETTINGS),
             thresholds_for=self.thresholds_for,
+            grammar=None if self.grammar is None else grammar_entry_of(self.grammar),
             gestures=[entry_of(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -202,6 +231,7 @@ class Language:
             revision=document.revision,
             skeleton=tuple((start, end) for start, end in document.skeleton),
             thresholds_for=document.thresholds_for,
+            grammar=None if document.grammar is None else grammar_of(document.grammar),
         )
 
     def save(self, path: str | Path) -> None:

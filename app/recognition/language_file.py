@@ -26,9 +26,12 @@ from app.recognition.strict_json import (
     read_json,
 )
 
+_LISTED = frozenset({"gestures", "phrases", "slot_types"})
+"""Keys whose entries take a line each."""
+
 
 def write_document(document: LanguageDocument) -> str:
-    """Write a document and its seal, one line a key and one line a gesture.
+    """Write a document and its seal, one line a key, a gesture and a phrase.
 
     Lines keep differences between revisions readable in version control.
     """
@@ -113,14 +116,20 @@ def _check_kind(read: Any) -> None:
 
 def _faults(error: ValidationError) -> list[Fault]:
     return [
-        Fault(pointer_to(*_steps(fault["loc"])), fault["msg"])
+        Fault(pointer_to(*document_steps(fault["loc"])), fault["msg"])
         for fault in error.errors(include_url=False, include_context=False, include_input=False)
     ]
 
 
-def _steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """Drop what pydantic adds for the branches of a union: it is not in the document."""
-    branches = {"constrained-str", "str", "int", "float", "dict[str,any]", "constrained-float"}
+def document_steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Return where in a document pydantic found a fault.
+
+    What it adds for the branches of a union is not in the document.
+    """
+    branches = {
+        *("constrained-str", "str", "int", "float", "dict[str,any]", "constrained-float"),
+        *("gestures-part", "slot-part", "group-part"),
+    }
     return tuple(step for step in location if step not in branches)
 
 
@@ -134,8 +143,11 @@ def _language_error(faults: list[Fault]) -> LanguageError:
 
 
 def _value(key: str, value: Any) -> str:
-    if key == "gestures" and value:
-        return "[\n" + ",\n".join(_compact(gesture) for gesture in value) + "\n]"
+    if key in _LISTED and value:
+        return "[\n" + ",\n".join(_compact(entry) for entry in value) + "\n]"
+    if key == "grammar":
+        members = (f"{_compact(name)}: {_value(name, each)}" for name, each in value.items())
+        return "{\n" + ",\n".join(members) + "\n}"
     return _compact(value)
 
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.grammar_schema import GrammarEntry
 from app.recognition.switches import Switch
 
 FORMAT: Final = "osg-studio/gesture-language"
@@ -180,6 +181,10 @@ class LanguageDocument(_Model):
             "is not theirs, recognition makes them anew. Left out when there are none.",
         ),
     ] = ""
+    grammar: Annotated[
+        GrammarEntry | None,
+        Field(description="The phrases. Left out when gestures stand for themselves."),
+    ] = None
     gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
     sha256: Annotated[
         str | None,

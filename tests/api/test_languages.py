@@ -105,4 +105,4 @@ def test_an_export_is_described_before_it_is_taken_away(
     for file in contents["files"]:
         sent = client.get(f"{LANGUAGES}/{language_id}/export", params={"format": file["format"]})
         assert len(sent.content) == file["bytes"]
-    assert [file["complete"] for file in contents["files"]] == [True, False]
+    assert [file["complete"] for file in contents["files"]] == [True, False, False]

@@ -1,0 +1,115 @@
+"""The phrases of a language: what is ambiguous about them, and what gestures in a row mean."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import lru_cache
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query
+from pydantic import BaseModel, Field
+
+from app.api.languages import Revision
+from app.api.problems import documented
+from app.api.studio import CurrentStudio
+from app.recognition import Language
+from app.recognition.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
+from app.recognition.gesture import MAX_LABEL_LENGTH
+from app.recognition.grammar import Grammar
+from app.recognition.phrase_parser import PhraseEvent, PhraseEventKind, PhraseParser
+
+CACHED_GRAMMARS = 64
+"""Revisions whose ambiguities are kept ready: a few sentences each."""
+
+MOST_SHOWN = 100
+"""Gestures of one simulation: longer than any message may be."""
+
+Shown = Annotated[
+    list[Annotated[str, Field(max_length=MAX_LABEL_LENGTH)]],
+    Query(max_length=MOST_SHOWN, description="Labels in order; an empty one was not recognised"),
+]
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+class AmbiguityView(BaseModel):
+    """Something that the robot could understand in two ways."""
+
+    kind: AmbiguityKind
+    phrases: list[str]
+    gestures: list[str] = Field(description="The message that shows it")
+    message: str
+
+
+class MeaningView(BaseModel):
+    """One phrase of a message."""
+
+    phrase: str
+    slots: dict[str, Any]
+    command: str | dict[str, Any] | None
+    spoken: str
+
+
+class PhraseEventView(BaseModel):
+    """What came of one gesture."""
+
+    kind: PhraseEventKind
+    gestures: list[str] = Field(description="Of the message so far")
+    label: str | None = Field(description="Null when it was not recognised, and for a pause")
+    expected: list[str] = Field(description="What may come next")
+    mission: list[MeaningView] | None = Field(description="What to do; only when complete")
+    text: str = Field(description="In words, for the diver")
+    start: float
+    end: float
+
+
+class PhrasesView(BaseModel):
+    """A language's phrases, checked and tried."""
+
+    revision: int
+    ambiguities: list[AmbiguityView]
+    examples: dict[str, list[str]] = Field(description="Per phrase a message with all its parts")
+    events: list[PhraseEventView] = Field(description="What came of the gestures shown")
+    expected: list[str] = Field(description="What may come after them")
+    may_end: bool = Field(description="Whether a pause now would end the message, not drop it")
+
+
+@router.get("/{language_id}/phrases", responses=documented(404))
+def describe_phrases(
+    language_id: str,
+    studio: CurrentStudio,
+    revision: Revision = None,
+    gesture: Shown = [],  # noqa: B006  FastAPI copies it
+    then: Literal["wait", "pause"] = "wait",
+) -> PhrasesView:
+    """Tell what is ambiguous about the phrases, and what the gestures given would mean.
+
+    They are taken to be shown without a pause; `then` says whether a pause longer than the
+    grammar's time-out follows.
+    """
+    state = studio.languages.get(language_id, revision)
+    grammar = studio.language(state).grammar or Grammar()
+    parser = PhraseParser(grammar)
+    events = [event for label in gesture for event in parser.feed(label or None, 0.0, 0.0)]
+    if then == "pause":
+        events += parser.expire(2 * grammar.timeout)
+    return PhrasesView(
+        revision=state.revision.revision,
+        ambiguities=[
+            AmbiguityView(**asdict(each)) for each in _ambiguities(state.revision.document)
+        ],
+        examples={each.name: list(grammar.example(each)) for each in grammar.phrases},
+        events=[_view(event) for event in events],
+        expected=list(parser.expected),
+        may_end=parser.may_end,
+    )
+
+
+def _view(event: PhraseEvent) -> PhraseEventView:
+    return PhraseEventView.model_validate(event.to_dict())
+
+
+@lru_cache(CACHED_GRAMMARS)
+def _ambiguities(document: str) -> tuple[Ambiguity, ...]:
+    grammar = Language.from_json(document).grammar
+    return () if grammar is None else find_ambiguities(grammar)

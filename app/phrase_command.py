@@ -1,0 +1,72 @@
+"""The command ``osg-studio phrase``: what a sequence of gestures means, before the dive."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.recognition import Language, LanguageError
+from app.recognition.grammar import Grammar
+from app.recognition.phrase_parser import PhraseEvent, PhraseParser
+from app.terminal import people
+
+NOT_COMPLETE = 1
+"""Exit code when the gestures give the robot nothing to do."""
+
+
+def phrase(
+    file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file with phrases.")],
+    gestures: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[LABEL]...", help="As shown, one after the other."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object for each event.")
+    ] = False,
+) -> None:
+    """Tell what a sequence of gestures means; without gestures, how each phrase is shown.
+
+    The exit code is 1 when the gestures are no complete message.
+    """
+    language = Language.load(file)
+    if language.grammar is None or not language.grammar.phrases:
+        raise LanguageError(
+            f"{file} has no phrases: make some in the studio under Phrases", "/grammar"
+        )
+    if not gestures:
+        _list_phrases(language.grammar, as_json=as_json)
+        return
+    for label in gestures:
+        language.gesture(label)  # a mistyped label is told before anything is made of it
+    events = simulated(language.grammar, gestures)
+    for event in events:
+        if as_json:
+            typer.echo(json.dumps(event.to_dict(), allow_nan=False))
+        elif event.mission is None:
+            people.print(event.text, markup=False)
+        else:
+            typer.echo(event.mission.spoken)
+    if not any(event.mission for event in events):
+        raise typer.Exit(NOT_COMPLETE)
+
+
+def simulated(grammar: Grammar, gestures: list[str]) -> list[PhraseEvent]:
+    """Show gestures without any pause, and then none any more.
+
+    Stamps count the gestures, as if each took no time.
+    """
+    parser = PhraseParser(grammar)
+    events = [event for label in gestures for event in parser.feed(label, 0.0, 0.0)]
+    return [*events, *parser.expire(2 * grammar.timeout)]
+
+
+def _list_phrases(grammar: Grammar, *, as_json: bool) -> None:
+    for each in grammar.phrases:
+        shown = grammar.example(each)
+        if as_json:
+            typer.echo(json.dumps({"phrase": each.name, "example": list(shown)}))
+        else:
+            typer.echo(f"{each.name}: {' '.join(shown)}")

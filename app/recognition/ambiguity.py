@@ -1,0 +1,269 @@
+"""Ambiguities of a grammar, each with the shortest message that shows it.
+
+They are found exactly: two walks over the automaton read the same gestures side by side, and what
+one of them has said beyond the other is carried along (Weber and Klemm 1995 do the same to tell
+whether a transducer is a function). Without an ambiguity here, every message has one meaning.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from app.recognition.finding import Finding
+from app.recognition.grammar import Grammar
+from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.placeholders import listed
+
+AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
+
+
+@dataclass(frozen=True)
+class Ambiguity:
+    """Something that the robot could understand in two ways.
+
+    Attributes
+    ----------
+    kind
+        ``same_sequence``: two phrases are shown alike. ``overlap``: a gesture of one phrase may be
+        a slot's value or something else. ``run_together``: where one phrase of a message ends and
+        the next begins cannot be told. ``prefix``: a message is over, and might go on.
+        ``unreachable``: every sequence of a phrase is ambiguous, so that it is never understood.
+    phrases
+        Names of the phrases it is about, each once.
+    gestures
+        The message that shows it.
+    message
+        What is wrong and what to do, in a sentence.
+
+    """
+
+    kind: AmbiguityKind
+    phrases: tuple[str, ...]
+    gestures: tuple[str, ...]
+    message: str
+
+    def finding(self) -> Finding:
+        """Return it as a warning of the health report."""
+        return Finding(f"phrases_{self.kind}", (), self.message, below_bar=True)
+
+
+class _Lead(NamedTuple):
+    """What each of two walks has said that the other has not, of which one at least is nothing."""
+
+    one: Reading
+    other: Reading
+
+
+_DIFFERENT = None
+"""In the place of a lead: the walks have said different things, whatever comes."""
+
+_Pair = tuple[int, int, _Lead | None]
+"""Two positions reached by the same gestures, and how their readings differ."""
+
+_Walk = tuple[int, frozenset[tuple[int, _Lead | None]]]
+"""A position, and every other way to read the gestures that led there."""
+
+
+def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
+    """Find what is ambiguous about a grammar, with one message for each pair of phrases."""
+    single = PhraseAutomaton(grammar, most_phrases=1)
+    search = _PairSearch(single)
+    double = [_of_two_readings(single, *found) for found in search.two_readings()]
+    found = [*double, *(_prefix(single, *each) for each in search.prefixes())]
+    if not found and _may_run_together(grammar):
+        whole = PhraseAutomaton(grammar)
+        search = _PairSearch(whole)
+        found += [_run_together(whole, *each) for each in search.two_readings()][:1]
+        found += [_prefix(whole, *each) for each in search.prefixes()][:1]
+    suspects = {name for each in double for name in each.phrases}
+    for index, phrase in enumerate(grammar.phrases):
+        if phrase.name in suspects and _is_unreachable(single, index):
+            found.append(_unreachable(grammar, index))
+    return tuple(found)
+
+
+def _may_run_together(grammar: Grammar) -> bool:
+    """Tell whether several phrases can be more ambiguous than one.
+
+    They cannot where the start gesture divides them and neither it nor the end gesture occurs in a
+    phrase: then a message falls into its phrases in one way only.
+    """
+    if grammar.most_phrases == 1:
+        return False
+    if grammar.start is None or grammar.start == grammar.end:
+        return True
+    inside = {use.label for use in grammar.uses() if use.phrase or "slot type" in use.where}
+    return bool(inside & {grammar.start, grammar.end})
+
+
+class _PairSearch:
+    """Walks through all pairs of positions that the same gestures lead to, the shortest first."""
+
+    def __init__(self, automaton: PhraseAutomaton) -> None:
+        self._automaton = automaton
+        self._came_from: dict[_Pair, tuple[_Pair, str] | None] = {}
+        self._visited: list[_Pair] = []
+        self._explore()
+
+    def two_readings(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
+        """Give messages with two readings: the gestures, and at which positions they end."""
+        told: set[frozenset[int | None]] = set()
+        accepting, positions = self._automaton.accepting, self._automaton.positions
+        for pair in self._visited:
+            one, other, lead = pair
+            if not {one, other} <= accepting or lead == _Lead((), ()):
+                continue
+            phrases = frozenset({positions[one].phrase, positions[other].phrase})
+            if phrases not in told:
+                told.add(phrases)
+                yield self._gestures(pair), one, other
+
+    def prefixes(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
+        """Give messages that are over at one position and go on at another."""
+        told: set[tuple[int | None, int | None]] = set()
+        positions = self._automaton.positions
+        for pair in self._visited:
+            for over, goes_on in (pair[:2], pair[1::-1]):
+                if over not in self._automaton.accepting or not self._automaton.following(goes_on):
+                    continue
+                phrases = (positions[over].phrase, positions[goes_on].phrase)
+                if phrases not in told:
+                    told.add(phrases)
+                    yield self._gestures(pair), over, goes_on
+
+    def _explore(self) -> None:
+        start: _Pair = (BEFORE, BEFORE, _Lead((), ()))
+        self._came_from[start] = None
+        waiting = deque([start])
+        while waiting:
+            pair = waiting.popleft()
+            self._visited.append(pair)
+            for label, following in self._following(pair):
+                if following not in self._came_from:
+                    self._came_from[following] = (pair, label)
+                    waiting.append(following)
+
+    def _following(self, pair: _Pair) -> Iterator[tuple[str, _Pair]]:
+        one, other, lead = pair
+        theirs = self._automaton.moves(other)
+        for label, mine in self._automaton.moves(one).items():
+            for target, said in mine:
+                for their_target, their_said in theirs.get(label, ()):
+                    yield label, (target, their_target, _compared(lead, said, their_said))
+
+    def _gestures(self, pair: _Pair) -> tuple[str, ...]:
+        gestures = []
+        step = self._came_from[pair]
+        while step is not None:
+            pair, label = step
+            gestures.append(label)
+            step = self._came_from[pair]
+        return tuple(reversed(gestures))
+
+
+def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead | None:
+    """Return how two readings differ after one more gesture."""
+    if lead is _DIFFERENT:
+        return _DIFFERENT
+    one, other = lead.one + said, lead.other + their_said
+    common = min(len(one), len(other))
+    if one[:common] != other[:common]:
+        return _DIFFERENT
+    return _Lead(one[common:], other[common:])
+
+
+def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
+    """Tell whether every sequence of a phrase has a second reading.
+
+    Walks through the sequences of the phrase with all that could be read otherwise beside it.
+    """
+    begin: _Walk = (BEFORE, frozenset({(BEFORE, _Lead((), ()))}))
+    waiting, known = deque([begin]), {begin}
+    while waiting:
+        position, others = waiting.popleft()
+        if position in automaton.accepting and not any(
+            other in automaton.accepting and lead != _Lead((), ()) for other, lead in others
+        ):
+            return False
+        for label, moves in automaton.moves(position).items():
+            for target, said in moves:
+                if automaton.positions[target].phrase not in (None, phrase):
+                    continue
+                beside = frozenset(
+                    (their_target, _compared(lead, said, their_said))
+                    for other, lead in others
+                    for their_target, their_said in automaton.moves(other).get(label, ())
+                )
+                following: _Walk = (target, beside)
+                if following not in known:
+                    known.add(following)
+                    waiting.append(following)
+    return True
+
+
+def _of_two_readings(
+    automaton: PhraseAutomaton, gestures: tuple[str, ...], one: int, other: int
+) -> Ambiguity:
+    names = _names(automaton, one, other)
+    shown = ", ".join(gestures)
+    if len(names) == 1:
+        return Ambiguity(
+            "overlap",
+            names,
+            gestures,
+            f"the phrase {names[0]!r} reads {shown} in two ways: a gesture may fill a slot or be "
+            "something else; give the slot other gestures, or put a gesture of its own between",
+        )
+    return Ambiguity(
+        "same_sequence",
+        names,
+        gestures,
+        f"the phrases {names[0]!r} and {names[1]!r} are both shown as {shown}: neither is obeyed; "
+        "let them differ in a gesture",
+    )
+
+
+def _run_together(
+    automaton: PhraseAutomaton, gestures: tuple[str, ...], one: int, other: int
+) -> Ambiguity:
+    return Ambiguity(
+        "run_together",
+        _names(automaton, one, other),
+        gestures,
+        f"{', '.join(gestures)} falls into phrases in two ways: choose a start and an end gesture "
+        "that no phrase uses",
+    )
+
+
+def _prefix(
+    automaton: PhraseAutomaton, gestures: tuple[str, ...], over: int, goes_on: int
+) -> Ambiguity:
+    next_labels = sorted(automaton.moves(goes_on))
+    return Ambiguity(
+        "prefix",
+        _names(automaton, over, goes_on),
+        gestures,
+        f"after {', '.join(gestures)} the message is over, and it might go on with "
+        f"{listed(next_labels, last='or')}: the robot waits {automaton.grammar.timeout:g} s, and "
+        "what it does depends on how fast the diver is; choose an end gesture that no phrase uses",
+    )
+
+
+def _unreachable(grammar: Grammar, index: int) -> Ambiguity:
+    phrase = grammar.phrases[index]
+    return Ambiguity(
+        "unreachable",
+        (phrase.name,),
+        grammar.example(phrase),
+        f"the phrase {phrase.name!r} is never understood: whatever way it is shown, it also means "
+        "something else",
+    )
+
+
+def _names(automaton: PhraseAutomaton, *positions: int) -> tuple[str, ...]:
+    phrases = automaton.grammar.phrases
+    indices = [automaton.positions[position].phrase for position in positions]
+    return tuple(dict.fromkeys(phrases[index].name for index in indices if index is not None))

@@ -1,0 +1,187 @@
+"""A grammar: which sequences of gestures are phrases, and what each tells the robot.
+
+Modelled on CADDIAN (Chiarella et al. 2015, 2018): a message is opened and closed by a gesture of
+its own, and a phrase has slots for quantities. Every repetition is bounded, so the sequences are
+finitely many and what is ambiguous can be found exactly, see `ambiguity`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from app.recognition.errors import LanguageError
+from app.recognition.grammar_rules import check_grammar
+from app.recognition.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
+from app.recognition.strict_json import pointer_to
+
+DEFAULT_TIMEOUT = 10.0
+"""Seconds: as long as attention stays with a dialogue that does not answer (Nielsen 1993)."""
+
+FRAME = ("start", "end", "cancel")
+"""The gestures around a message, by their roles."""
+
+
+@dataclass(frozen=True)
+class Use:
+    """Where a grammar names a gesture.
+
+    Attributes
+    ----------
+    label
+        The gesture's.
+    pointer
+        JSON pointer into the language file.
+    where
+        The same in words.
+    phrase
+        Name of the phrase, None outside phrases.
+
+    """
+
+    label: str
+    pointer: str
+    where: str
+    phrase: str | None = None
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """All phrases of a language, and what frames them.
+
+    Attributes
+    ----------
+    phrases
+        In the author's order.
+    slot_types
+        What slots may be filled with.
+    start, end
+        Labels of the gestures that open and close a message; None: none is needed.
+    cancel
+        Label of the gesture that drops what was begun.
+    timeout
+        Most seconds between the end of a gesture and the start of the next one of a message.
+    most_phrases
+        Phrases in one message, one after the other, each opened by `start`.
+
+    Raises
+    ------
+    LanguageError
+        When it contradicts itself; the pointer is that of the language file.
+
+    """
+
+    phrases: tuple[Phrase, ...] = ()
+    slot_types: tuple[SlotType, ...] = ()
+    start: str | None = None
+    end: str | None = None
+    cancel: str | None = None
+    timeout: float = DEFAULT_TIMEOUT
+    most_phrases: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse what contradicts itself."""
+        check_grammar(self)
+
+    def slot_type(self, name: str) -> SlotType:
+        """Return the slot type of that name, which must exist."""
+        return next(each for each in self.slot_types if each.name == name)
+
+    def uses(self) -> Iterator[Use]:
+        """Give every place that names a gesture, in the file's order."""
+        for role in FRAME:
+            label = getattr(self, role)
+            if label is not None:
+                yield Use(label, pointer_to("grammar", role), f"the {role} gesture")
+        for index, slot_type in enumerate(self.slot_types):
+            for number, label in enumerate(slot_type.values):
+                pointer = pointer_to("grammar", "slot_types", index, "values", number, "gesture")
+                yield Use(label, pointer, f"the slot type {slot_type.name!r}")
+        for index, phrase in enumerate(self.phrases):
+            place = pointer_to("grammar", "phrases", index, "parts")
+            for pointer, label in _labels_in(phrase.parts, place):
+                yield Use(label, pointer, f"the phrase {phrase.name!r}", phrase.name)
+
+    def require(self, labels: Collection[str]) -> None:
+        """Refuse a language that lacks a gesture of the grammar.
+
+        Raises
+        ------
+        LanguageError
+            Its pointer is that of the language file.
+
+        """
+        for use in self.uses():
+            if use.label not in labels:
+                raise LanguageError(
+                    f"{use.where} needs a gesture {use.label!r}, which the language does not "
+                    f"have; it has {', '.join(sorted(labels)) or 'none'}",
+                    use.pointer,
+                )
+
+    def users_of(self, label: str) -> tuple[str, ...]:
+        """Name the phrases and other places that need a gesture, each once.
+
+        A phrase with a slot needs the gestures of the slot's type as well.
+        """
+        named = {use.where: None for use in self.uses() if use.label == label}
+        filled = {each.name for each in self.slot_types if label in each.values}
+        for phrase in self.phrases:
+            if any(slot.slot_type in filled for slot, _ in phrase.slots()):
+                named[f"the phrase {phrase.name!r}"] = None
+        return tuple(named)
+
+    def renamed(self, before: str, after: str) -> Grammar:
+        """Return the grammar in which a gesture has another label."""
+
+        def name(label: str) -> str:
+            return after if label == before else label
+
+        def part(each: Part) -> Part:
+            if isinstance(each, OneOf):
+                return replace(each, gestures=tuple(map(name, each.gestures)))
+            if isinstance(each, Group):
+                members = [part(member) for member in each.parts]
+                return replace(each, parts=tuple(m for m in members if not isinstance(m, Group)))
+            return each
+
+        def slot_type(each: SlotType) -> SlotType:
+            return replace(each, values={name(label): v for label, v in each.values.items()})
+
+        def phrase(each: Phrase) -> Phrase:
+            return replace(each, parts=tuple(map(part, each.parts)))
+
+        return replace(
+            self,
+            start=self.start and name(self.start),
+            end=self.end and name(self.end),
+            cancel=self.cancel and name(self.cancel),
+            slot_types=tuple(map(slot_type, self.slot_types)),
+            phrases=tuple(map(phrase, self.phrases)),
+        )
+
+    def example(self, phrase: Phrase) -> tuple[str, ...]:
+        """Return a message of one phrase in which every part is shown."""
+        opening = () if self.start is None else (self.start,)
+        closing = () if self.end is None else (self.end,)
+        return (*opening, *self._example_of(phrase.parts), *closing)
+
+    def _example_of(self, parts: Sequence[Part]) -> Iterator[str]:
+        for part in parts:
+            for _ in range(max(part.least, 1)):
+                if isinstance(part, Group):
+                    yield from self._example_of(part.parts)
+                elif isinstance(part, Slot):
+                    yield next(iter(self.slot_type(part.slot_type).values))
+                else:
+                    yield part.gestures[0]
+
+
+def _labels_in(parts: Sequence[Part], place: str) -> Iterator[tuple[str, str]]:
+    for index, part in enumerate(parts):
+        at = place + pointer_to(index)
+        if isinstance(part, OneOf):
+            for number, label in enumerate(part.gestures):
+                yield at + pointer_to("gestures", number), label
+        elif isinstance(part, Group):
+            yield from _labels_in(part.parts, at + "/parts")

@@ -1,0 +1,252 @@
+"""What a grammar must obey beyond the shape of its entries, each fault with its JSON pointer."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from app.recognition.errors import GestureError, LanguageError
+from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, checked_command
+from app.recognition.phrase import MAX_REPEAT, Group, OneOf, Part, Phrase, Slot, SlotType, Value
+from app.recognition.placeholders import placeholders_in, template_fault
+from app.recognition.strict_json import pointer_to
+
+if TYPE_CHECKING:
+    from app.recognition.grammar import Grammar
+
+MAX_PHRASES = 100
+"""Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
+
+MAX_PHRASES_IN_MESSAGE = 8
+"""CADDIAN's missions have up to eleven commands; what is longer than a breath of attention is
+planned on the surface."""
+
+MAX_GESTURES_IN_PHRASE = 40
+"""With every repetition counted: bounds the work of the check, and a phrase of forty gestures takes
+minutes to show."""
+
+MAX_GESTURES_IN_GRAMMAR = 1000
+"""Of all phrases together, for the same reason: the check compares each with each."""
+
+MAX_TIMEOUT = 600.0
+"""Seconds: after ten minutes nobody goes on with a sentence."""
+
+SLOT_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+"""What stands between braces; also a valid name of a parameter on any robot."""
+
+
+def check_grammar(grammar: Grammar) -> None:
+    """Refuse a grammar that contradicts itself.
+
+    Raises
+    ------
+    LanguageError
+        Its pointer is that of the language file.
+
+    """
+    _check_frame(grammar)
+    _check_names((each.name for each in grammar.slot_types), "slot_types")
+    _check_names((each.name for each in grammar.phrases), "phrases")
+    for index, slot_type in enumerate(grammar.slot_types):
+        _check_slot_type(slot_type, pointer_to("grammar", "slot_types", index))
+    for index, phrase in enumerate(grammar.phrases):
+        _check_phrase(grammar, phrase, pointer_to("grammar", "phrases", index))
+    total = sum(_longest(part) for phrase in grammar.phrases for part in phrase.parts)
+    if total > MAX_GESTURES_IN_GRAMMAR:
+        raise LanguageError(
+            f"the phrases take {total} gestures in all, the limit is {MAX_GESTURES_IN_GRAMMAR}",
+            "/grammar/phrases",
+        )
+    for use in grammar.uses():
+        if use.label == grammar.cancel and use.pointer != "/grammar/cancel":
+            raise LanguageError(
+                f"{use.label!r} is the cancel gesture, so that {use.where} could never be heard "
+                "with it: choose another",
+                use.pointer,
+            )
+
+
+def _check_frame(grammar: Grammar) -> None:
+    if not 0 < grammar.timeout <= MAX_TIMEOUT:  # NaN is not either
+        raise LanguageError(
+            f"must be above 0 and at most {MAX_TIMEOUT:g} seconds, got {grammar.timeout}",
+            "/grammar/timeout",
+        )
+    if not 1 <= grammar.most_phrases <= MAX_PHRASES_IN_MESSAGE:
+        raise LanguageError(
+            f"must be 1 to {MAX_PHRASES_IN_MESSAGE}, got {grammar.most_phrases}",
+            "/grammar/most_phrases",
+        )
+    if grammar.most_phrases > 1 and grammar.end is None:
+        raise LanguageError(
+            "a message of several phrases needs an end gesture, or the robot would never know that "
+            "no more is coming",
+            "/grammar/most_phrases",
+        )
+    if len(grammar.phrases) > MAX_PHRASES:
+        raise LanguageError(
+            f"{len(grammar.phrases)} phrases, the limit is {MAX_PHRASES}", "/grammar/phrases"
+        )
+
+
+def _check_names(names: Iterable[str], key: str) -> None:
+    seen: set[str] = set()
+    for index, name in enumerate(names):
+        pointer = pointer_to("grammar", key, index, "name")
+        if not name.strip() or len(name) > MAX_LABEL_LENGTH or not name.isprintable():
+            raise LanguageError(
+                f"must be 1 to {MAX_LABEL_LENGTH} printable characters, got {name!r}", pointer
+            )
+        if name in seen:
+            raise LanguageError(f"the name {name!r} occurs twice: rename one of the two", pointer)
+        seen.add(name)
+
+
+def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
+    if not slot_type.values:
+        raise LanguageError("needs at least one gesture with a value", pointer + "/values")
+    for index, value in enumerate(slot_type.values.values()):
+        if not _fits(value, slot_type.reads_as):
+            wanted = {"number": "a number", "text": "a text", "digits": "a digit, 0 to 9"}
+            raise LanguageError(
+                f"must be {wanted[slot_type.reads_as]}, got {value!r}",
+                pointer + pointer_to("values", index, "value"),
+            )
+
+
+def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool:
+    """Tell whether a value is one of the kind; `together`: as a whole, not digit by digit."""
+    if reads_as == "text":
+        return isinstance(value, str) and bool(value.strip()) and value.isprintable()
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return False
+    if reads_as == "number":
+        return True
+    return isinstance(value, int) and value >= 0 and (together or value <= 9)
+
+
+def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
+    if not phrase.parts or all(_may_be_left_out(part) for part in phrase.parts):
+        raise LanguageError(
+            f"{phrase.name!r} can be said without any gesture: let one part be needed",
+            pointer + "/parts",
+        )
+    for index, part in enumerate(phrase.parts):
+        _check_part(grammar, part, pointer + pointer_to("parts", index))
+    if (longest := sum(_longest(part) for part in phrase.parts)) > MAX_GESTURES_IN_PHRASE:
+        raise LanguageError(
+            f"{phrase.name!r} may take {longest} gestures, the limit is {MAX_GESTURES_IN_PHRASE}",
+            pointer + "/parts",
+        )
+    _check_slot_names(phrase, pointer)
+    _check_words(phrase, pointer)
+
+
+def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
+    if not 0 <= part.least <= part.most or not 1 <= part.most <= MAX_REPEAT:
+        raise LanguageError(
+            f"least {part.least} and most {part.most}: must be 0 <= least <= most and 1 <= most <= "
+            f"{MAX_REPEAT}",
+            pointer + "/most",
+        )
+    if isinstance(part, OneOf):
+        if not part.gestures or len(set(part.gestures)) < len(part.gestures):
+            raise LanguageError("must name one gesture or more, each once", pointer + "/gestures")
+    elif isinstance(part, Slot):
+        _check_slot(grammar, part, pointer)
+    else:
+        if not part.parts or all(_may_be_left_out(each) for each in part.parts):
+            raise LanguageError("a group needs a part that is not optional", pointer + "/parts")
+        for index, member in enumerate(part.parts):
+            _check_part(grammar, member, pointer + pointer_to("parts", index))
+
+
+def _check_slot(grammar: Grammar, slot: Slot, pointer: str) -> None:
+    if not SLOT_NAME.fullmatch(slot.name):
+        raise LanguageError(
+            f"{slot.name!r} is no name of a slot: a small letter, then at most 39 small letters, "
+            "digits and underscores",
+            pointer + "/slot",
+        )
+    known = {each.name: each for each in grammar.slot_types}
+    if slot.slot_type not in known:
+        raise LanguageError(
+            f"no slot type {slot.slot_type!r}; there is {', '.join(known) or 'none'}",
+            pointer + "/type",
+        )
+    reads_as = known[slot.slot_type].reads_as
+    if slot.default is not None and not _fits(slot.default, reads_as, together=True):
+        raise LanguageError(
+            f"must be of the slot's type, which reads {reads_as}, got {slot.default!r}",
+            pointer + "/default",
+        )
+
+
+def _check_slot_names(phrase: Phrase, pointer: str) -> None:
+    seen: set[str] = set()
+    for slot, group in phrase.slots():
+        at = pointer + _place_of(phrase, slot, group)
+        if slot.name in seen:
+            raise LanguageError(
+                f"a second slot {slot.name!r} in {phrase.name!r}: rename one", at + "/slot"
+            )
+        if group is not None and group.most > 1 and slot.most > 1:
+            raise LanguageError(
+                f"{slot.name!r} may be repeated, and so may its group: which value belongs to "
+                "which repetition could not be told",
+                at + "/most",
+            )
+        seen.add(slot.name)
+
+
+def _place_of(phrase: Phrase, slot: Slot, group: Group | None) -> str:
+    if group is None:
+        return pointer_to("parts", phrase.parts.index(slot))
+    return pointer_to("parts", phrase.parts.index(group), "parts", group.parts.index(slot))
+
+
+def _check_words(phrase: Phrase, pointer: str) -> None:
+    slots = {slot.name for slot, _ in phrase.slots()}
+    missing = {
+        slot.name
+        for slot, group in phrase.slots()
+        if slot.default is None and (slot.least == 0 or (group is not None and group.least == 0))
+    }
+    if len(phrase.says) > MAX_TEXT_LENGTH or not phrase.says.isprintable():
+        raise LanguageError(
+            f"must be at most {MAX_TEXT_LENGTH} printable characters", pointer + "/says"
+        )
+    if fault := template_fault(phrase.says, slots, missing):
+        raise LanguageError(fault, pointer + "/says")
+    try:
+        checked_command(phrase.command)
+    except GestureError as error:
+        raise LanguageError(str(error), pointer + "/command") from error
+    for name in _names_in(phrase.command):
+        if name not in slots:
+            raise LanguageError(
+                f"{{{name}}} is no slot of {phrase.name!r}; it has "
+                f"{', '.join(sorted(slots)) or 'none'}",
+                pointer + "/command",
+            )
+
+
+def _names_in(command: Any) -> set[str]:
+    if isinstance(command, str):
+        return set(placeholders_in(command))
+    if isinstance(command, dict):
+        command = list(command.values())
+    if isinstance(command, list):
+        return {name for each in command for name in _names_in(each)}
+    return set()
+
+
+def _may_be_left_out(part: Part) -> bool:
+    return part.least == 0
+
+
+def _longest(part: Part) -> int:
+    once = sum(_longest(each) for each in part.parts) if isinstance(part, Group) else 1
+    return part.most * once

@@ -1,0 +1,108 @@
+"""What a message means: for each of its phrases the values, the command, and the words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from app.recognition.grammar import Grammar
+from app.recognition.phrase import Phrase, Slot, Value
+from app.recognition.phrase_automaton import Reading
+from app.recognition.placeholders import SlotValue, filled, spoken, whole_placeholder, words
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """One phrase as it was shown.
+
+    Attributes
+    ----------
+    phrase
+        Its name.
+    slots
+        Values of the slots that were filled, by name.
+    command
+        The phrase's command with values in the place of ``{slot}``; a slot that stands alone keeps
+        its JSON type, and is null where it was left out without a default.
+    spoken
+        To say back to the diver.
+
+    """
+
+    phrase: str
+    slots: Mapping[str, SlotValue]
+    command: str | dict[str, Any] | None
+    spoken: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return vars(self) | {"slots": dict(self.slots)}
+
+
+@dataclass(frozen=True)
+class Mission:
+    """One message: its phrases in order."""
+
+    phrases: tuple[Meaning, ...]
+
+    @property
+    def spoken(self) -> str:
+        """What to say back to the diver, so that a mission that was not meant is noticed."""
+        return f"mission: {'; then '.join(meaning.spoken for meaning in self.phrases)}"
+
+    def to_list(self) -> list[dict[str, Any]]:
+        """Return plain JSON types."""
+        return [meaning.to_dict() for meaning in self.phrases]
+
+
+def mission_of(grammar: Grammar, reading: Reading) -> Mission:
+    """Return what a reading means."""
+    said: list[tuple[Phrase, dict[str, list[Value]]]] = []
+    for each in reading:
+        if each.slot is None:
+            said.append((grammar.phrases[each.phrase], {}))
+        elif each.value is not None:
+            said[-1][1].setdefault(each.slot, []).append(each.value)
+    return Mission(tuple(_meaning(grammar, phrase, values) for phrase, values in said))
+
+
+def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]) -> Meaning:
+    shown: dict[str, SlotValue] = {}
+    known: dict[str, SlotValue | None] = {}
+    for slot, group in phrase.slots():
+        if slot.name in values:
+            repeated = slot.most > 1 or (group is not None and group.most > 1)
+            shown[slot.name] = _value(grammar, slot, values[slot.name], repeated=repeated)
+        known[slot.name] = shown.get(slot.name, slot.default)
+    if isinstance(phrase.command, str):
+        command: str | dict[str, Any] | None = filled(phrase.command, known)
+    else:
+        command = _filled(phrase.command, known)
+    return Meaning(phrase.name, shown, command, _spoken(phrase, known, shown))
+
+
+def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool) -> SlotValue:
+    if grammar.slot_type(slot.slot_type).reads_as == "digits":
+        return int("".join(map(str, values)))
+    return values if repeated else values[0]
+
+
+def _spoken(
+    phrase: Phrase, known: Mapping[str, SlotValue | None], shown: Mapping[str, SlotValue]
+) -> str:
+    if phrase.says:
+        return spoken(phrase.says, known, shown.keys())
+    return ", ".join([phrase.name, *(f"{name} {words(value)}" for name, value in shown.items())])
+
+
+def _filled(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
+    """Put values into a command object, however deep its placeholders are."""
+    if isinstance(command, dict):
+        return {key: _filled(each, values) for key, each in command.items()}
+    if isinstance(command, list):
+        return [_filled(each, values) for each in command]
+    if not isinstance(command, str):
+        return command
+    whole = whole_placeholder(command)
+    return filled(command, values) if whole is None else values[whole]

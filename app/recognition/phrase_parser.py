@@ -1,0 +1,252 @@
+"""Phrases as they are shown: gesture by gesture, with what may come next.
+
+The three kinds of error are CADDIAN's (Chiarella et al. 2018): a gesture that was not recognised is
+shown again and the sequence kept; one that does not follow ends the message; and what was
+understood is spoken back, so that one who did not mean it can cancel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from app.recognition.grammar import Grammar
+from app.recognition.mission import Mission, mission_of
+from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.placeholders import listed
+
+PhraseEventKind = Literal[
+    "continues",
+    "complete",
+    "ambiguous",
+    "cancelled",
+    "timed_out",
+    "unexpected",
+    "repeat",
+    "outside",
+]
+
+ENOUGH = 2
+"""Readings kept for a position: with two the message is ambiguous, whatever a third would say."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhraseEvent:
+    """What came of a gesture, or of a pause.
+
+    Attributes
+    ----------
+    kind
+        ``continues``: it is part of a message, and more is needed or may come. ``complete``: the
+        message is over. ``ambiguous``: it is over, and means two things: no command. ``cancelled``,
+        ``timed_out``, ``unexpected``: it is dropped. ``repeat``: a gesture was not recognised; what
+        was shown before stays. ``outside``: no message has begun.
+    gestures
+        Labels of the message so far, this one included unless it does not belong to it.
+    label
+        Of this gesture; None when it was rejected, and for a pause.
+    expected
+        Labels that may come next, in the grammar's order.
+    mission
+        What the robot should do; only when complete.
+    start, end
+        Seconds: of the message so far, in the clock of the gestures.
+
+    """
+
+    kind: PhraseEventKind
+    gestures: tuple[str, ...]
+    label: str | None
+    expected: tuple[str, ...]
+    mission: Mission | None = None
+    start: float
+    end: float
+
+    @property
+    def text(self) -> str:
+        """The event in words, for the diver."""
+        so_far, following = ", ".join(self.gestures), listed(self.expected, last="or")
+        if self.mission is not None:
+            return self.mission.spoken
+        return {
+            "continues": f"{so_far}: then {following}",
+            "complete": so_far,
+            "ambiguous": f"{so_far} means two things; nothing is done",
+            "cancelled": "cancelled",
+            "timed_out": f"{so_far}: waited too long for {following}; begin again",
+            "unexpected": f"{self.label} does not follow {so_far}, {following} does; begin again",
+            "repeat": f"not recognised, show it again: {following}",
+            "outside": f"{self.label or 'not recognised'}: no message has begun; {following} does",
+        }[self.kind]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return {
+            "kind": self.kind,
+            "gestures": list(self.gestures),
+            "label": self.label,
+            "expected": list(self.expected),
+            "mission": self.mission and self.mission.to_list(),
+            "text": self.text,
+            "start": self.start,
+            "end": self.end,
+        }
+
+
+@dataclass(frozen=True)
+class _Message:
+    """A message as far as it was shown.
+
+    Attributes
+    ----------
+    readings
+        Per position of the automaton that it may be at, what it says.
+    gestures
+        Labels.
+    start, end
+        Seconds, of its first and its last gesture.
+    doubtful
+        Whether the last gesture was rejected.
+
+    """
+
+    readings: Mapping[int, tuple[Reading, ...]] = field(default_factory=lambda: {BEFORE: ((),)})
+    gestures: tuple[str, ...] = ()
+    start: float = 0.0
+    end: float = 0.0
+    doubtful: bool = False
+
+
+class PhraseParser:
+    """Puts recognised gestures together to messages.
+
+    A command only ever comes of a message that has one reading, all gestures of which were
+    recognised and followed each other within the grammar's time-out. Where a message could be over
+    or go on, which the check of the language reports, the time-out ends it.
+
+    Parameters
+    ----------
+    grammar
+        The language's.
+
+    """
+
+    def __init__(self, grammar: Grammar) -> None:
+        self.grammar = grammar
+        self._automaton = PhraseAutomaton(grammar)
+        self._labels = tuple(dict.fromkeys(use.label for use in grammar.uses()))
+        self._message = _Message()
+
+    @property
+    def expected(self) -> tuple[str, ...]:
+        """Labels that may come next, in the grammar's order."""
+        possible = {label for position in self._message.readings for label in self._moves(position)}
+        return tuple(label for label in self._labels if label in possible)
+
+    @property
+    def may_end(self) -> bool:
+        """Whether a pause now would end the message, and not drop it."""
+        return not self._message.doubtful and len(self._complete()) == 1
+
+    def feed(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
+        """Hear of one gesture.
+
+        Parameters
+        ----------
+        label
+            As recognised; None when it was rejected.
+        start, end
+            Seconds of the take, in one clock for all gestures.
+
+        Returns
+        -------
+        What came of it; before that, what came of the pause before it when that was too long.
+
+        """
+        return (*self.expire(start), *self._heard(label, start, end))
+
+    def expire(self, now: float) -> tuple[PhraseEvent, ...]:
+        """Hear that no gesture had begun by `now`; an event when that is too long."""
+        message = self._message
+        if not message.gestures or now - message.end <= self.grammar.timeout:
+            return ()
+        # After a rejected gesture nobody knows whether the message was over.
+        if not message.doubtful and (readings := self._complete()):
+            return (self._over(None, readings),)
+        return (self._dropped("timed_out", None),)
+
+    def _heard(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
+        before = self._message if self._message.gestures else _Message(start=start)
+        self._message = replace(before, end=end, doubtful=label is None)
+        if label is None:
+            return (self._event("repeat" if before.gestures else "outside", None),)
+        if before.gestures and label == self.grammar.cancel:
+            return (self._dropped("cancelled", label),)
+        following = self._following(label)
+        if not following:
+            return self._refused(label, start, end)
+        gestures = (*before.gestures, label)
+        self._message = _Message(following, gestures, before.start, end)
+        if not any(self._moves(position) for position in following):
+            return (self._over(label, self._complete()),)
+        return (self._event("continues", label),)
+
+    def _refused(self, label: str, start: float, end: float) -> tuple[PhraseEvent, ...]:
+        """Answer a gesture that cannot come next; the start gesture begins anew."""
+        if not self._message.gestures:
+            return (self._event("outside", label),)
+        dropped = self._dropped("unexpected", label)
+        anew = self._heard(label, start, end) if label == self.grammar.start else ()
+        return (dropped, *anew)
+
+    def _moves(self, position: int) -> Mapping[str, Iterable[tuple[int, Reading]]]:
+        return self._automaton.moves(position)
+
+    def _following(self, label: str) -> dict[int, tuple[Reading, ...]]:
+        """Return the readings of the message with one more gesture, per position."""
+        following: dict[int, tuple[Reading, ...]] = {}
+        for position, readings in self._message.readings.items():
+            for target, said in self._moves(position).get(label, ()):
+                known = following.get(target, ())
+                more = [*known, *(reading + said for reading in readings)]
+                following[target] = tuple(dict.fromkeys(more))[:ENOUGH]
+        return following
+
+    def _complete(self) -> tuple[Reading, ...]:
+        """Return the readings with which the message could be over now."""
+        found = [
+            reading
+            for position, readings in self._message.readings.items()
+            if position in self._automaton.accepting
+            for reading in readings
+        ]
+        return tuple(dict.fromkeys(found))
+
+    def _over(self, label: str | None, readings: tuple[Reading, ...]) -> PhraseEvent:
+        if len(readings) > 1:
+            return self._dropped("ambiguous", label)
+        return self._dropped("complete", label, mission_of(self.grammar, readings[0]))
+
+    def _dropped(
+        self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None
+    ) -> PhraseEvent:
+        """Forget the message."""
+        event = self._event(kind, label, mission)
+        self._message = _Message()
+        # What was waited for in vain is told; otherwise what begins the next message.
+        in_vain = kind in ("timed_out", "unexpected")
+        return event if in_vain else replace(event, expected=self.expected)
+
+    def _event(
+        self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None
+    ) -> PhraseEvent:
+        return PhraseEvent(
+            kind=kind,
+            gestures=self._message.gestures,
+            label=label,
+            expected=self.expected,
+            mission=mission,
+            start=self._message.start,
+            end=self._message.end,
+        )

@@ -1,0 +1,128 @@
+"""Language definition files of PROTEUS (``.ldf``; Fulton, Edge and Sattar, IRVLab/proteus).
+
+What is known comes from that package's files and reader: an XML element ``language`` with ``meta``
+(name, robot, description, directory, read by their place), then ``input`` and ``output``, each with
+symbols, vectors and actions, then ``state``, ``context`` and ``actions``. A symbol has the
+attributes name, id, call_type (trigger, directional or quantity), description and tags, parted by
+commas. In all published files ``input`` is empty, and the reader skips it.
+
+So what an input symbol looks like is assumed to be what an output symbol looks like: both lists are
+made of the same class there. Demonstrations, phrases and commands have no place in the format.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Collection
+from typing import Literal
+from xml.etree import ElementTree
+
+from app.recognition.gesture import Gesture
+from app.recognition.grammar import FRAME
+from app.recognition.language import Language
+
+SUFFIX = ".ldf"
+
+CallType = Literal["trigger", "directional", "quantity"]
+
+_DIRECTION = re.compile(r"\b(direction|heading|bearing|way|side)s?\b", re.IGNORECASE)
+"""What a slot type that is a direction is called."""
+
+
+def to_proteus(language: Language, robot: str = "") -> str:
+    """Write a language's gestures as the input symbols of a PROTEUS language.
+
+    Parameters
+    ----------
+    language
+        Whose gestures.
+    robot
+        Name of the robot it is for; empty: none.
+
+    """
+    root = ElementTree.Element("language")
+    meta = ElementTree.SubElement(root, "meta")
+    said = f"Arm gestures, revision {language.revision}" + (
+        f", by {language.author}" if language.author else ""
+    )
+    # Their reader takes these four by their place.
+    for tag, text in (
+        ("name", language.name),
+        ("robot", robot or "any"),
+        ("description", said),
+        ("directory", "."),
+    ):
+        ElementTree.SubElement(meta, tag).text = text
+    for side in ("input", "output"):
+        part = ElementTree.SubElement(root, side)
+        symbols = ElementTree.SubElement(part, "symbols")
+        if side == "input":
+            _add_symbols(symbols, language)
+        ElementTree.SubElement(part, "vectors")
+        ElementTree.SubElement(part, "actions")
+    for tag in ("state", "context", "actions"):
+        ElementTree.SubElement(root, tag)
+    ElementTree.indent(root, "    ")
+    text = ElementTree.tostring(root, encoding="unicode", short_empty_elements=False)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def call_type_of(language: Language, label: str) -> CallType:
+    """Tell what a gesture gives the robot: a number, a direction, or no more than itself."""
+    slot_types = () if language.grammar is None else language.grammar.slot_types
+    for slot_type in slot_types:
+        if label in slot_type.values:
+            if slot_type.reads_as != "text":
+                return "quantity"
+            if _DIRECTION.search(slot_type.name):
+                return "directional"
+    return "trigger"
+
+
+def _add_symbols(symbols: ElementTree.Element, language: Language) -> None:
+    taken: set[str] = set()
+    for gesture in language.gestures:
+        symbol_id = _identifier(gesture.label, taken)
+        taken.add(symbol_id)
+        ElementTree.SubElement(
+            symbols,
+            "symbol",
+            {
+                "name": gesture.label,
+                "id": symbol_id,
+                "call_type": call_type_of(language, gesture.label),
+                "description": _description(gesture),
+                "tags": ",".join(_tags(language, gesture)),
+            },
+        )
+
+
+def _identifier(label: str, taken: Collection[str]) -> str:
+    """Return a name of a ROS parameter, which their server makes of every id."""
+    plain = unicodedata.normalize("NFKD", label).encode("ascii", "ignore").decode().lower()
+    stem = re.sub(r"[^a-z0-9]+", "_", plain).strip("_") or "gesture"
+    if not stem[0].isalpha():
+        stem = f"gesture_{stem}"
+    identifier, number = stem, 2
+    while identifier in taken:
+        identifier, number = f"{stem}_{number}", number + 1
+    return identifier
+
+
+def _description(gesture: Gesture) -> str:
+    command = gesture.command if isinstance(gesture.command, str) else ""
+    return "; ".join(text for text in (command, gesture.description) if text)
+
+
+def _tags(language: Language, gesture: Gesture) -> list[str]:
+    """Return the published files' own words: what frames a message controls the conversation."""
+    grammar = language.grammar
+    tags = []
+    if grammar is not None and gesture.label in {getattr(grammar, role) for role in FRAME}:
+        tags += ["conversational", "control"]
+    if gesture.command is not None:
+        tags.append("commands")
+    if call_type_of(language, gesture.label) != "trigger":
+        tags.append("information")
+    return tags or ["commands"]
