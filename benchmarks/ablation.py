@@ -9,9 +9,6 @@ them together chose.
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 import numpy as np
 
 from app.recognition import PoseError
@@ -20,6 +17,7 @@ from app.recognition.fusion import fused
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory import Trajectory
+from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 
@@ -66,13 +64,8 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
 
 def main() -> None:
     """Print one line a voter, one pair of columns a set: alone, and left out."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("--draws", type=int, default=40, help="choices of templates per set")
-    parser.add_argument("--queries", type=int, default=25, help="queries per choice")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    sets = [*recorded_sets(given.data / "trajectories")]
+    given = set_arguments(__doc__, draws=40, queries=25).parse_args()
+    sets = [*recorded_sets(given.data / "trajectories", given.sets)]
     shares = [ablate(each, given.draws, given.queries, given.seed) for each in sets]
     print("| voter | " + " | ".join(each.name for each in sets) + " |")
     print("| --- " * (len(sets) + 1) + "|")

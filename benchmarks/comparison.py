@@ -12,7 +12,6 @@ The trained methods need the extra ``bench``; without it they are left out, with
 
 from __future__ import annotations
 
-import argparse
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -25,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.evaluation.share import Share
+from benchmarks.arguments import set_arguments
 from benchmarks.methods import METHODS, new_method
 from benchmarks.methods.base import Method
 from benchmarks.one_shot_draws import Draw, draws
@@ -118,18 +118,12 @@ def peak_memory(name: str, data: Path) -> float:
 
 def main() -> None:
     """Print one Markdown table, one row a method."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
+    parser = set_arguments(__doc__, draws=20, queries=15)
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
-    parser.add_argument("--sets", nargs="+", help="names of sets; default: all")
-    parser.add_argument("--draws", type=int, default=20, help="languages per set")
-    parser.add_argument("--queries", type=int, default=15, help="queries per language, UD and UI")
-    parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     sets = [
         (recorded, list(draws(recorded, given.draws, given.queries, given.seed)))
-        for recorded in recorded_sets(given.data / "trajectories")
-        if not given.sets or recorded.name in given.sets
+        for recorded in recorded_sets(given.data / "trajectories", given.sets)
     ]
     names = [recorded.name for recorded, _ in sets]
     yardstick = measure(YARDSTICK, sets)

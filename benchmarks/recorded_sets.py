@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,9 @@ RATE = 30.0
 
 DOMAINS = ("digits", "letters", "commands")
 """Parts of 3DMadLabSD that published numbers exist for."""
+
+SETS = (*DOMAINS, "grufba3d", "natops")
+"""Names of all sets."""
 
 DUPLICATED = "Wheel"
 """A class of 3DMadLabSD that shares 60 identical trajectories with the digit 0."""
@@ -44,13 +47,17 @@ class RecordedSet:
     people: npt.NDArray[np.str_]
 
 
-def recorded_sets(folder: Path) -> Iterator[RecordedSet]:
-    """Read the three sets that published numbers exist for, and two with both arms."""
+def recorded_sets(folder: Path, names: Collection[str] | None = None) -> Iterator[RecordedSet]:
+    """Read the three sets that published numbers exist for, and two with both arms.
+
+    `names`: only these; None: all.
+    """
+    wanted = SETS if names is None else [name for name in SETS if name in names]
     madlab = _content(folder / "madlab3d.npz")
-    for domain in DOMAINS:
+    for domain in (name for name in wanted if name in DOMAINS):
         chosen = (madlab["domain"] == domain) & (madlab["label"] != DUPLICATED)
         yield _recorded_set(domain, madlab, np.flatnonzero(chosen))
-    for name in ("grufba3d", "natops"):
+    for name in (name for name in wanted if name not in DOMAINS):
         content = _content(folder / f"{name}.npz")
         yield _recorded_set(name, content, np.arange(len(content["label"])))
 

@@ -12,10 +12,8 @@ nearest gesture here; `reliability` measures what is refused.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable
 from itertools import chain
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +27,7 @@ from app.recognition import (
     Recognizer,
 )
 from app.recognition.recognizer import PROFILES
+from benchmarks.arguments import set_arguments
 from benchmarks.drawn_sets import drawn_sets
 from benchmarks.methods import new_method
 from benchmarks.methods.ours import gesture_of
@@ -85,13 +84,8 @@ def demonstrated(recorded: RecordedSet, templates: list[int]) -> list[Gesture]:
 def main() -> None:
     """Print one line a set and method."""
     methods = [*PROFILES, "dtw"]
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
+    parser = set_arguments(__doc__, draws=60, queries=30)
     parser.add_argument("--methods", nargs="+", choices=methods, default=methods)
-    parser.add_argument("--sets", nargs="+", help="names of sets; default: all")
-    parser.add_argument("--draws", type=int, default=60, help="choices of templates per set")
-    parser.add_argument("--queries", type=int, default=30, help="queries per choice, UD and UI")
-    parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     print(f"one template a class, share correct (95 % interval), seed {given.seed}")
     print(f"{'set':12} {'method':7} {'UD':>18} {'n':>5} {'UI':>18} {'n':>5}")
