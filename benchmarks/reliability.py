@@ -3,29 +3,41 @@
 Of each recorded set a random half of the classes makes a language, one template each by one
 person; queries come from all classes, so that about half of them mean no gesture of the language.
 They come from the same person (UD), and where people are known also from everybody else (UI).
-Foreign movements accepted are told twice: with the bar that refuses 5 % of this set's true
-gestures, and with the thresholds that the language was calibrated to.
+What is refused and accepted is told for every bar that `rejection` knows; averages over the sets
+are of queries by the same person where people are known.
 
-    python -m benchmarks.reliability ../shared/data
+    python -m benchmarks.reliability ../shared/data --seeds 1 2 3
 """
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from pathlib import Path
+from itertools import chain, pairwise
 
 import numpy as np
 
 from app.recognition import Language, PoseError, Recognizer
+from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.rejection import (
+    Outcomes,
+    accepted_as_calibrated,
+    accepted_at_one_bar,
+    accepted_at_own_bars,
+    refused_as_calibrated,
+    with_interval,
+)
 from benchmarks.shared_sets import demonstrated
 
 BINS = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0001)
-REFUSED = 5.0
-"""Per cent of true gestures refused where false acceptance is reported."""
+
+STATISTICS = {
+    "foreign accepted, each set with its own bar": accepted_at_own_bars,
+    "foreign accepted, one bar for all sets": accepted_at_one_bar,
+    "true refused as calibrated": refused_as_calibrated,
+    "foreign accepted as calibrated": accepted_as_calibrated,
+}
 
 
 @dataclass(frozen=True)
@@ -34,6 +46,8 @@ class Answer:
 
     Attributes
     ----------
+    language
+        Number of the language asked.
     confidence, novelty
         Of the nearest gesture.
     known
@@ -45,6 +59,7 @@ class Answer:
 
     """
 
+    language: int
     confidence: float
     novelty: float
     known: bool
@@ -58,7 +73,7 @@ def answers(
     """Ask the person of the templates, or everybody else."""
     random = np.random.default_rng(seed)
     classes = np.unique(recorded.labels)
-    for _ in range(draws):
+    for number in range(draws):
         chosen = random.permutation(classes)[: len(classes) // 2 + 1]
         own = recorded.people == random.choice(np.unique(recorded.people))
         templates = [
@@ -74,6 +89,7 @@ def answers(
             except PoseError:
                 continue
             yield Answer(
+                language=number + seed * draws,
                 confidence=result.confidence,
                 novelty=float(result.novelty[result.gestures.index(result.nearest)]),
                 known=label in language.labels,
@@ -82,49 +98,66 @@ def answers(
             )
 
 
-def accepted_at_bar(asked: list[Answer]) -> float:
-    """Share of the foreign movements as little novel as all but `REFUSED` % of the true ones."""
-    bar = np.percentile([answer.novelty for answer in asked if answer.known], 100 - REFUSED)
-    return float(np.mean([answer.novelty <= bar for answer in asked if not answer.known]))
-
-
-def report(name: str, asked: list[Answer]) -> None:
-    """Print what is refused and what is accepted."""
-    known = [answer for answer in asked if answer.known]
-    foreign = [answer for answer in asked if not answer.known]
-    refused = np.mean([answer.refused for answer in known])
-    passed = np.mean([not answer.refused for answer in foreign])
-    print(
-        f"{name}: {accepted_at_bar(asked):.1%} accepted at {REFUSED:g} % refused; as calibrated "
-        f"{refused:.1%} of {len(known)} refused, {passed:.1%} of {len(foreign)} accepted",
-        flush=True,
+def outcomes(asked: Sequence[Answer]) -> Outcomes:
+    """Put the answers of one set into arrays."""
+    return Outcomes(
+        np.array([answer.novelty for answer in asked]),
+        np.array([answer.known for answer in asked]),
+        np.array([answer.refused for answer in asked]),
+        np.array([answer.language for answer in asked]),
     )
 
 
-def main() -> None:
-    """Print the reliability table, and false acceptance per set."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("--draws", type=int, default=40, help="languages per set")
-    parser.add_argument("--queries", type=int, default=30, help="queries per language")
-    parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    everything: list[Answer] = []
-    for recorded in recorded_sets(given.data / "trajectories"):
-        alone = len(np.unique(recorded.people)) == 1
-        for same_person in (True,) if alone else (True, False):
-            asked = [
-                *answers(recorded, given.draws, given.queries, given.seed, same_person=same_person)
-            ]
-            report(f"{recorded.name} {'UD' if same_person else 'UI'}", asked)
-            everything += asked
-    print("confidence, queries, mean confidence, share correct")
+def row(name: str, asked: Sequence[Answer]) -> str:
+    """Write what one set's languages refused and accepted as a row of a table."""
+    found = outcomes(asked)
+    known = int(found.known.sum())
+    return (
+        f"| {name} | {found.accepted_at(found.own_bar):.1%} | "
+        f"{found.true_refused:.1%} of {known} | "
+        f"{found.foreign_accepted:.1%} of {len(asked) - known} |"
+    )
+
+
+def reliability(asked: Sequence[Answer]) -> Iterator[str]:
+    """Write the reliability table, row by row."""
     for low, high in pairwise(BINS):
-        inside = [answer for answer in everything if low <= answer.confidence < high]
+        inside = [answer for answer in asked if low <= answer.confidence < high]
         if inside:
             mean = np.mean([answer.confidence for answer in inside])
             correct = np.mean([answer.correct for answer in inside])
-            print(f"{low:.1f} to {min(high, 1):.1f}: {len(inside)}, {mean:.2f}, {correct:.2f}")
+            bin_name = f"{low:.1f} to {min(high, 1):.1f}"
+            yield f"| {bin_name} | {len(inside)} | {mean:.2f} | {correct:.2f} |"
+
+
+def main() -> None:
+    """Print the reliability table, and what is refused and accepted, set by set and on average."""
+    parser = set_arguments(__doc__, draws=20, queries=30)
+    parser.add_argument("--seeds", type=int, nargs="+", help="several instead of one")
+    given = parser.parse_args()
+    seeds = given.seeds or [given.seed]
+    everything: list[Answer] = []
+    averaged: list[list[list[Answer]]] = [[] for _ in seeds]
+    print("| set | accepted at 5 % refused | true refused | foreign accepted |")
+    for recorded in recorded_sets(given.data / "trajectories", given.sets):
+        alone = len(np.unique(recorded.people)) == 1
+        for same_person in (True,) if alone else (True, False):
+            by_seed = [
+                [*answers(recorded, given.draws, given.queries, seed, same_person=same_person)]
+                for seed in seeds
+            ]
+            asked = [answer for part in by_seed for answer in part]
+            print(row(f"{recorded.name} {'UD' if same_person else 'UI'}", asked), flush=True)
+            everything += asked
+            if same_person:
+                for sets, part in zip(averaged, by_seed, strict=True):
+                    sets.append(part)
+    pooled = [outcomes([*chain.from_iterable(parts)]) for parts in zip(*averaged, strict=True)]
+    for name, statistic in STATISTICS.items():
+        each = ", ".join(f"{statistic([outcomes(part) for part in sets]):.1%}" for sets in averaged)
+        print(f"{name}: {with_interval(statistic, pooled)}; seed by seed {each}", flush=True)
+    print("| confidence | queries | mean confidence | share correct |")
+    print("\n".join(reliability(everything)))
 
 
 if __name__ == "__main__":

@@ -36,9 +36,9 @@ OWN = 0.75
 (`fusion.TYPICAL`), geometrically: twelve takes of one demonstration know more than the average
 over other gestures, but not all. From 0.7 to 1 the result is the same."""
 
-ANY_GESTURES = frozenset({"path_length"})
+ANY_GESTURES = frozenset({"path_length", "wrist_bend"})
 """Voters for which the typical distance is that of any gesture: the lengths of plausible takes
-differ by less than half of what those of real ones do."""
+differ by less than half of what those of real ones do, and their wrists bend alike for all."""
 
 REACH: Final[Mapping[str, float]] = MappingProxyType(
     {
@@ -47,6 +47,7 @@ REACH: Final[Mapping[str, float]] = MappingProxyType(
         "path_length": 7.0,
         "posture": 4.0,
         "hand_attitude": 4.0,
+        "wrist_bend": 3.25,
     }
 )
 """Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded
@@ -54,15 +55,20 @@ sets, one in twenty of the takes lies beyond, once `foreign` has pulled in what 
 is held tells more than what it draws: with as long a reach, a quarter more of the foreign signals
 are accepted at as many true ones refused; with half the reach it is a twentieth less, but one in
 seven of the true signals is refused. Of other people's takes not one in a hundred has a
-way 1.5 times as long; the reach is 1.7 times."""
+way 1.5 times as long; the reach is 1.7 times. A wrist may bend otherwise by about 30 degrees: that
+refuses one in two hundred of the true signals that nothing else refuses, and one in eight of the
+foreign ones."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: where only one bone is seen, its
 attitude may hardly differ."""
 
 OTHERS = 2.0
-"""How much farther other people's takes lie than the demonstrator's own: variants by 1.9 to 2.1
-times, recorded takes by 1.9 to 2.6."""
+"""How much farther other people's takes lie than the demonstrator's own, in squared distances:
+variants by 1.9 to 2.1 times, recorded takes by 1.9 to 2.6."""
+
+NOT_SQUARED = frozenset({"path_length", "wrist_bend"})
+"""Voters whose distances are no squares: other people's takes lie the root of `OTHERS` farther."""
 
 LEAST_SHARE = 0.9
 """How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
@@ -89,7 +95,7 @@ class _Reach:
         ``(V, G)``: the multiples `REACH` of typical distances to further takes by the
         demonstrator; infinite for voters that no view asks.
     takes
-        ``(G, TAKES)``: novelties of these takes; NaN for gestures without demonstration.
+        ``(G, TAKES)``: novelties of other people's; NaN for gestures without demonstration.
 
     """
 
@@ -132,8 +138,8 @@ def _with_thresholds(
     reach
         ``(V,)`` thresholds as far as takes reach.
     takes, foreign
-        Novelties with these thresholds, of further takes and of foreign movements; infinite for a
-        foreign movement that is nearer to another gesture, NaN for what is not known.
+        Novelties with these thresholds, of other people's takes and of foreign movements; infinite
+        for a foreign movement that is nearer to another gesture, NaN for what is not known.
 
     """
     near = foreign[foreign > PLAUSIBLE].min(initial=1.0)
@@ -143,7 +149,7 @@ def _with_thresholds(
     }
     if not np.isfinite(takes).all() or np.isnan(foreign).any():
         return replace(gesture, thresholds=thresholds, rates=None)
-    margins = np.log(limit / OTHERS) - np.log(np.maximum(takes, 1e-9))
+    margins = np.log(limit) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
         miss=round(Forecast.of_margins(margins, UNFORESEEN["another"]).rate, DIGITS),
         false_alarm=round(float((foreign < limit).mean()), DIGITS),
@@ -156,6 +162,7 @@ def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
     typical = np.array([TYPICAL[voter].within for voter in VOTERS])
     multiples = np.array([REACH.get(voter, np.inf) for voter in VOTERS])
     own = np.array([0.0 if voter in ANY_GESTURES else OWN for voter in VOTERS])
+    farther = np.array([OTHERS**0.5 if voter in NOT_SQUARED else OTHERS for voter in VOTERS])
     thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
     if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
@@ -169,7 +176,8 @@ def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
         least = LEAST_DISTANCE * typical[known, None]
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
         thresholds[known, index] *= (mean / typical[known]) ** own[known]
-        takes[index] = novelty(distances, thresholds[:, [index]], novelty_weights(VOTERS))
+        others = farther[:, None] * distances
+        takes[index] = novelty(others, thresholds[:, [index]], novelty_weights(VOTERS))
     return _Reach(thresholds, takes)
 
 

@@ -52,6 +52,7 @@ TYPICAL = {
     "direction": Trust(1.0, 0.131, 1.3),
     "posture": Trust(3.0, 0.19, 1.1),
     "hand_attitude": Trust(1.0, 0.13, 0.56),
+    "wrist_bend": Trust(1.0, 0.47, 0.60),
     "cloud": Trust(0.2, 0.18, 0.43),
     "stroke_direction": Trust(0.05, 0.35, 2.5),
     "which_hand": Trust(0.05, 0.05, 0.5),
@@ -63,6 +64,8 @@ marshalling by other people (`docs/results.md`): the geometric mean over the set
 
 Paths and postures decide; of the shape voters, which are blind to order, ``path_complexity`` adds
 what the elastic ones miss (a 1 with its flag against a narrow 2), the others break ties.
+``wrist_bend`` is measured on marshalling alone, the only set with forearms and hands; its prior is
+that of ``hand_attitude``, though twice as much would name one in a hundred more there.
 """
 
 PAIRS_BEFORE = 3

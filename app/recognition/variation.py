@@ -10,7 +10,8 @@ people as salient points, stochastic resampling (Taranta et al. 2016) or varied 
 
 1. **Habit**: size, slant, stretch and shear of each arm's movement about its own mean place.
 2. **Waver**: a displacement along the way, a sum of cosines with random coefficients.
-3. **Sway**: a slow drift of each landmark by itself, which also moves what rests.
+3. **Sway**: a slow drift of each landmark by itself, which also moves what rests. A hand's
+   landmarks drift with their wrist, and about it no farther than a wrist gives.
 4. **Tempo**: another duration.
 
 All landmarks of an arm share their habit and their waver, each in proportion to its own motion, so
@@ -59,7 +60,6 @@ class Spread:
         Natural logarithm of a take's waver: now people are careful, now they are not.
     sway
         Coefficient of each cosine of a landmark's own drift, in sizes of the whole movement.
-
     """
 
     tempo: float
@@ -116,8 +116,16 @@ DRIFTS = 2
 """Cosines of a landmark's own drift, of which the first is another place: the body sways about once
 in a gesture."""
 
-ARM_PARTS = frozenset({"elbow", "wrist", "hand", "hand_tip", "index", "pinky", "thumb"})
-"""Landmarks that an arm moves together, by the part of the body without its side."""
+MOST_HAND_SWAY = 0.35
+"""Most that a hand's landmark drifts about its wrist, in lengths of the bone between them: that
+turns the hand by 20 degrees, as people's attitudes differ; without a bound, hands that swing far
+would also bend far."""
+
+HAND_PARTS = frozenset({"hand", "hand_tip", "index", "pinky", "thumb"})
+"""Landmarks that a wrist carries, by the part of the body without its side."""
+
+ARM_PARTS = HAND_PARTS | {"elbow", "wrist"}
+"""Landmarks that an arm moves together."""
 
 TRUNK_AND_LEGS = frozenset({"shoulder", "hip", "knee", "ankle", "heel", "foot_index"})
 """Landmarks that carry no gesture: they only sway."""
@@ -167,7 +175,7 @@ def varied(
     xy = _bridged(trajectory)
     centre = xy.mean(axis=0)
     draws = _Draws(np.random.default_rng(seed), count, len(trajectory.landmarks))
-    paths = _displaced(xy - centre, trajectory.landmarks, draws, spread)
+    paths = _displaced(xy, trajectory.landmarks, draws, spread)
     if trajectory.unit == "extent":
         paths *= (_extent(xy) / np.maximum(_extent(paths), 1e-12))[:, None, None, None]
     paths = within_reach(centre + paths, trajectory)
@@ -206,9 +214,10 @@ class _Draws:
 
 
 def _displaced(
-    moved: FloatArray, landmarks: Sequence[str], draws: _Draws, spread: Spread
+    xy: FloatArray, landmarks: Sequence[str], draws: _Draws, spread: Spread
 ) -> FloatArray:
-    """Vary paths ``(T, K, 2)`` that are relative to their mean places: ``(count, T, K, 2)``."""
+    """Vary paths ``(T, K, 2)``: ``(count, T, K, 2)``, each relative to its mean place in `xy`."""
+    moved = xy - xy.mean(axis=0)
     leaders = _leaders(landmarks)
     gesturing = np.array([_may_gesture(name) for name in landmarks])
     own_size = np.sqrt((moved**2).sum(axis=2).mean(axis=0)) * gesturing
@@ -222,9 +231,12 @@ def _displaced(
     care = np.exp(spread.care * draws["care"])[:, None, None, None]
     waver = care * _along(way, waves, strength, draws["waver"][:, leaders])
     whole_size = np.sqrt((own_size**2).sum())
-    drift = np.full(DRIFTS, spread.sway * whole_size)
-    sway = _along(way, np.arange(DRIFTS), drift, draws["sway"])
-    return np.asarray(formed + own_size[:, None] * waver + sway)
+    drift = _along(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
+    wrists = _wrists(landmarks)
+    bones = np.sqrt(((xy - xy[:, wrists]) ** 2).sum(axis=2)).mean(axis=0)
+    free = spread.sway * whole_size
+    about_wrist = np.minimum(np.sqrt(2) * free, MOST_HAND_SWAY * bones)[:, None] * drift
+    return np.asarray(formed + own_size[:, None] * waver + free * drift[:, :, wrists] + about_wrist)
 
 
 def _along(
@@ -268,6 +280,21 @@ def _leaders(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
         [first.setdefault(_limb(name), index) for index, name in enumerate(landmarks)],
         dtype=np.intp,
     )
+
+
+def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
+    """Return ``(K,)``: the index of the wrist that carries each of a hand's landmarks.
+
+    A landmark beyond no wrist, or whose wrist is not among them, carries itself.
+    """
+    parts = [part_of(name) for name in landmarks]
+    index = {part: number for number, part in enumerate(parts)}
+    carriers = []
+    for number, part in enumerate(parts):
+        bare = _without_side(part)
+        wrist = part.removesuffix(bare) + "wrist"
+        carriers.append(index.get(wrist, number) if bare in HAND_PARTS else number)
+    return np.array(carriers, dtype=np.intp)
 
 
 def _may_gesture(landmark: str) -> bool:

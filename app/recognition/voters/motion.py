@@ -11,6 +11,7 @@ from app.recognition.elastic import alignment_costs, squared_distances
 from app.recognition.movement import LIMBS, Movement
 from app.recognition.poses import FloatArray
 from app.recognition.voters.base import euclidean_distances
+from app.recognition.voters.wrist_bend import WristBend
 
 BAND = 8
 """Steps of 32 that one movement may be ahead of the other: a quarter, the radius at which accuracy
@@ -278,6 +279,7 @@ MOTION_VOTERS: tuple[MotionVoter, ...] = (
     Direction(),
     Posture(),
     HandAttitude(),
+    WristBend(),
     Cloud(),
     StrokeDirection(),
     WhichHand(),
