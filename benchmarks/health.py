@@ -1,56 +1,94 @@
-"""Does the health report foresee which gestures get confused? Predicted against observed."""
+"""Does the health report foresee what gets confused and missed? Forecasts against real takes.
+
+Of each recorded set one take a class by one person makes a language. It is rehearsed as
+`osg-studio check` does; then real takes of each gesture are read, by the same person or by others.
+What was forecast of each ordered pair of gestures, and of each gesture, is put beside what came of
+it: by set, and by how much was forecast.
+
+    python -m benchmarks.health ../shared/data
+"""
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Language, Recognizer
+from app.recognition.comparison import Comparison
 from app.recognition.errors import PoseError
-from app.recognition.forecast import Forecast
-from app.recognition.health_report import MOST_CONFUSION
+from app.recognition.health_report import MOST_CONFUSION, MOST_MISSED
 from app.recognition.poses import FloatArray
 from app.recognition.rehearsal import rehearse
-from app.recognition.rejection import SCORE_FLOOR
-from app.recognition.unforeseen import UNFORESEEN
+from app.recognition.rejection import is_rejected
 from app.recognition.variation import Person
+from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 
+BINS = (0.0, 0.02, 0.05, 0.1, 0.2, 1.001)
+"""Forecasts that are put together, with the two bars of the report among the ends."""
+
 
 @dataclass(frozen=True, eq=False)
-class Pairs:
-    """N ordered pairs of gestures, several languages' one after the other.
+class Forecasts:
+    """N forecasts of one kind, several languages' one after the other.
 
     Attributes
     ----------
-    margins
-        ``(N, variants)`` of the rehearsed takes of the first against the second.
-    read
-        ``(N,)`` real takes of the first that were nearest to the second.
-    takes
-        ``(N,)`` real takes of the first.
-    nearness
-        ``(N,)`` mean over the real takes of the logarithm of own over other score: how near they
-        came to the second.
+    predicted
+        ``(N,)`` rates.
+    happened, takes
+        ``(N,)`` how many real takes it came true of, out of how many.
 
     """
 
-    margins: FloatArray
-    read: FloatArray
+    predicted: FloatArray
+    happened: FloatArray
     takes: FloatArray
-    nearness: FloatArray
 
     @classmethod
-    def joined(cls, parts: Sequence[Pairs]) -> Pairs:
+    def joined(cls, parts: Sequence[Forecasts]) -> Forecasts:
         """Put several languages together."""
         columns = zip(*(vars(part).values() for part in parts), strict=True)
         return cls(*(np.concatenate(column) for column in columns))
+
+    def within(self, low: float, high: float) -> Forecasts:
+        """Keep the forecasts from `low` to below `high`."""
+        kept = (self.predicted >= low) & (self.predicted < high)
+        return Forecasts(self.predicted[kept], self.happened[kept], self.takes[kept])
+
+    @property
+    def mean(self) -> float:
+        """The mean of what was forecast, by take."""
+        return float(np.average(self.predicted, weights=self.takes))
+
+    @property
+    def observed(self) -> float:
+        """The share of takes of which it came true."""
+        return float(self.happened.sum() / self.takes.sum())
+
+    @property
+    def slope(self) -> float:
+        """How much more came true for each that more was forecast: 1 where forecasts are right."""
+        weights = self.takes / self.takes.sum()
+        apart = self.predicted - self.mean
+        shares = self.happened / self.takes - self.observed
+        return float((weights * apart * shares).sum() / (weights * apart**2).sum())
+
+    @property
+    def rank_correlation(self) -> float:
+        """Spearman's correlation of what was forecast and the share that came true.
+
+        0 where it came true of all alike.
+        """
+        ranks = _ranks(self.predicted), _ranks(self.happened / self.takes)
+        if min(float(np.ptp(each)) for each in ranks) == 0:
+            return 0.0
+        return float(np.corrcoef(*ranks)[0, 1])
 
 
 @dataclass(frozen=True)
@@ -76,11 +114,17 @@ class Study:
     seed: int
 
 
-def studied(recorded: RecordedSet, person: Person, study: Study) -> Pairs:
-    """Teach takes of one person, rehearse, and let that person or the others perform."""
+def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
+    """Teach takes of one person, rehearse, and let that person or the others perform.
+
+    Returns
+    -------
+    Forecasts of confusions, one an ordered pair, and of misses, one a gesture.
+
+    """
     generator = np.random.default_rng(study.seed)
     labels = np.unique(recorded.labels)
-    parts = []
+    confusions, misses = [], []
     for _ in range(study.draws):
         own = recorded.people == generator.choice(np.unique(recorded.people))
         templates = [
@@ -95,59 +139,57 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> Pairs:
         for performer, label in enumerate(labels):
             mine = pool[recorded.labels[pool] == label]
             chosen = generator.choice(mine, min(study.takes, len(mine)), replace=False)
-            scores = np.array(list(_scores(recognizer, recorded, chosen)))
-            logarithms = np.log(np.minimum(scores, 1e9) + SCORE_FLOOR)
-            near = np.bincount(scores.argmin(axis=1), minlength=len(labels))
-            nearness = (logarithms[:, [performer]] - logarithms).mean(axis=0)
+            read = [*_compared(recognizer, recorded, chosen)]
+            nearest = np.array([compared.scores.argmin() for compared in read])
+            refused = np.array([is_rejected(compared.novelty[performer]) for compared in read])
             others = np.delete(np.arange(len(labels)), performer)
-            parts.append(
-                Pairs(
-                    rehearsal.margins[performer][:, others].T,
-                    near[others].astype(np.float64),
-                    np.full(len(others), float(len(scores))),
-                    nearness[others],
+            confusions.append(
+                Forecasts(
+                    np.array([rehearsal.confusion(performer, int(other)).rate for other in others]),
+                    (nearest[:, None] == others).sum(axis=0).astype(np.float64),
+                    np.full(len(others), float(len(read))),
                 )
             )
-    return Pairs.joined(parts)
+            misses.append(
+                Forecasts(
+                    np.array([rehearsal.missed(performer).rate]),
+                    np.array([float(((nearest != performer) | refused).sum())]),
+                    np.array([float(len(read))]),
+                )
+            )
+    return Forecasts.joined(confusions), Forecasts.joined(misses)
 
 
-def _scores(
+def _compared(
     recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
-) -> Iterator[FloatArray]:
+) -> Iterator[Comparison]:
     for query in queries:
         try:
-            yield recognizer.compare(recognizer.query(recorded.recordings[query])).scores
+            yield recognizer.compare(recognizer.query(recorded.recordings[query]))
         except PoseError:  # nothing moves
             continue
 
 
-def report(name: str, pairs: Pairs, scale: float) -> str:
-    """Say in a line how forecasts with this scale fit what was observed."""
-    predicted = np.array([Forecast.of_margins(each, scale).rate for each in pairs.margins])
-    confused, warned = pairs.read > 0, predicted > MOST_CONFUSION
-    bounded = np.clip(predicted, 1e-6, 1 - 1e-6)
-    likelihood = pairs.read * np.log(bounded) + (pairs.takes - pairs.read) * np.log(1 - bounded)
+def row(name: str, found: Forecasts, bar: float) -> str:
+    """Say in a row of a table how forecasts fit what was observed."""
+    warned = found.within(bar, np.inf)
+    came_true = int((warned.happened > 0).sum())
     return (
-        f"{name:18} {scale:5.2f} {len(predicted):6} {_rank_correlation(predicted, pairs):6.2f} "
-        f"{_discrimination(predicted, confused):6.2f} {predicted.mean():10.2%} "
-        f"{pairs.read.sum() / pairs.takes.sum():9.2%} {warned.sum():7} "
-        f"{(warned & confused).sum():9} {int(pairs.read[warned].sum()):5} of "
-        f"{int(pairs.read.sum()):4} {likelihood.sum():9.0f}"
+        f"| {name} | {len(found.predicted)} | {found.mean:.2%} | {found.observed:.2%} | "
+        f"{found.slope:.2f} | {found.rank_correlation:.2f} | {len(warned.predicted)} | "
+        f"{came_true} | {warned.happened.sum():.0f} of {found.happened.sum():.0f} |"
     )
 
 
-def _rank_correlation(predicted: FloatArray, pairs: Pairs) -> float:
-    """Spearman's, of predicted confusion and how near real takes came."""
-    return float(np.corrcoef(_ranks(predicted), _ranks(pairs.nearness))[0, 1])
-
-
-def _discrimination(predicted: FloatArray, confused: npt.NDArray[np.bool_]) -> float:
-    """How probably a confused pair is predicted above one that never was (area under the ROC)."""
-    count, rest = int(confused.sum()), int((~confused).sum())
-    if not count or not rest:
-        return float("nan")
-    lowest = count * (count - 1) / 2
-    return float((_ranks(predicted)[confused].sum() - lowest) / (count * rest))
+def calibration(found: Forecasts) -> Iterator[str]:
+    """Say, row by row, what came of forecasts about as high."""
+    for low, high in pairwise(BINS):
+        inside = found.within(low, high)
+        if len(inside.predicted):
+            yield (
+                f"| {low:.0%} to {min(high, 1):.0%} | {len(inside.predicted)} | "
+                f"{inside.mean:.1%} | {inside.observed:.1%} of {inside.takes.sum():.0f} |"
+            )
 
 
 def _ranks(values: FloatArray) -> FloatArray:
@@ -157,35 +199,24 @@ def _ranks(values: FloatArray) -> FloatArray:
 
 
 def main() -> None:
-    """Print one line a set, kind of performer and scale."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
-    parser.add_argument("--sets", nargs="+", help="names of sets; default: all")
-    parser.add_argument("--draws", type=int, default=10, help="languages per set")
-    parser.add_argument("--takes", type=int, default=10, help="real takes of each gesture")
-    parser.add_argument("--variants", type=int, default=16)
-    parser.add_argument("--scales", type=float, nargs="*", default=[], help="further scales to try")
-    parser.add_argument("--seed", type=int, default=1)
+    """Print one row a set, kind of performer and kind of forecast, and then what came of them."""
+    parser = set_arguments(__doc__, draws=10, queries=10)
+    parser.add_argument("--variants", type=int, default=16, help="rehearsed takes of each gesture")
     given = parser.parse_args()
-    study = Study(given.draws, given.takes, given.variants, given.seed)
-    print(f"predicted against observed confusion of ordered pairs, seed {given.seed}")
-    print(
-        f"{'set':18} {'scale':>5} {'n':>6} {'rank':>6} {'AUC':>6} {'predicted':>10} "
-        f"{'observed':>9} {'warned':>7} {'confused':>9} {'misread foreseen':>13} {'likelihood':>10}"
-    )
-    everything: dict[Person, list[Pairs]] = {"same": [], "another": []}
-    for recorded in recorded_sets(given.data / "trajectories"):
-        if given.sets and recorded.name not in given.sets:
-            continue
-        told_apart = len(np.unique(recorded.people)) > 1
-        for person, found in everything.items():
-            if person == "another" or told_apart:
-                found.append(studied(recorded, person, study))
-                name = f"{recorded.name} {person}"
-                print(report(name, found[-1], UNFORESEEN[person]), flush=True)
-    for person, found in everything.items():
-        for scale in [UNFORESEEN[person], *given.scales] if found else []:
-            print(report(f"all {person}", Pairs.joined(found), scale))
+    study = Study(given.draws, given.queries, given.variants, given.seed)
+    bars = {"pairs": MOST_CONFUSION, "gestures": MOST_MISSED}
+    found: dict[tuple[Person, str], list[Forecasts]] = {}
+    print("| set, performer | n | predicted | observed | slope | rank | warned | true | foreseen |")
+    for recorded in recorded_sets(given.data / "trajectories", given.sets):
+        people: tuple[Person, ...] = ("same", "another")
+        for person in people if len(np.unique(recorded.people)) > 1 else people[1:]:
+            for kind, part in zip(bars, studied(recorded, person, study), strict=True):
+                found.setdefault((person, kind), []).append(part)
+                print(row(f"{recorded.name} {person}, {kind}", part, bars[kind]), flush=True)
+    for (person, kind), parts in found.items():
+        everything = Forecasts.joined(parts)
+        print(row(f"all {person}, {kind}", everything, bars[kind]))
+        print("\n".join(calibration(everything)))
 
 
 if __name__ == "__main__":

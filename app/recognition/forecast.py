@@ -1,9 +1,10 @@
 """Forecasts: how often something will happen, estimated from few rehearsals, with its interval.
 
 Counting is too coarse here: of a dozen rehearsed takes none may be misread although one in fifty
-will be. What is known of each is more than whether it was misread: by how much it was not. Real
-takes differ from rehearsed ones by more than variants differ; a rehearsed take stands for all
-real ones around it, and some of those lie beyond the margin (a kernel estimate, Parzen 1962).
+will be. What is known of each is more than whether it was misread: by how much it was not. Their
+mean tells how far real takes lie from being misread, and how real takes scatter about it is known
+from people. How the rehearsed takes scatter is not asked: variants have a heavier tail than people,
+and asked one by one they warned of five confusions for each that came true (`docs/health.md`).
 """
 
 from __future__ import annotations
@@ -12,15 +13,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from app.recognition.poses import FloatArray
+from app.recognition.unforeseen import Unforeseen
 
 STANDARD_ERRORS = 1.96
 """Standard errors to either side that hold 95 % of a normal distribution."""
-
-LEAST_VARIANCE = 1e-12
-"""Least variance of probabilities: below it they are all the same but for rounding."""
 
 LARGEST_EXPONENT = 700.0
 """Below the logarithm of the largest number; the probability is 0 long before."""
@@ -48,7 +45,9 @@ class Forecast:
     high: float
 
     @classmethod
-    def of_margins(cls, margins: FloatArray, unforeseen: float) -> Forecast:
+    def of_margins(
+        cls, margins: FloatArray, unforeseen: Unforeseen, astray: float = 1.0
+    ) -> Forecast:
         """Estimate the probability of a margin below 0.
 
         Parameters
@@ -56,27 +55,31 @@ class Forecast:
         margins
             ``(N,)``, N >= 2, finite: of the rehearsed takes.
         unforeseen
-            Scale > 0 of the logistic distribution by which real margins differ from rehearsed
-            ones; its tails are heavier than a normal distribution's, as are people's.
+            How real takes stray from rehearsed ones: the share e of takes that are not what was
+            shown, and the scale h by which the margins of the others scatter about the mean of the
+            rehearsed ones. Their distribution is logistic, with heavier tails than the normal one.
+        astray
+            In [0, 1]: how probable it is for a take that is not what was shown.
 
         Returns
         -------
-        The mean of each take's probability ``1 / (1 + exp(margin / unforeseen))``, with Wilson's
-        interval for as many takes counted as would spread that mean alike.
+        ``e astray + (1 - e) / (1 + exp(mean / h))``; its interval is that of the mean.
 
         """
-        chances = 1 / (1 + np.exp(np.minimum(margins / unforeseen, LARGEST_EXPONENT)))
-        mean = float(chances.mean())
-        variance = max(float(chances.var(ddof=1)), LEAST_VARIANCE) / len(chances)
-        return cls._wilson(mean, max(mean * (1 - mean) / variance, len(chances)))
+        mean = float(margins.mean())
+        error = STANDARD_ERRORS * float(margins.std(ddof=1)) / math.sqrt(len(margins))
+        rate, low, high = (
+            unforeseen.otherwise * astray
+            + (1 - unforeseen.otherwise)
+            / (1 + math.exp(min(end / unforeseen.scatter, LARGEST_EXPONENT)))
+            for end in (mean, mean + error, mean - error)
+        )
+        return cls(rate, low, high)
 
     @classmethod
     def of_count(cls, happened: int, count: int) -> Forecast:
         """Estimate from a count out of `count` > 0, with Wilson's interval (Wilson 1927)."""
-        return cls._wilson(happened / count, count)
-
-    @classmethod
-    def _wilson(cls, share: float, count: float) -> Forecast:
+        share = happened / count
         square = STANDARD_ERRORS**2 / count
         middle = (share + square / 2) / (1 + square)
         half = math.sqrt(share * (1 - share) * square + square * square / 4) / (1 + square)

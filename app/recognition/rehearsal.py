@@ -16,7 +16,7 @@ from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.recognizer import Recognizer
 from app.recognition.rejection import SCORE_FLOOR
-from app.recognition.unforeseen import UNFORESEEN
+from app.recognition.unforeseen import UNFORESEEN, Unforeseen
 from app.recognition.variation import Person, variants
 
 WIDEST_MARGIN = 4.0
@@ -46,7 +46,7 @@ class Rehearsal:
     gestures: npt.NDArray[np.intp]
     scores: FloatArray
     novelty: FloatArray
-    unforeseen: float
+    unforeseen: Unforeseen
 
     @property
     def margins(self) -> FloatArray:
@@ -59,12 +59,17 @@ class Rehearsal:
         return np.asarray(np.clip(logarithms - own, -WIDEST_MARGIN, WIDEST_MARGIN))
 
     def confusion(self, performer: int, other: int) -> Forecast:
-        """Forecast how often a gesture is nearer to another one than to itself."""
-        return Forecast.of_margins(self.margins[performer, :, other], self.unforeseen)
+        """Forecast how often a gesture is nearer to another one than to itself.
+
+        A take that is not what was shown is as near to any gesture.
+        """
+        astray = 1 / self.scores.shape[2]
+        return Forecast.of_margins(self.margins[performer, :, other], self.unforeseen, astray)
 
     def misread(self, performer: int) -> Forecast:
         """Forecast how often a gesture is nearer to any other one than to itself."""
-        return Forecast.of_margins(self._to_rivals(performer), self.unforeseen)
+        astray = 1 - 1 / self.scores.shape[2]
+        return Forecast.of_margins(self._to_rivals(performer), self.unforeseen, astray)
 
     def refused(self, performer: int) -> Forecast:
         """Forecast how often a gesture is too far from itself to be recognised at all."""

@@ -1,4 +1,4 @@
-"""How much farther real takes stray than the variants that stand for them in forecasts.
+"""How real takes stray from the variants that stand for them in forecasts.
 
 Calibration and the health report both forecast from variants, and both must allow for the same.
 """
@@ -6,12 +6,38 @@ Calibration and the health report both forecast from variants, and both must all
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
 from app.recognition.variation import Person
 
-UNFORESEEN: Final[Mapping[Person, float]] = MappingProxyType({"same": 0.15, "another": 0.2})
-"""Scale by which margins of real takes differ from those of variants, by whose takes they are, see
-`Forecast.of_margins`: others also draw a letter with other strokes, which no variant of one
-demonstration can know. Measured on other people's recordings (`docs/results.md`, Health)."""
+
+@dataclass(frozen=True)
+class Unforeseen:
+    """What no variant of one demonstration can tell.
+
+    Attributes
+    ----------
+    scatter
+        Scale > 0 of the logistic distribution of real takes' margins about the mean of the
+        variants', see `Forecast.of_margins`.
+    otherwise
+        Share in [0, 1] of takes that are not what was shown: a letter drawn with other strokes,
+        another sign.
+
+    """
+
+    scatter: float
+    otherwise: float
+
+
+UNFORESEEN: Final[Mapping[Person, Unforeseen]] = MappingProxyType(
+    {
+        "same": Unforeseen(scatter=0.25, otherwise=0.003),
+        "another": Unforeseen(scatter=0.25, otherwise=0.04),
+    }
+)
+"""By whose takes they are: the likeliest on recorded takes of five sets, where the scatter is from
+0.25 to 0.3 for either, and from 0.03 to 0.05 of other people's takes are not what was shown
+(`docs/health.md`)."""

@@ -6,17 +6,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.forecast import Forecast
+from app.recognition.unforeseen import Unforeseen
 
 MARGINS = st.lists(st.floats(-5, 5), min_size=2, max_size=40).map(np.array)
 SPREADS = st.floats(0.1, 2)
+SHARES = st.floats(0, 1)
 
 
-@given(MARGINS, SPREADS)
+@given(MARGINS, SPREADS, SHARES)
 def test_a_rate_lies_in_its_interval_and_that_in_zero_to_one(
-    margins: np.ndarray, unforeseen: float
+    margins: np.ndarray, scatter: float, otherwise: float
 ) -> None:
-    forecast = Forecast.of_margins(margins, unforeseen)
-    assert 0 <= forecast.low <= forecast.rate <= forecast.high <= 1
+    forecast = Forecast.of_margins(margins, Unforeseen(scatter, otherwise))
+    assert otherwise <= forecast.low <= forecast.rate <= forecast.high <= 1
 
 
 @given(st.integers(1, 60).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
@@ -27,32 +29,46 @@ def test_a_count_lies_in_its_interval(counted: tuple[int, int]) -> None:
 
 @given(MARGINS, SPREADS, st.floats(0.01, 3))
 def test_greater_margins_are_never_more_often_below_zero(
-    margins: np.ndarray, unforeseen: float, more: float
+    margins: np.ndarray, scatter: float, more: float
 ) -> None:
-    narrow = Forecast.of_margins(margins, unforeseen)
-    assert Forecast.of_margins(margins + more, unforeseen).rate <= narrow.rate + 1e-12
+    narrow = Forecast.of_margins(margins, Unforeseen(scatter, 0))
+    assert Forecast.of_margins(margins + more, Unforeseen(scatter, 0)).rate <= narrow.rate + 1e-12
 
 
 def test_no_margin_at_all_is_a_guess() -> None:
-    assert Forecast.of_margins(np.zeros(8), 0.5).rate == 0.5
+    assert Forecast.of_margins(np.zeros(8), Unforeseen(0.5, 0)).rate == 0.5
 
 
-@pytest.mark.parametrize("mean", [0.0, 0.5, 1.0])
-def test_real_takes_that_scatter_as_foreseen_are_forecast_right(mean: float) -> None:
+@pytest.mark.parametrize("mean", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("tail", [3.0, 30.0])
+def test_real_takes_that_scatter_as_foreseen_are_forecast_right(mean: float, tail: float) -> None:
+    """However heavy the tail of the rehearsed ones is."""
     generator = np.random.default_rng(1)
-    rehearsed = generator.normal(mean, 1, (400, 16))
-    true = float((rehearsed + generator.logistic(0, 0.3, rehearsed.shape) < 0).mean())
-    forecasts = [Forecast.of_margins(margins, 0.3) for margins in rehearsed]
+    rehearsed = mean + 0.4 * generator.standard_t(tail, (400, 64)) / np.sqrt(tail / (tail - 2))
+    true = float((mean + generator.logistic(0, 0.25, 100_000) < 0).mean())
+    forecasts = [Forecast.of_margins(margins, Unforeseen(0.25, 0)) for margins in rehearsed]
     assert np.mean([each.rate for each in forecasts]) == pytest.approx(true, abs=0.01)
     assert np.mean([each.low <= true <= each.high for each in forecasts]) > 0.85
 
 
+def test_takes_that_are_not_what_was_shown_are_missed_however_far_from_it() -> None:
+    assert Forecast.of_margins(np.full(8, 4.0), Unforeseen(0.25, 0.04)).rate == pytest.approx(
+        0.04, abs=1e-6
+    )
+
+
 def test_more_rehearsals_make_the_interval_narrower() -> None:
     margins = np.random.default_rng(2).normal(1, 1, 200)
-    few, many = Forecast.of_margins(margins[:10], 0.5), Forecast.of_margins(margins, 0.5)
+    few, many = (
+        Forecast.of_margins(margins[:10], Unforeseen(0.5, 0)),
+        Forecast.of_margins(margins, Unforeseen(0.5, 0)),
+    )
     assert many.high - many.low < few.high - few.low
 
 
-def test_what_is_unforeseen_makes_rare_things_likelier() -> None:
+def test_a_wider_scatter_makes_rare_things_likelier() -> None:
     margins = np.random.default_rng(3).normal(2, 0.5, 20)
-    assert Forecast.of_margins(margins, 0.6).rate > Forecast.of_margins(margins, 0.3).rate
+    assert (
+        Forecast.of_margins(margins, Unforeseen(0.6, 0)).rate
+        > Forecast.of_margins(margins, Unforeseen(0.3, 0)).rate
+    )
