@@ -23,10 +23,14 @@ from app.clip_argument import (
     ClipReading,
     Demonstration,
     EstimatorOption,
+    FrameRateOption,
+    FrameSizeOption,
     HandsOption,
+    LandmarkOption,
     WaterOption,
     clip_and_span,
     demonstration_poses,
+    keypoint_options,
     read_clip,
     spotted_takes,
 )
@@ -125,7 +129,7 @@ def define(
         typer.Argument(
             metavar="LABEL=CLIP...",
             help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without. "
-            "A dive recording does too, as LABEL=BAG or LABEL=BAG@/TOPIC.",
+            "A dive recording does too, as LABEL=BAG or LABEL=BAG@/TOPIC, and a keypoint file.",
         ),
     ],
     name: Annotated[str, typer.Option(help="Name of the language.")],
@@ -134,9 +138,13 @@ def define(
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
 ) -> None:
     """Make a language from one demonstration clip per gesture."""
-    reading = ClipReading(water, estimator, hands)
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    reading = ClipReading(water, estimator, hands, keypoints=keypoints)
     gestures = []
     for demonstration in [Demonstration.parse(text) for text in demonstrations]:
         poses = demonstration_poses(demonstration, reading)
@@ -155,7 +163,10 @@ def define(
 def recognize(
     clip: Annotated[
         str,
-        typer.Argument(help="Clip or rosbag2 with gestures between salutes, or CLIP@START-END."),
+        typer.Argument(
+            help="Clip or rosbag2 with gestures between salutes, or CLIP@START-END. Or a keypoint "
+            "file: OpenPose's folder, MediaPipe's CSV or JSON, DeepLabCut's CSV, SLEAP's .slp, .h5."
+        ),
     ],
     language: Annotated[Path, typer.Option(help="Language file.")],
     profile: Annotated[
@@ -176,6 +187,9 @@ def recognize(
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
 ) -> None:
     """Name the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
@@ -184,7 +198,8 @@ def recognize(
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
     recognizer = Recognizer(spoken, profile=profile)
     spotter = Spotter(recognizer) if without_salutes else None
-    read = read_clip(path, ClipReading(water, estimator, hands, topic), spoken)
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), spoken)
     recording = read.recording
     if spotter is not None:
         results = spotted_takes(spotter, recording, span)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
@@ -12,8 +12,9 @@ import numpy as np
 import typer
 
 from app.bags import bag_and_topic, holds_keypoints, is_bag, record_bag
+from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
-from app.recognition.errors import GestureError, VideoError
+from app.recognition.errors import GestureError, KeypointFileError, VideoError
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
@@ -44,6 +45,56 @@ HandsOption = Annotated[
 ]
 
 
+FrameRateOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="RATE", help="Frames a second of a keypoint file's video, where it counts frames."
+    ),
+]
+
+FrameSizeOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="WIDTHxHEIGHT", help="Pixels of a keypoint file's video, where it has fractions."
+    ),
+]
+
+LandmarkOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=LANDMARK", help="What a keypoint file's name means here; repeat for more."
+    ),
+]
+
+
+def keypoint_options(
+    frame_rate: float | None, frame_size: str | None, landmark: list[str] | None
+) -> KeypointOptions:
+    """Read what the user says of keypoint files.
+
+    Raises
+    ------
+    KeypointFileError
+        When a size is not WIDTHxHEIGHT or a landmark not NAME=LANDMARK.
+
+    """
+    size = None
+    if frame_size is not None:
+        match = re.fullmatch(r"(\d{1,5})x(\d{1,5})", frame_size.strip().lower())
+        if match is None:
+            raise KeypointFileError(f"{frame_size!r} is no size; give WIDTHxHEIGHT, as 1920x1080")
+        size = int(match[1]), int(match[2])
+    names = {}
+    for pair in landmark or ():
+        name, equals, meant = (part.strip() for part in pair.rpartition("="))
+        if not equals or not name or not meant:
+            raise KeypointFileError(
+                f"{pair!r} is not NAME=LANDMARK; say what a name means, as in paw=right_wrist"
+            )
+        names[name] = meant
+    return KeypointOptions(frame_rate, size, names)
+
+
 @dataclass(frozen=True)
 class ClipReading:
     """How clips are turned into landmarks.
@@ -56,6 +107,8 @@ class ClipReading:
         What finds body and hands, see `create_estimator`.
     topic
         Of a dive recording, which one; None: the one that the clip names, or the only one.
+    keypoints
+        What keypoint files do not tell.
 
     """
 
@@ -63,6 +116,7 @@ class ClipReading:
     estimator: str = "onnx"
     hands: str = MEDIAPIPE_HANDS
     topic: str | None = None
+    keypoints: KeypointOptions = field(default_factory=KeypointOptions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,23 +272,24 @@ def spotted_takes(
 def read_clip(
     clip: Path, reading: ClipReading | None = None, language: Language | None = None
 ) -> ReadClip:
-    """Extract a clip's landmarks behind a progress bar, and print the recording's warnings.
+    """Read a clip's landmarks, and print what there is to know about the recording.
 
     Parameters
     ----------
     clip
-        The clip's file, or a dive recording as ``BAG`` or ``BAG@/TOPIC``.
+        A video, whose landmarks are found behind a progress bar; a dive recording as ``BAG`` or
+        ``BAG@/TOPIC``; or a keypoint file or folder of another program (`app.keypoint_files`).
     reading
         How to read it; None: with the installed models.
     language
-        What is to be recognised: a source without the landmarks it needs is refused before any
-        frame is looked at.
+        What is to be recognised: a source without the landmarks it needs is refused before
+        anything is recognised, and before a model looks at any frame.
 
     Raises
     ------
     LandmarkError
         When the source lacks a landmark of the language.
-    VideoError
+    VideoError, KeypointFileError
         When there is no clip, or none that can be read.
     BagError
         When it is a dive recording and cannot be read, or has no such topic.
@@ -245,13 +300,20 @@ def read_clip(
     topic = how.topic or named
     if not path.exists():
         raise VideoError(f"{path} is not a file; give the path of a clip")
+    if path.is_dir() and not is_bag(path) and not is_keypoint_file(path):
+        raise VideoError(
+            f"{path} holds neither a dive recording (metadata.yaml) nor frames of OpenPose "
+            f"(*_keypoints.json); give the folder that holds one of them"
+        )
     as_bag = is_bag(path) or path.is_dir() or topic is not None
-    if as_bag and holds_keypoints(path, topic):
+    if topic is None and is_keypoint_file(path):
+        read = _read_keypoint_file(path, how, language)
+    elif as_bag and holds_keypoints(path, topic):
         read = _read_keypoints(path, topic, language)
     else:
         read = _read_pictures(path, topic, how, language, as_bag)
     for warning in read.recording.warnings:
-        people.print(f"{clip}: {warning}")
+        people.print(f"{clip}: {warning}", markup=False)
     return read
 
 
@@ -279,3 +341,11 @@ def _read_pictures(
             else:
                 recording = record(path, estimator=estimator, progress=advance, water=how.water)
         return ReadClip(recording, salutes=finds_hands(estimator))
+
+
+def _read_keypoint_file(path: Path, how: ClipReading, language: Language | None) -> ReadClip:
+    """Read another program's keypoints, whose landmarks are known when they are read."""
+    read = read_keypoints(path, how.keypoints)
+    if language is not None:
+        require_landmarks(language, read.recording.poses.landmarks, str(path))
+    return ReadClip(read.recording, salutes=read.has_hands)

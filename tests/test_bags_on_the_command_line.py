@@ -66,7 +66,10 @@ def test_what_is_no_bag_is_told_in_one_line(
 ) -> None:
     (tmp_path / "empty").mkdir()
     for arguments, words in (
-        ((tmp_path / "empty",), "empty is no dive recording: neither a folder with metadata.yaml"),
+        (
+            (tmp_path / "empty",),
+            "empty holds neither a dive recording (metadata.yaml) nor frames of OpenPose",
+        ),
         ((tmp_path / "absent", "--topic", "/camera"), "absent is not a file"),
         ((language, "--topic", "/camera"), "shapes.json is no dive recording"),
     ):

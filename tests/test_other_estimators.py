@@ -99,7 +99,9 @@ def test_what_cannot_be_used_is_one_line(
 ) -> None:
     file = tmp_path / "pool.json"
     pool(circle=circle).save(file)
-    ended = osg_studio("recognize", file, "--language", file, *options)
+    clip = tmp_path / "clip.mkv"
+    clip.touch()
+    ended = osg_studio("recognize", clip, "--language", file, *options)
     assert (ended.code, ended.out) == (2, "")
     assert message in ended.error
     assert ended.error.count("\n") == 1

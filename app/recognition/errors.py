@@ -30,6 +30,10 @@ class LandmarkError(PoseError):
         self.landmark = landmark
 
 
+class KeypointFileError(RecognitionError):
+    """Raised when another program's keypoint file cannot be read, or does not tell enough."""
+
+
 class VideoError(RecognitionError):
     """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
 

@@ -1,0 +1,120 @@
+"""Predictions of DeepLabCut as CSV: three or four rows of headings, then one row a frame.
+
+DeepLabCut writes HDF5 first; those files hold pickled Python objects, which run whatever code is in
+them when read. CSV holds numbers: ``deeplabcut.analyze_videos_converth5_to_csv`` writes it.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from app.keypoint_files.people import most_prominent
+from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.recognition.errors import KeypointFileError
+from app.recognition.poses import FloatArray
+from app.recognition.video_limits import VideoLimits
+
+LEAST_LIKELIHOOD: Final = 0.6
+"""Below it a keypoint is not seen: DeepLabCut's own default (``pcutoff``). What is less likely is
+often somewhere else altogether."""
+
+MOST_HEADINGS: Final = 4
+"""Rows: scorer, individuals, bodyparts, coords."""
+
+ONLY: Final = "single"
+"""What the one individual of a file without individuals is called."""
+
+
+def is_deeplabcut(path: Path) -> bool:
+    """Tell whether a CSV file begins as DeepLabCut's do."""
+    with path.open("rb") as file:
+        return file.read(6).lower() == b"scorer"
+
+
+def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Read a file of predictions; of several individuals the most prominent is taken.
+
+    See `app.keypoint_files.read_keypoints`.
+    """
+    del options  # DeepLabCut's files need nothing but a frame rate, which is asked for later
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        lines = csv.reader(file)
+        headings = _headings(lines, path)
+        rows: list[FloatArray] = []
+        for line in lines:
+            if line:
+                limits.require_frames(len(rows) + 1)
+                rows.append(_numbers(line, headings, len(rows), path))
+    if not rows:
+        raise KeypointFileError(f"{path} has headings and no frame")
+    table = np.array(rows)
+    who = list(dict.fromkeys(headings["individuals"]))
+    names = tuple(dict.fromkeys(headings["bodyparts"]))
+    xy = np.full((len(who), len(rows), len(names), 2), np.nan)
+    confidence = np.zeros(xy.shape[:3])
+    for column, (individual, part, axis) in enumerate(
+        zip(headings["individuals"], headings["bodyparts"], headings["coords"], strict=True), 1
+    ):
+        place = who.index(individual), slice(None), names.index(part)
+        if axis == "likelihood":
+            confidence[place] = np.nan_to_num(table[:, column])
+        else:
+            xy[(*place, "xy".index(axis))] = table[:, column]
+    confidence = np.clip(confidence, 0, 1)
+    xy = seen_only(xy, confidence, LEAST_LIKELIHOOD)
+    chosen = most_prominent(xy, confidence)
+    return KeypointTable(
+        names=names,
+        xy=xy[chosen],
+        confidence=confidence[chosen],
+        times=Times(table[:, 0], counted=True),
+        notes=_notes(who, chosen),
+    )
+
+
+def _headings(lines: Iterator[list[str]], path: Path) -> dict[str, list[str]]:
+    """Return individual, body part and coordinate of every column after the first."""
+    rows: dict[str, list[str]] = {}
+    for line in lines:
+        if line:
+            rows[line[0].strip().lower()] = [cell.strip() for cell in line[1:]]
+        if "coords" in rows or len(rows) > MOST_HEADINGS:
+            break
+    coords = rows.get("coords", [])
+    known = {"x", "y", "likelihood"}
+    if (
+        "bodyparts" not in rows
+        or not coords
+        or set(coords) - known
+        or not {"x", "y"} <= set(coords)
+    ):
+        raise KeypointFileError(
+            f"{path} lacks DeepLabCut's headings scorer, bodyparts, coords (x, y, likelihood); "
+            f"write it with deeplabcut.analyze_videos_converth5_to_csv"
+        )
+    rows.setdefault("individuals", [ONLY] * len(coords))
+    return rows
+
+
+def _numbers(line: list[str], headings: dict[str, list[str]], row: int, path: Path) -> FloatArray:
+    wanted = len(headings["coords"]) + 1
+    if len(line) != wanted:
+        raise KeypointFileError(f"{path}: row {row} has {len(line)} cells, expected {wanted}")
+    try:
+        return np.array([float(cell) if cell.strip() else np.nan for cell in line])
+    except ValueError as error:
+        raise KeypointFileError(
+            f"{path}: row {row} is no row of numbers ({error}); labelled pictures are no recording,"
+            f" give the predictions for a video"
+        ) from error
+
+
+def _notes(who: list[str], chosen: int) -> tuple[str, ...]:
+    if len(who) == 1:
+        return ()
+    return (f"of {len(who)} individuals {who[chosen]!r} stands out most and is followed",)

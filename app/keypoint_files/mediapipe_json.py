@@ -1,0 +1,131 @@
+"""MediaPipe's landmarks as JSON, the ways people write them.
+
+A list of frames, or an object with one under ``frames``. A frame is a list of landmarks, or an
+object with one under ``landmarks``, ``pose_landmarks`` or ``keypoints``. A landmark is an object
+with x and y (and a name), a list ``[x, y, z, visibility]``, or stands under its name.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from app.keypoint_files.columns import AXES, MOST_LANDMARKS, numbered_landmark, plain, time_column
+from app.keypoint_files.mediapipe_table import times_of
+from app.keypoint_files.table import KeypointOptions, KeypointTable, seen_only, visibility_of
+from app.recognition.errors import KeypointFileError
+from app.recognition.video_limits import VideoLimits
+
+LARGEST_FILE: Final = 200_000_000
+"""Bytes; a quarter of an hour of 33 landmarks with all their digits takes 150 MB."""
+
+FRAMES: Final = ("frames", "poses", "data", "results")
+LANDMARKS: Final = ("landmarks", "pose_landmarks", "keypoints", "pose")
+"""Keys of the list of frames, and of a frame's landmarks."""
+
+ORDER: Final = ("x", "y", "z", "v")
+"""Of a landmark that is a list; three numbers are x, y and z."""
+
+
+def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Read a JSON file of one recording; see `app.keypoint_files.read_keypoints`."""
+    del options
+    if path.stat().st_size > LARGEST_FILE:
+        raise KeypointFileError(f"{path} is larger than {LARGEST_FILE // 1_000_000} MB; cut it")
+    try:
+        content = json.loads(path.read_bytes())
+        frames = _frames(content)
+        limits.require_frames(len(frames))
+        rows = [_landmarks(frame) for frame in frames]
+    except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
+        if isinstance(error, KeypointFileError):
+            raise
+        raise KeypointFileError(
+            f"{path} holds no frames of landmarks ({type(error).__name__}: {error}); expected a "
+            f"list of frames, each a list of landmarks with x and y"
+        ) from error
+    names = tuple(dict.fromkeys(name for row in rows for name in row))
+    if not names or len(names) > MOST_LANDMARKS:
+        raise KeypointFileError(
+            f"{path} holds {len(names)} landmarks in {len(frames)} frames; expected up to "
+            f"{MOST_LANDMARKS}, as in MediaPipe's pose_landmarks"
+        )
+    unseen = (np.nan, np.nan, np.nan)
+    points = np.array([[row.get(name, unseen) for name in names] for row in rows])
+    told = bool(np.isfinite(points[..., 2]).any())
+    confidence = visibility_of(points) if told else None
+    times, unit = _times(frames)
+    return KeypointTable(
+        names=names,
+        xy=seen_only(points[..., :2], confidence, 0.0),
+        confidence=confidence,
+        times=times_of(np.array(times), unit),
+        frame_size=_size(content),
+        frame_rate=_rate(content),
+    )
+
+
+def _frames(content: Any) -> list[Any]:
+    frames = content
+    if isinstance(content, Mapping):
+        frames = next((content[key] for key in FRAMES if key in content), None)
+    if not isinstance(frames, list):
+        raise TypeError(f"no list of frames, but {type(frames).__name__}")
+    return frames
+
+
+def _size(content: Any) -> tuple[int, int] | None:
+    """Return the video's width and height, where the file tells them beside the frames."""
+    if isinstance(content, Mapping) and content.get("width") and content.get("height"):
+        return int(content["width"]), int(content["height"])
+    return None
+
+
+def _rate(content: Any) -> float | None:
+    if isinstance(content, Mapping) and content.get("fps"):
+        return float(content["fps"])
+    return None
+
+
+def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
+    """Return x, y and visibility by name; empty where nobody is seen."""
+    if isinstance(frame, Mapping):
+        frame = next((frame[key] for key in LANDMARKS if key in frame), None)
+    if not frame:
+        return {}
+    if isinstance(frame, Mapping):
+        return {str(name): _point(point) for name, point in frame.items()}
+    if isinstance(frame[0], list) and frame[0] and isinstance(frame[0][0], (Mapping, list)):
+        frame = frame[0]  # MediaPipe Tasks gives a list of people, the surest first
+    found = {}
+    for index, point in enumerate(frame):
+        named = isinstance(point, Mapping) and point.get("name")
+        found[str(named) if named else numbered_landmark(str(index))] = _point(point)
+    return found
+
+
+def _point(point: Any) -> tuple[float, float, float]:
+    if isinstance(point, Mapping):
+        values = {AXES.get(plain(str(key))): value for key, value in point.items()}
+    else:
+        values = dict(zip(ORDER, point, strict=False))
+    x, y, visibility = (values.get(axis) for axis in ("x", "y", "v"))
+    if x is None or y is None:
+        return np.nan, np.nan, np.nan
+    return float(x), float(y), np.nan if visibility is None else float(visibility)
+
+
+def _times(frames: list[Any]) -> tuple[list[float], str]:
+    """Return when the frames are, and in what unit; without any time they are counted."""
+    counted = [float(index) for index in range(len(frames))]
+    if not frames or not all(isinstance(frame, Mapping) for frame in frames):
+        return counted, "frames"
+    keys = [str(key) for key in frames[0]]
+    place, unit = time_column(keys)
+    if place is None:
+        return counted, "frames"
+    return [float(frame[keys[place]]) for frame in frames], unit

@@ -1,0 +1,147 @@
+"""MediaPipe's landmarks as CSV, the ways people write them: no program of its own writes any.
+
+One frame a row, with numbered columns (``x0,y0,z0,v0,x1,...``) or named ones (``nose_x``,
+``LEFT_WRIST.visibility``), or one landmark a row (``frame,landmark,x,y``).
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from app.keypoint_files.columns import (
+    AXES,
+    MOST_LANDMARKS,
+    NAMES,
+    Columns,
+    columns_of,
+    numbered_landmark,
+    plain,
+    time_column,
+)
+from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only, visibility_of
+from app.recognition.errors import KeypointFileError
+from app.recognition.poses import FloatArray
+from app.recognition.video_limits import VideoLimits
+
+
+def read_mediapipe_table(
+    path: Path, options: KeypointOptions, limits: VideoLimits
+) -> KeypointTable:
+    """Read a CSV file of either form; see `app.keypoint_files.read_keypoints`."""
+    del options
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        lines = csv.reader(file)
+        headings = next(lines, [])
+        plainly = [plain(heading) for heading in headings]
+        if any(name in plainly for name in NAMES) and {"x", "y"} <= set(plainly):
+            return _long(lines, headings, path, limits)
+        columns = columns_of(headings)
+        if not columns.points or len(columns.points) > MOST_LANDMARKS:
+            raise KeypointFileError(
+                f"{path} has no columns of keypoints among {_shown(headings)}; expected x0, y0, "
+                f"..., or nose_x, nose_y, ..., or frame, landmark, x, y"
+            )
+        return _wide(lines, columns, path, limits)
+
+
+def times_of(values: FloatArray, unit: str) -> Times:
+    """Return when frames are, from what a file says in seconds, milliseconds or frames.
+
+    A clock without a unit counts milliseconds where its steps are longer than a second: frames so
+    far apart would show no gesture.
+    """
+    if unit == "frames":
+        return Times(values, counted=True)
+    if unit == "ms" or (len(values) > 1 and float(np.median(np.diff(values))) > 1):
+        return Times(values / 1000, counted=False)
+    return Times(values, counted=False)
+
+
+def _wide(
+    lines: Iterator[list[str]], columns: Columns, path: Path, limits: VideoLimits
+) -> KeypointTable:
+    names = tuple(columns.points)
+    places = [columns.points[name] for name in names]
+    told = any("v" in each for each in places)
+    rows: list[list[list[float]]] = []
+    times: list[float] = []
+    for number, line in enumerate(_lines(lines)):
+        limits.require_frames(number + 1)
+        rows.append(
+            [
+                [_number(line, each.get(axis), number, path) for axis in ("x", "y", "v")]
+                for each in places
+            ]
+        )
+        times.append(
+            float(number) if columns.when is None else _number(line, columns.when, number, path)
+        )
+    return _table(names, rows, told, times_of(np.array(times), columns.unit))
+
+
+def _long(
+    lines: Iterator[list[str]], headings: Sequence[str], path: Path, limits: VideoLimits
+) -> KeypointTable:
+    plainly = [plain(heading) for heading in headings]
+    named = next(plainly.index(name) for name in NAMES if name in plainly)
+    when, unit = time_column(headings)
+    if when is None:
+        raise KeypointFileError(
+            f"{path} has one landmark a row and no column that tells the frame, among "
+            f"{_shown(headings)}; add one named frame or time"
+        )
+    axes = {AXES[name]: place for place, name in enumerate(plainly) if name in AXES}
+    frames: dict[float, dict[str, list[float]]] = {}
+    for number, line in enumerate(_lines(lines)):
+        at = _number(line, when, number, path)
+        limits.require_frames(len(frames))
+        landmarks = frames.setdefault(at, {})
+        name = numbered_landmark(line[named].strip())
+        if name in landmarks or len(landmarks) >= MOST_LANDMARKS:
+            raise KeypointFileError(
+                f"{path}: row {number} is the second for {name} at {at:g}; keep one person's rows"
+            )
+        landmarks[name] = [_number(line, axes.get(axis), number, path) for axis in ("x", "y", "v")]
+    names = tuple(dict.fromkeys(name for landmarks in frames.values() for name in landmarks))
+    unseen = [np.nan] * 3
+    rows = [[landmarks.get(name, unseen) for name in names] for landmarks in frames.values()]
+    return _table(names, rows, "v" in axes, times_of(np.array(list(frames)), unit))
+
+
+def _table(
+    names: tuple[str, ...], rows: list[list[list[float]]], told: bool, times: Times
+) -> KeypointTable:
+    """Make a table of T rows of K landmarks of x, y and visibility."""
+    points = np.array(rows, dtype=np.float64).reshape(-1, len(names), 3)
+    confidence = visibility_of(points) if told else None
+    return KeypointTable(
+        names=names,
+        xy=seen_only(points[..., :2], confidence, 0.0),
+        confidence=confidence,
+        times=times,
+    )
+
+
+def _lines(lines: Iterator[list[str]]) -> list[list[str]]:
+    return [line for line in lines if any(cell.strip() for cell in line)]
+
+
+def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> float:
+    """Return a cell's number; NaN for an empty cell or a column that is not there."""
+    if place is None:
+        return np.nan
+    cell = line[place].strip() if place < len(line) else ""
+    try:
+        return float(cell) if cell and cell.lower() not in ("none", "null") else np.nan
+    except ValueError as error:
+        raise KeypointFileError(
+            f"{path}: row {row} has {cell[:40]!r} in column {place + 1}, expected a number"
+        ) from error
+
+
+def _shown(headings: Sequence[str]) -> str:
+    return ", ".join(heading[:20] for heading in headings[:6]) or "none"

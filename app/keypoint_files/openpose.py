@@ -1,0 +1,175 @@
+"""A folder that OpenPose wrote with ``--write_json``: one file a frame, with everybody in it.
+
+Files are described in OpenPose's own documentation ("Output"): BODY_25 or COCO (18), x, y and
+confidence in a row, zeros for what was not found; with ``--hand`` also 21 keypoints of each hand,
+in the same order as `HAND_LANDMARKS`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.recognition.errors import KeypointFileError
+from app.recognition.estimation.base import SIDES, Hand
+from app.recognition.landmark_sets import BODY_25, COCO_18, LandmarkSet
+from app.recognition.landmarks import HAND_LANDMARKS
+from app.recognition.poses import FloatArray
+from app.recognition.subject import SubjectChoice, boxes_around
+from app.recognition.video_limits import VideoLimits
+
+SETS: Final[dict[int, LandmarkSet]] = {25: BODY_25, 18: COCO_18}
+"""By the number of keypoints."""
+
+LARGEST_FILE: Final = 4_000_000
+"""Bytes of one frame's file; a person with face and hands takes 6 kB."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Person:
+    """One person in one frame: ``(K, 3)`` body, and of each side a hand ``(21, 3)`` or None."""
+
+    body: FloatArray
+    hands: tuple[FloatArray | None, ...]
+
+    @property
+    def xy(self) -> FloatArray:
+        return seen_only(self.body[:, :2], self.body[:, 2], 0.0)
+
+
+def is_openpose(path: Path) -> bool:
+    """Tell whether a folder holds frames of OpenPose."""
+    return path.is_dir() and bool(_files(path))
+
+
+def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Read a folder of frames, sorted by the number in their names; see `read_keypoints`."""
+    files = _numbered(path)
+    limits.require_frames(len(files))
+    frames = np.array([number for number, _ in files], dtype=np.float64)
+    everybody = [_people(file) for _, file in files]
+    sizes = {len(person.body) for people in everybody for person in people}
+    if not sizes:
+        raise KeypointFileError(f"{path}: nobody is seen in any of {len(files)} frames")
+    if len(sizes) > 1:
+        raise KeypointFileError(
+            f"{path} mixes people of {' and '.join(str(size) for size in sorted(sizes))} keypoints;"
+            f" run OpenPose with one model for all frames"
+        )
+    landmarks = SETS[sizes.pop()]
+    followed = _followed(everybody, frames / (options.nominal_rate))
+    empty = np.full((len(landmarks), 3), np.nan)
+    rows = np.stack([empty if one is None else one.body for one in followed])
+    kept = [index for index, name in enumerate(landmarks) if name is not None]
+    confidence = np.clip(np.nan_to_num(rows[:, kept, 2]), 0, 1)
+    sought = any(hand is not None for people in everybody for one in people for hand in one.hands)
+    most = max(len(people) for people in everybody)
+    return KeypointTable(
+        names=tuple(name for name in landmarks if name is not None),
+        xy=seen_only(rows[:, kept, :2], confidence, 0.0),
+        confidence=confidence,
+        times=Times(frames, counted=True),
+        hands=tuple(_hands(one) for one in followed) if sought else None,
+        notes=(f"up to {most} people in a frame; the largest is followed",) if most > 1 else (),
+    )
+
+
+def _files(folder: Path) -> list[Path]:
+    named = sorted(folder.glob("*_keypoints.json"))
+    return named or sorted(folder.glob("*.json"))
+
+
+def _numbered(folder: Path) -> list[tuple[int, Path]]:
+    files = _files(folder)
+    if not files:
+        raise KeypointFileError(
+            f"{folder} holds no *_keypoints.json; name the folder that OpenPose wrote to by "
+            f"--write_json"
+        )
+    numbered: dict[int, Path] = {}
+    for file in files:
+        digits = re.search(r"(\d{1,15})\D*$", file.stem)
+        if digits is None:
+            raise KeypointFileError(
+                f"{file.name} tells no frame number; OpenPose's files do, as in "
+                f"dive_000000000012_keypoints.json"
+            )
+        number = int(digits[1])
+        if number in numbered:
+            raise KeypointFileError(
+                f"{folder} holds frame {number} twice, {numbered[number].name} and {file.name}; "
+                f"keep one clip in a folder"
+            )
+        numbered[number] = file
+    return sorted(numbered.items())
+
+
+def _people(file: Path) -> list[_Person]:
+    try:
+        if file.stat().st_size > LARGEST_FILE:
+            raise KeypointFileError(f"{file} is larger than a frame of OpenPose can be")
+        people = json.loads(file.read_bytes())["people"]
+        found = [_person(entry, file) for entry in people]
+    except KeypointFileError:
+        raise
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise KeypointFileError(
+            f"{file} is no frame of OpenPose ({type(error).__name__}: {error}); expected an object "
+            f'with "people"'
+        ) from error
+    return [person for person in found if np.isfinite(person.xy).any()]
+
+
+def _person(entry: Any, file: Path) -> _Person:
+    body = _points(entry, ("pose_keypoints_2d", "pose_keypoints"), file)
+    if body is None or len(body) not in SETS:
+        seen = 0 if body is None else len(body)
+        raise KeypointFileError(
+            f"{file} has a person of {seen} keypoints, needed: 25 (BODY_25) or 18 (COCO)"
+        )
+    hands = tuple(_points(entry, (f"hand_{side}_keypoints_2d",), file) for side in SIDES)
+    if any(hand is not None and len(hand) != len(HAND_LANDMARKS) for hand in hands):
+        raise KeypointFileError(f"{file} has a hand without {len(HAND_LANDMARKS)} keypoints")
+    return _Person(body, hands)
+
+
+def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
+    """Return ``(K, 3)`` x, y, confidence, or None where the file gives nothing."""
+    values = next((entry[key] for key in keys if entry.get(key)), None)
+    if values is None:
+        return None
+    numbers = np.array(values, dtype=np.float64)
+    if numbers.ndim != 1 or len(numbers) % 3:
+        raise KeypointFileError(
+            f"{file} has {keys[0]} of {numbers.shape} values, expected x, y, confidence in a row"
+        )
+    return numbers.reshape(-1, 3)
+
+
+def _followed(everybody: list[list[_Person]], times: FloatArray) -> list[_Person | None]:
+    choice = SubjectChoice()
+    followed: list[_Person | None] = []
+    for people, time in zip(everybody, times.tolist(), strict=True):
+        chosen = None
+        if people:
+            boxes = boxes_around(np.stack([person.xy for person in people]))
+            scores = np.array([np.nanmean(person.body[:, 2]) for person in people])
+            chosen = choice.choose(boxes, scores, time)
+        followed.append(None if chosen is None else people[chosen])
+    return followed
+
+
+def _hands(person: _Person | None) -> tuple[Hand, ...]:
+    """Return the hands that are seen whole: of a half seen one no salute can be told."""
+    found = []
+    for side, points in zip(SIDES, person.hands if person else (None, None), strict=True):
+        if points is None or not np.isfinite(points).all() or not (points[:, 2] > 0).all():
+            continue
+        found.append(Hand(points[:, :2], side, float(np.clip(points[:, 2].mean(), 0, 1))))
+    return tuple(sorted(found, key=lambda hand: -hand.size))

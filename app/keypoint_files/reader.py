@@ -1,0 +1,216 @@
+"""Keypoint files as recordings: names mapped, units in pixels and seconds, gaps stated."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from app.keypoint_files.deeplabcut import is_deeplabcut, read_deeplabcut
+from app.keypoint_files.mediapipe_json import read_mediapipe_json
+from app.keypoint_files.mediapipe_table import read_mediapipe_table
+from app.keypoint_files.openpose import is_openpose, read_openpose
+from app.keypoint_files.sleap import read_sleap
+from app.keypoint_files.table import KeypointOptions, KeypointTable
+from app.recognition.errors import KeypointFileError
+from app.recognition.estimation.base import Hand
+from app.recognition.landmark_sets import landmark_named
+from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.salute import best_salute
+from app.recognition.video_limits import VideoLimits
+
+Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
+
+READERS: Mapping[str, Reader] = {
+    ".csv": read_mediapipe_table,
+    ".json": read_mediapipe_json,
+    ".slp": read_sleap,
+    ".h5": read_sleap,
+    ".hdf5": read_sleap,
+}
+"""By the file's ending; DeepLabCut's CSV is known by its first word, OpenPose by being a folder."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReadKeypoints:
+    """What was read from a keypoint file.
+
+    Attributes
+    ----------
+    recording
+        The landmarks, and the hands where the file has some.
+    has_hands
+        Whether the file has hands at all: without them there is no salute.
+
+    """
+
+    recording: Recording
+    has_hands: bool
+
+
+def is_keypoint_file(path: Path) -> bool:
+    """Tell whether a file or folder is to be read as keypoints and not as a video."""
+    return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
+
+
+def read_keypoints(
+    path: str | Path,
+    options: KeypointOptions | None = None,
+    limits: VideoLimits | None = None,
+) -> ReadKeypoints:
+    """Read one person's keypoints.
+
+    Names are mapped by `landmark_named` and by the user's own `options.landmarks`; what has no
+    counterpart is left out and told. Of several people the largest is followed.
+
+    Parameters
+    ----------
+    path
+        A folder of OpenPose's JSON; MediaPipe's landmarks as CSV or JSON; DeepLabCut's CSV; SLEAP's
+        .slp or analysis .h5 (extra ``keypoints``).
+    options
+        What the file does not tell.
+    limits
+        How long the recording may be.
+
+    Raises
+    ------
+    KeypointFileError
+        When the file cannot be read, no name in it is known, or it does not tell its frame rate or
+        frame size and the user does not either.
+    VideoError
+        When the recording is longer than the limits.
+
+    """
+    source, given = Path(path), options or KeypointOptions()
+    allowed = limits or VideoLimits()
+    table = _table(source, given, allowed)
+    time = _seconds(table, given, source)
+    allowed.require_seconds(float(time[-1] - time[0]))
+    landmarks, columns, notes = _mapped(table.names, given.landmarks, source)
+    size = _frame_size(table, given, source)
+    scale = np.array(size, dtype=np.float64) if table.in_fractions else np.ones(2)
+    poses = PoseSequence(
+        landmarks=landmarks,
+        xy=table.xy[:, columns] * scale,
+        confidence=None if table.confidence is None else table.confidence[:, columns],
+        time=time - time[0],
+        frame_size=size,
+    )
+    hands = table.hands or ((),) * len(poses)
+    hands = tuple(tuple(_scaled(hand, scale) for hand in frame) for frame in hands)
+    recording = Recording(
+        poses=poses,
+        hands=hands,
+        salute=np.array([best_salute(frame) for frame in hands]),
+        warnings=(*table.notes, *notes, *_gaps(poses)),
+    )
+    return ReadKeypoints(recording, table.hands is not None)
+
+
+def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    try:
+        table = _reader(path)(path, options, limits)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise KeypointFileError(f"{path} is no text table ({error}); export it again") from error
+    if not np.isfinite(table.xy).all(axis=2).any():
+        raise KeypointFileError(
+            f"{path}: no keypoint is seen in any of {len(table.xy)} frames; is somebody in the "
+            f"picture?"
+        )
+    return table
+
+
+def _reader(path: Path) -> Reader:
+    if path.is_dir():
+        return read_openpose
+    if not path.is_file():
+        raise KeypointFileError(f"{path} is not a file; give the path of a keypoint file")
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise KeypointFileError(
+            f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
+            f"folders of OpenPose"
+        )
+    if reader is read_mediapipe_table and is_deeplabcut(path):
+        return read_deeplabcut
+    return reader
+
+
+def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> FloatArray:
+    if not table.times.counted:
+        return table.times.values
+    rate = options.frame_rate or table.frame_rate
+    if rate is None:
+        raise KeypointFileError(
+            f"{path} counts frames and tells no time; give the video's frame rate, as in "
+            f"--frame-rate 30"
+        )
+    return table.times.values / rate
+
+
+def _mapped(
+    names: tuple[str, ...], given: Mapping[str, str], path: Path
+) -> tuple[tuple[str, ...], list[int], tuple[str, ...]]:
+    """Return our names, the columns they are in, and what was left out, in sentences."""
+    if unknown := [name for name in given if name not in names]:
+        raise KeypointFileError(f"{path} has no keypoint {unknown[0]!r}; it has {', '.join(names)}")
+    found: dict[str, int] = {}
+    dropped = []
+    for column, name in enumerate(names):
+        landmark = given.get(name) or landmark_named(name)
+        if landmark is None:
+            dropped.append(name)
+        elif landmark in found:
+            raise KeypointFileError(
+                f"{path}: {names[found[landmark]]!r} and {name!r} are both {landmark!r}; give one "
+                f"of them another name, as in --landmark {name}=other"
+            )
+        else:
+            found[landmark] = column
+    if not found:
+        raise KeypointFileError(
+            f"{path} names no keypoint that is known here: {', '.join(names)}; say which they are, "
+            f"as in --landmark {names[0]}=right_wrist"
+        )
+    notes = []
+    if dropped:
+        notes.append(
+            f"left out, for they mean no landmark here: {', '.join(dropped)}; keep one by "
+            f"--landmark {dropped[0]}=NAME"
+        )
+    if missing := [name for name in (*SHOULDERS, *HIPS) if name not in found]:
+        notes.append(
+            f"without {', '.join(missing)}: distance and drift are taken out by what is left of "
+            f"the torso"
+        )
+    return tuple(found), list(found.values()), tuple(notes)
+
+
+def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> tuple[int, int]:
+    """Return the picture's size; of pixels the box around them will do where nobody tells."""
+    size = options.frame_size or table.frame_size
+    if size is not None:
+        return size
+    if table.in_fractions:
+        raise KeypointFileError(
+            f"{path} tells fractions of the picture, whose shape it does not tell; give the "
+            f"video's size in pixels, as in --frame-size 1920x1080"
+        )
+    known = table.xy[np.isfinite(table.xy).all(axis=2)]
+    width, height = np.maximum(np.ceil(known.max(axis=0)), 1).astype(int).tolist()
+    return width, height
+
+
+def _scaled(hand: Hand, scale: FloatArray) -> Hand:
+    return replace(hand, xy=hand.xy * scale)
+
+
+def _gaps(poses: PoseSequence) -> tuple[str, ...]:
+    nobody = int((~poses.seen.any(axis=1)).sum())
+    return (f"no person in {nobody} of {len(poses)} frames",) if nobody else ()

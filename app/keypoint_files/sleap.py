@@ -1,0 +1,134 @@
+"""SLEAP's files, read by its own library: projects and predictions (.slp), and analysis (.h5)."""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.keypoint_files.people import most_prominent
+from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.recognition.errors import KeypointFileError
+from app.recognition.poses import FloatArray
+from app.recognition.subject import SubjectChoice, boxes_around
+from app.recognition.video_limits import VideoLimits
+
+
+def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Read the first video of a file; see `app.keypoint_files.read_keypoints`.
+
+    Of several tracks the most prominent is taken. Without tracks the largest instance is followed
+    from frame to frame.
+
+    Raises
+    ------
+    KeypointFileError
+        When `sleap-io` is not installed, or the file cannot be read.
+
+    """
+    labels = _labels(path)
+    names = tuple(str(name) for name in labels.skeleton.node_names)
+    labelled = sorted(
+        labels.find(labels.videos[0]) if labels.videos else labels.labeled_frames,
+        key=lambda frame: int(frame.frame_idx),
+    )
+    limits.require_frames(len(labelled))
+    if not labelled:
+        raise KeypointFileError(f"{path} has no labelled frame; give a file with predictions")
+    frames = np.array([int(frame.frame_idx) for frame in labelled], dtype=np.float64)
+    tracks = list(labels.tracks)
+    if tracks:
+        points = _by_track(labelled, tracks, len(names))
+        chosen = most_prominent(points[..., :2], points[..., 2])
+        followed = points[chosen]
+        who = tracks[chosen].name
+        notes = _notes(len(tracks), f"track {who!r} stands out most and is followed")
+    else:
+        rate = options.nominal_rate
+        followed, most = _by_place(labelled, frames / rate, len(names))
+        notes = _notes(most, "the largest is followed")
+    if len(labels.videos) > 1:
+        notes += (f"{path.name} holds {len(labels.videos)} videos; the first is read",)
+    return KeypointTable(
+        names=names,
+        xy=seen_only(followed[..., :2], followed[..., 2], 0.0),
+        confidence=np.clip(np.nan_to_num(followed[..., 2]), 0, 1),
+        times=Times(frames, counted=True),
+        frame_size=_size(labels),
+        notes=notes,
+    )
+
+
+def _labels(path: Path) -> Any:
+    try:
+        library = importlib.import_module("sleap_io")
+    except ImportError as error:
+        raise KeypointFileError(
+            f"{path} needs the library sleap-io ({error}); run "
+            f"`pip install 'osg-studio[keypoints]'`"
+        ) from error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about videos that lie elsewhere, which are not needed
+            if path.suffix.lower() == ".slp":
+                return library.load_slp(str(path), open_videos=False)
+            return library.load_analysis_h5(str(path))
+    except Exception as error:  # the library's errors share no base but Exception
+        reason = " ".join(str(error).split())
+        raise KeypointFileError(
+            f"{path} cannot be read as SLEAP's ({type(error).__name__}: {reason}); give a .slp file"
+            f" or SLEAP's analysis export. DeepLabCut's .h5 is refused, for it holds code: convert"
+            f" it with deeplabcut.analyze_videos_converth5_to_csv"
+        ) from error
+
+
+def _points(instance: Any) -> FloatArray:
+    """Return ``(K, 3)`` x, y and score of an instance; what a person labelled has score 1."""
+    points = np.asarray(instance.numpy(), dtype=np.float64)[:, :2]
+    stored = instance.points
+    score = np.ones(len(points))
+    if "score" in (stored.dtype.names or ()):
+        score = np.asarray(stored["score"], dtype=np.float64)
+    return np.column_stack([points, score])
+
+
+def _by_track(labelled: list[Any], tracks: list[Any], nodes: int) -> FloatArray:
+    """``(N, T, K, 3)`` x, y, score."""
+    points = np.full((len(tracks), len(labelled), nodes, 3), np.nan)
+    for row, frame in enumerate(labelled):
+        for instance in frame.instances:
+            if instance.track in tracks:
+                points[tracks.index(instance.track), row] = _points(instance)
+    return points
+
+
+def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
+    """``(T, K, 3)`` of whoever is followed, and the most people in a frame."""
+    followed = np.full((len(labelled), nodes, 3), np.nan)
+    choice, most = SubjectChoice(), 0
+    for row, (frame, time) in enumerate(zip(labelled, times.tolist(), strict=True)):
+        people = [_points(instance) for instance in frame.instances]
+        people = [one for one in people if np.isfinite(one[:, :2]).any()]
+        most = max(most, len(people))
+        if people:
+            stacked = np.stack(people)
+            scores = np.nan_to_num(np.nanmean(stacked[..., 2], axis=1))
+            chosen = choice.choose(boxes_around(stacked[..., :2]), scores, time)
+            if chosen is not None:
+                followed[row] = stacked[chosen]
+    return followed, most
+
+
+def _size(labels: Any) -> tuple[int, int] | None:
+    """Return width and height of the video where the file tells them."""
+    shape = labels.videos[0].shape if labels.videos else None
+    if shape is None or not shape[1] or not shape[2]:
+        return None
+    return int(shape[2]), int(shape[1])
+
+
+def _notes(count: int, what: str) -> tuple[str, ...]:
+    return (f"of {count} people {what}",) if count > 1 else ()

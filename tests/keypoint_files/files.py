@@ -1,0 +1,147 @@
+"""Keypoint files as other programs write them, of a recording that is known."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.recognition.estimation.base import Hand
+from app.recognition.landmark_sets import BODY_25, LandmarkSet
+from app.recognition.poses import FloatArray, PoseSequence
+
+
+def write_openpose(
+    folder: Path,
+    poses: PoseSequence,
+    landmarks: LandmarkSet = BODY_25,
+    *,
+    hands: Sequence[Sequence[Hand]] | None = None,
+    others: Sequence[PoseSequence] = (),
+    first: int = 0,
+) -> Path:
+    """Write one file a frame, as ``--write_json`` does; what is not seen is zeros."""
+    folder.mkdir(exist_ok=True)
+    for index in range(len(poses)):
+        people = [_person(each, index, landmarks) for each in (*others, poses)]
+        for hand in hands[index] if hands else ():
+            values = np.column_stack([hand.xy, np.full(21, 0.9)]).ravel().tolist()
+            people[-1][f"hand_{hand.side}_keypoints_2d"] = values
+        seen = [person for person in people if any(person["pose_keypoints_2d"])]
+        content = json.dumps({"version": 1.3, "people": seen})
+        (folder / f"dive_{first + index:012d}_keypoints.json").write_text(content)
+    return folder
+
+
+def _person(poses: PoseSequence, index: int, landmarks: LandmarkSet) -> dict[str, Any]:
+    values: list[float] = []
+    anybody = bool(poses.seen[index].any())
+    for name in landmarks:
+        point = _place(poses, index, name) if anybody else None
+        values += [0.0, 0.0, 0.0] if point is None else [*point, 0.875]
+    return {
+        "person_id": [-1],
+        "pose_keypoints_2d": values,
+        "face_keypoints_2d": [],
+        "hand_left_keypoints_2d": [],
+        "hand_right_keypoints_2d": [],
+    }
+
+
+def _place(poses: PoseSequence, index: int, name: str | None) -> tuple[float, float] | None:
+    """Return where a landmark is; what has no counterpart here lies in the body's middle."""
+    if name is None:
+        x, y = np.nanmean(poses.xy[index], axis=0).tolist()
+        return x, y
+    if name not in poses.landmarks:
+        return None
+    x, y = poses.column(name)[index].tolist()
+    return None if np.isnan(x) else (x, y)
+
+
+def write_rows(path: Path, rows: Sequence[Sequence[object]]) -> Path:
+    """Write a CSV file."""
+    with path.open("w", newline="") as file:
+        csv.writer(file).writerows(rows)
+    return path
+
+
+def fractions(poses: PoseSequence) -> FloatArray:
+    """``(T, K, 2)`` in fractions of the picture."""
+    return np.asarray(poses.xy / np.array(poses.frame_size))
+
+
+def write_numbered(path: Path, poses: PoseSequence, first: int = 0) -> Path:
+    """Write numbered columns ``x0,y0,z0,v0,...``, fractions of the picture, without any time."""
+    numbers = range(first, first + len(poses.landmarks))
+    heads = [f"{axis}{number}" for number in numbers for axis in "xyzv"]
+    rows = [
+        [value for x, y in moment.tolist() for value in (x, y, -0.1, 0.75)]
+        for moment in fractions(poses)
+    ]
+    return write_rows(path, [heads, *rows])
+
+
+def write_named(path: Path, poses: PoseSequence) -> Path:
+    """Write named columns ``NOSE_x, NOSE_y``, pixels, with a column of milliseconds."""
+    heads = [
+        "timestamp_ms",
+        *(f"{name.upper()}_{axis}" for name in poses.landmarks for axis in "xy"),
+    ]
+    rows = [
+        [round(1000 * time), *moment.ravel().tolist()]
+        for time, moment in zip(poses.time.tolist(), poses.xy, strict=True)
+    ]
+    return write_rows(path, [heads, *rows])
+
+
+def write_long(path: Path, poses: PoseSequence) -> Path:
+    """Write one landmark a row, pixels, with the number of the frame."""
+    rows = [
+        [index, name, *poses.column(name)[index].tolist(), 0.5]
+        for index in range(len(poses))
+        for name in poses.landmarks
+    ]
+    return write_rows(path, [["frame", "landmark", "x", "y", "visibility"], *rows])
+
+
+def write_deeplabcut(
+    path: Path, people: dict[str, PoseSequence], likelihood: FloatArray | None = None
+) -> Path:
+    """Write predictions; with more than one person the way ``multianimal`` projects do."""
+    first = next(iter(people.values()))
+    columns = [
+        (who, name, axis)
+        for who, poses in people.items()
+        for name in poses.landmarks
+        for axis in ("x", "y", "likelihood")
+    ]
+    heads = [["scorer", *["DLC_resnet50"] * len(columns)]]
+    if len(people) > 1:
+        heads.append(["individuals", *(who for who, _, _ in columns)])
+    heads.append(["bodyparts", *(name for _, name, _ in columns)])
+    heads.append(["coords", *(axis for _, _, axis in columns)])
+    rows: list[list[object]] = []
+    for index in range(len(first)):
+        row: list[object] = [index]
+        for poses in people.values():
+            belief = np.ones(poses.seen.shape) if likelihood is None else likelihood
+            for place, (x, y) in enumerate(poses.xy[index].tolist()):
+                row += ["" if np.isnan(x) else x, "" if np.isnan(y) else y, belief[index, place]]
+        rows.append(row)
+    return write_rows(path, [*heads, *rows])
+
+
+def renamed(poses: PoseSequence, names: dict[str, str]) -> PoseSequence:
+    """Call landmarks otherwise."""
+    return replace(poses, landmarks=tuple(names.get(name, name) for name in poses.landmarks))
+
+
+def unseen_frames(poses: PoseSequence) -> list[int]:
+    """Return the numbers of the frames that show nobody."""
+    return [index for index, seen in enumerate(poses.seen) if not seen.any()]

@@ -1,0 +1,221 @@
+"""MediaPipe's landmarks in the forms people write them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.keypoint_files import KeypointOptions, read_keypoints
+from app.recognition.errors import KeypointFileError
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses import PoseSequence
+from tests.keypoint_files.files import (
+    fractions,
+    unseen_frames,
+    write_long,
+    write_named,
+    write_numbered,
+    write_rows,
+)
+from tests.recognition.strategies import circle, recording
+
+POSES = recording(circle, frames=10, jitter=0.05)
+OPTIONS = KeypointOptions(frame_rate=30, frame_size=POSES.frame_size)
+
+
+def same(back: PoseSequence, poses: PoseSequence = POSES) -> None:
+    assert back.landmarks == poses.landmarks
+    np.testing.assert_allclose(back.xy, poses.xy, atol=1e-6)
+    np.testing.assert_allclose(back.time, poses.time, atol=1e-3)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_numbered_columns_are_mediapipe_s_33_counted_from_0_or_1(
+    tmp_path: Path, first: int
+) -> None:
+    read = read_keypoints(write_numbered(tmp_path / "pose.csv", POSES, first), OPTIONS)
+    same(read.recording.poses)
+    assert read.recording.poses.frame_size == POSES.frame_size
+    assert read.recording.poses.confidence is not None
+    assert (read.recording.poses.confidence == 0.75).all()
+    assert not read.has_hands
+
+
+def test_named_columns_with_milliseconds_need_no_option(tmp_path: Path) -> None:
+    same(read_keypoints(write_named(tmp_path / "pose.csv", POSES)).recording.poses)
+
+
+def test_one_landmark_a_row_is_read_too(tmp_path: Path) -> None:
+    same(read_keypoints(write_long(tmp_path / "pose.csv", POSES), OPTIONS).recording.poses)
+
+
+def _frames(point: Callable[[str, float, float], Any]) -> list[list[Any]]:
+    return [
+        [point(name, x, y) for name, (x, y) in zip(POSE_LANDMARKS, moment.tolist(), strict=True)]
+        for moment in fractions(POSES)
+    ]
+
+
+OBJECTS = _frames(lambda name, x, y: {"x": x, "y": y, "z": 0.0, "visibility": 0.5})
+LISTS = _frames(lambda name, x, y: [x, y, 0.0, 0.5])
+NAMED = _frames(lambda name, x, y: {"name": name.upper(), "x": x, "y": y})
+KEYED = [
+    {name: {"x": x, "y": y} for name, (x, y) in zip(POSE_LANDMARKS, moment.tolist(), strict=True)}
+    for moment in fractions(POSES)
+]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        OBJECTS,
+        LISTS,
+        NAMED,
+        [{"landmarks": frame} for frame in OBJECTS],
+        [{"pose_landmarks": [frame]} for frame in OBJECTS],
+        {"frames": [{"keypoints": frame, "frame": at} for at, frame in enumerate(LISTS)]},
+        {"poses": [{"pose": frame} for frame in KEYED]},
+    ],
+    ids=["objects", "lists", "named", "landmarks", "tasks", "frames", "keyed"],
+)
+def test_json_is_read_however_it_is_laid_out(tmp_path: Path, content: object) -> None:
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    same(read_keypoints(tmp_path / "pose.json", OPTIONS).recording.poses)
+
+
+def test_json_may_tell_size_rate_and_time_itself(tmp_path: Path) -> None:
+    width, height = POSES.frame_size
+    about = {"width": width, "height": height}
+    (tmp_path / "rate.json").write_text(json.dumps({**about, "fps": 30, "frames": OBJECTS}))
+    same(read_keypoints(tmp_path / "rate.json").recording.poses)
+    timed = [
+        {"timestamp": time, "landmarks": frame}
+        for time, frame in zip(POSES.time.tolist(), OBJECTS, strict=True)
+    ]
+    (tmp_path / "time.json").write_text(json.dumps({**about, "frames": timed}))
+    same(read_keypoints(tmp_path / "time.json").recording.poses)
+
+
+def test_a_frame_without_anybody_is_a_gap(tmp_path: Path) -> None:
+    content: list[Any] = [*OBJECTS[:4], None, [], *OBJECTS[6:]]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    read = read_keypoints(tmp_path / "pose.json", OPTIONS)
+    assert unseen_frames(read.recording.poses) == [4, 5]
+    assert "no person in 2 of 10 frames" in read.recording.warnings
+
+
+@pytest.mark.parametrize("cell", ["", "nan", "NaN", "None"])
+def test_empty_cells_and_no_visibility_are_not_seen(tmp_path: Path, cell: str) -> None:
+    rows: list[list[object]] = [
+        ["time", "nose_x", "nose_y", "nose_v", "left_wrist_x", "left_wrist_y"]
+    ]
+    rows += [[0.0, 10, 20, 0.9, cell, cell], [0.1, 11, 21, 0, 30, 40]]
+    poses = read_keypoints(write_rows(tmp_path / "pose.csv", rows)).recording.poses
+    assert poses.seen.tolist() == [[True, False], [False, True]]
+
+
+def test_pixels_need_no_size_and_fractions_do(tmp_path: Path) -> None:
+    read = read_keypoints(write_long(tmp_path / "long.csv", POSES), KeypointOptions(frame_rate=30))
+    assert read.recording.poses.frame_size >= tuple(POSES.xy.max(axis=(0, 1)).astype(int))
+    numbered = write_numbered(tmp_path / "numbered.csv", POSES)
+    with pytest.raises(KeypointFileError, match=r"fractions of the picture.*--frame-size"):
+        read_keypoints(numbered, KeypointOptions(frame_rate=30))
+    with pytest.raises(KeypointFileError, match=r"counts frames.*--frame-rate"):
+        read_keypoints(numbered, KeypointOptions(frame_size=POSES.frame_size))
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([], "no columns of keypoints among none"),
+        ([["a", "b"], [1, 2]], "no columns of keypoints among a, b"),
+        ([["time", "nose_x", "nose_y"]], "no keypoint is seen in any of 0 frames"),
+        ([["time", "nose_x", "nose_y"], [0, "left", 2]], "row 0 has 'left' in column 2"),
+        (
+            [["time", "nose_x", "nose_y"], [1, 20, 30], [1, 20, 30]],
+            "time does not go on at frame 2",
+        ),
+        ([["time", "nose_x", "nose_y"], ["", 20, 30]], "time does not go on at frame 1"),
+        ([["time", "paw_x", "paw_y"], [0, 20, 30]], "--landmark paw=right_wrist"),
+        ([["landmark", "x", "y"], ["nose", 20, 30]], "no column that tells the frame"),
+        (
+            [["frame", "landmark", "x", "y"], [0, "nose", 20, 30], [0, "nose", 21, 31]],
+            "row 1 is the second for nose",
+        ),
+    ],
+)
+def test_a_table_that_cannot_be_read_is_told_where(
+    tmp_path: Path, rows: list[list[object]], message: str
+) -> None:
+    path = write_rows(tmp_path / "pose.csv", rows)
+    with pytest.raises(KeypointFileError) as refused:
+        read_keypoints(path, KeypointOptions(frame_rate=30))
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "7",
+        "{}",
+        '{"frames": 3}',
+        "[[1, 2]]",
+        '[[{"x": "a", "y": 1}]]',
+        "[[[[[]]]]]",
+        "[" * 100_000,
+    ],
+)
+def test_json_that_cannot_be_read_is_one_line(tmp_path: Path, content: str) -> None:
+    (tmp_path / "pose.json").write_text(content)
+    with pytest.raises(KeypointFileError) as refused:
+        read_keypoints(tmp_path / "pose.json", OPTIONS)
+    assert "\n" not in str(refused.value)
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "pose.csv").write_bytes(b"\xff\xfe\x00nose_x,nose_y\n1,2\n")
+    with pytest.raises(KeypointFileError, match="is no text table"):
+        read_keypoints(tmp_path / "pose.csv", OPTIONS)
+
+
+def test_names_with_both_sides_of_the_map_are_told(tmp_path: Path) -> None:
+    rows: list[list[object]] = [["time", "paw_x", "paw_y", "tail_x", "tail_y"]]
+    rows += [[0.1 * step, 10 + step, 20, 30, 40] for step in range(3)]
+    path = write_rows(tmp_path / "pose.csv", rows)
+    read = read_keypoints(path, KeypointOptions(landmarks={"paw": "right_wrist"}))
+    assert read.recording.poses.landmarks == ("right_wrist",)
+    assert any("left out" in warning and "tail" in warning for warning in read.recording.warnings)
+    assert any("left_shoulder" in warning for warning in read.recording.warnings)
+    both = KeypointOptions(landmarks={"paw": "right_wrist", "tail": "claw"})
+    assert read_keypoints(path, both).recording.poses.landmarks == ("right_wrist", "claw")
+    twice = KeypointOptions(landmarks={"paw": "right_wrist", "tail": "right_wrist"})
+    with pytest.raises(KeypointFileError, match="'paw' and 'tail' are both 'right_wrist'"):
+        read_keypoints(path, twice)
+    with pytest.raises(KeypointFileError, match="no keypoint 'fin'; it has paw, tail"):
+        read_keypoints(path, KeypointOptions(landmarks={"fin": "right_wrist"}))
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_rate_or_size_that_cannot_be_is_refused(rate: float) -> None:
+    with pytest.raises(KeypointFileError, match="frame rate is"):
+        KeypointOptions(frame_rate=rate)
+    with pytest.raises(KeypointFileError, match="frame size is"):
+        KeypointOptions(frame_size=(0, 10))
+
+
+def test_a_real_file_of_mediapipe_is_read(shared_data: Path) -> None:
+    path = shared_data / "clips" / "image_pose_d-D_person205_front.csv"
+    read = read_keypoints(path, KeypointOptions(frame_rate=30, frame_size=(1080, 1920)))
+    poses = read.recording.poses
+    assert poses.landmarks == POSE_LANDMARKS
+    assert poses.seen.all()
+    assert poses.column("nose")[:, 1].mean() < poses.column("left_hip")[:, 1].mean()
+    assert replace(poses).torso_length() is not None

@@ -1,0 +1,93 @@
+"""SLEAP's files, written and read by its own library."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.keypoint_files import KeypointOptions, read_keypoints
+from app.recognition.errors import KeypointFileError
+from app.recognition.poses import PoseSequence
+from tests.recognition.strategies import BODY, circle, recording
+
+POSES = recording(circle, frames=8, landmarks=tuple(BODY))
+FAR = replace(POSES, xy=POSES.xy * 0.3 + (400, 0))
+AT_30 = KeypointOptions(frame_rate=30)
+
+
+@pytest.fixture
+def library() -> Any:
+    """Return SLEAP's own library; skip where the extra is not installed."""
+    return pytest.importorskip("sleap_io", reason="needs the extra `keypoints`")
+
+
+def labels_of(library: Any, people: list[PoseSequence], *, tracked: bool) -> Any:
+    skeleton = library.Skeleton(nodes=[name.replace("right_", "R_") for name in POSES.landmarks])
+    video = library.Video(filename="dive.mp4", open_backend=False)
+    tracks = [library.Track(f"diver {number}") for number in range(len(people))]
+    frames = [
+        library.LabeledFrame(
+            video=video,
+            frame_idx=index + 100,
+            instances=[
+                library.PredictedInstance.from_numpy(
+                    each.xy[index],
+                    skeleton=skeleton,
+                    point_scores=np.full(len(POSES.landmarks), 0.8),
+                    score=0.9,
+                    track=track if tracked else None,
+                )
+                for each, track in zip(people, tracks, strict=True)
+            ],
+        )
+        for index in range(len(POSES))
+    ]
+    return library.Labels(frames)
+
+
+@pytest.mark.parametrize("tracked", [True, False])
+@pytest.mark.parametrize("ending", [".slp", ".h5"])
+def test_the_larger_person_comes_back(
+    library: Any, tmp_path: Path, tracked: bool, ending: str
+) -> None:
+    if ending == ".h5" and not tracked:
+        pytest.skip("an analysis export has tracks")
+    labels = labels_of(library, [FAR, POSES], tracked=tracked)
+    path = tmp_path / f"dive{ending}"
+    if ending == ".slp":
+        library.save_slp(labels, str(path))
+    else:
+        library.save_analysis_h5(labels, str(path))
+    read = read_keypoints(path, AT_30)
+    poses = read.recording.poses
+    assert poses.landmarks == POSES.landmarks
+    first = len(poses) - len(POSES)
+    np.testing.assert_allclose(poses.xy[first:], POSES.xy, atol=1e-3)
+    np.testing.assert_allclose(np.diff(poses.time), 1 / 30)
+    assert any("of 2 people" in warning for warning in read.recording.warnings)
+    assert not read.has_hands
+
+
+@pytest.mark.parametrize("ending", [".slp", ".h5"])
+def test_a_file_of_something_else_is_refused(library: Any, tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"dive{ending}"
+    path.write_bytes(b"no HDF5 at all")
+    with pytest.raises(
+        KeypointFileError, match=r"cannot be read as SLEAP's.*DeepLabCut"
+    ) as refused:
+        read_keypoints(path, AT_30)
+    assert "\n" not in str(refused.value)
+
+
+def test_without_the_library_the_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "sleap_io", None)
+    (tmp_path / "dive.slp").touch()
+    with pytest.raises(KeypointFileError, match=r"pip install 'osg-studio\[keypoints\]'"):
+        read_keypoints(tmp_path / "dive.slp", AT_30)

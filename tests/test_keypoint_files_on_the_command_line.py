@@ -1,0 +1,167 @@
+"""Other programs' keypoint files where the command line takes clips."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.recognition import Gesture, Language
+from app.recognition.estimation.base import Hand
+from app.recognition.landmark_sets import BODY_25, COCO_18
+from tests.command_line import OsgStudio
+from tests.keypoint_files.files import (
+    renamed,
+    write_deeplabcut,
+    write_named,
+    write_numbered,
+    write_openpose,
+)
+from tests.recognition.demonstrations import pool
+from tests.recognition.parametric_hand import hand_xy, salute
+from tests.recognition.strategies import BODY, circle, line, recording
+
+ARMS = tuple(BODY)
+
+
+@pytest.fixture
+def language(tmp_path: Path) -> Path:
+    """Return the file of a language of a circle and a line."""
+    pool(circle=circle, line=line).save(tmp_path / "pool.json")
+    return tmp_path / "pool.json"
+
+
+def test_a_language_is_defined_from_a_folder_of_openpose_and_understands_another(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    folders = {
+        shape.__name__: write_openpose(
+            tmp_path / shape.__name__, recording(shape, landmarks=ARMS), BODY_25
+        )
+        for shape in (circle, line)
+    }
+    file = tmp_path / "pool.json"
+    defined = osg_studio(
+        "define",
+        *(f"{label}={folder}" for label, folder in folders.items()),
+        *("--name", "pool", "--output", file, "--frame-rate", "30"),
+    )
+    assert defined.code == 0, defined.error
+    assert {gesture.salient for gesture in Language.load(file).gestures} == {("right_wrist",)}
+    again = recording(circle, landmarks=ARMS, frames=50, jitter=0.005, torso=80)
+    folder = write_openpose(tmp_path / "again", again, COCO_18)
+    ended = osg_studio("recognize", folder, "--language", file, "--frame-rate", "30", "--json")
+    assert ended.code == 0, ended.error
+    (take,) = json.loads(ended.out)["takes"]
+    assert (take["label"], take["closed"]) == ("circle", True)
+
+
+def test_salutes_of_openpose_s_hands_cut_the_takes(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path
+) -> None:
+    poses = recording(line, landmarks=ARMS, frames=120)
+    hand = Hand(hand_xy(salute()) * 60 + (200, 150), "right", 0.9)
+    hands = [[hand] if index < 20 or index >= 100 else [] for index in range(120)]
+    folder = write_openpose(tmp_path / "json", poses, BODY_25, hands=hands)
+    ended = osg_studio("recognize", folder, "--language", language, "--frame-rate", "30", "--json")
+    (take,) = json.loads(ended.out)["takes"]
+    assert take["closed"]
+    assert take["start"] == pytest.approx(19 / 30, abs=0.05)
+    assert take["end"] == pytest.approx(100 / 30, abs=0.05)
+
+
+@pytest.mark.parametrize("form", ["numbered", "named", "deeplabcut"])
+def test_tables_are_clips_too(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path, form: str
+) -> None:
+    poses = recording(line, frames=45)
+    path = tmp_path / "dive.csv"
+    if form == "numbered":
+        write_numbered(path, poses)
+    elif form == "named":
+        write_named(path, poses)
+    else:
+        write_deeplabcut(path, {"diver": recording(line, frames=45, landmarks=ARMS)})
+    ended = osg_studio(
+        "recognize",
+        *(path, "--language", language, "--json"),
+        *("--frame-rate", "30", "--frame-size", "640x480"),
+    )
+    assert ended.code == 0, ended.error
+    assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
+
+
+def test_a_range_and_no_salutes_work_as_for_clips(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path
+) -> None:
+    path = write_named(tmp_path / "dive.csv", recording(line, frames=60))
+    ended = osg_studio("recognize", f"{path}@0-1.5", "--language", language, "--json")
+    (take,) = json.loads(ended.out)["takes"]
+    assert (take["start"], take["end"]) == (0, 1.5)
+    ended = osg_studio("recognize", path, "--language", language, "--without-salutes", "--json")
+    assert [found["label"] for found in json.loads(ended.out)["takes"]] == ["line"]
+
+
+def test_a_long_recording_without_hands_is_not_one_gesture(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path
+) -> None:
+    path = write_named(tmp_path / "dive.csv", recording(line, frames=130, rate=2, landmarks=ARMS))
+    ended = osg_studio("recognize", path, "--language", language)
+    assert ended.code == 2
+    assert "at most 60 s" in ended.error
+    assert "--without-salutes" in ended.error
+
+
+def test_a_landmark_that_the_file_lacks_is_named(osg_studio: OsgStudio, tmp_path: Path) -> None:
+    poses = recording(circle, hand="right_index")
+    pointed = Gesture.from_demonstration("pointed", poses, salient=["right_index"])
+    Language("fingers", [pointed]).save(tmp_path / "fingers.json")
+    folder = write_openpose(tmp_path / "json", recording(circle, landmarks=ARMS))
+    ended = osg_studio(
+        "recognize", folder, "--language", tmp_path / "fingers.json", "--frame-rate", "30"
+    )
+    assert ended.code == 2
+    assert "gives no landmark 'right_index', which 'pointed' of 'fingers' follows" in ended.error
+
+
+def test_a_keypoint_of_another_name_is_mapped_by_the_user(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path
+) -> None:
+    poses = renamed(recording(line, landmarks=ARMS, frames=45), {"right_wrist": "claw"})
+    path = write_deeplabcut(tmp_path / "dive.csv", {"diver": poses})
+    arguments = ("recognize", path, "--language", language, "--frame-rate", "30", "--json")
+    ended = osg_studio(*arguments)
+    assert ended.code == 2
+    assert "gives no landmark 'right_wrist'" in ended.error
+    ended = osg_studio(*arguments, "--landmark", "claw=right_wrist")
+    assert ended.code == 0, ended.error
+    assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((), "--frame-rate 30"),
+        (("--frame-rate", "0"), "the frame rate is 0"),
+        (("--frame-rate", "30", "--frame-size", "huge"), "give WIDTHxHEIGHT"),
+        (("--frame-rate", "30", "--frame-size", "0x480"), "the frame size is (0, 480)"),
+        (("--frame-rate", "30", "--landmark", "claw"), "not NAME=LANDMARK"),
+        (("--frame-rate", "30", "--landmark", "fin=nose"), "no keypoint 'fin'"),
+    ],
+)
+def test_what_cannot_be_used_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path, options: tuple[str, ...], message: str
+) -> None:
+    path = write_deeplabcut(tmp_path / "dive.csv", {"diver": recording(line, landmarks=ARMS)})
+    ended = osg_studio("recognize", path, "--language", language, *options)
+    assert (ended.code, ended.out) == (2, "")
+    assert message in ended.error
+    assert ended.error.count("\n") == 1
+
+
+def test_an_empty_folder_is_refused(osg_studio: OsgStudio, tmp_path: Path, language: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    ended = osg_studio("recognize", tmp_path / "empty", "--language", language)
+    assert ended.code == 2
+    assert "neither a dive recording (metadata.yaml) nor frames of OpenPose" in ended.error
