@@ -1,0 +1,165 @@
+"""Recognised gestures in, commands out: after confirmation, never of a rejected or stale gesture.
+
+It needs no OSG Studio, only the messages, so it runs wherever ROS 2 does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition
+from std_msgs.msg import Header
+
+from osg_ros.command_dialogue import (
+    CONFIRM_SECONDS,
+    STALE_SECONDS,
+    CommandDialogue,
+    CommandTable,
+    Decision,
+    HeardGesture,
+    Rules,
+)
+from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
+from osg_ros.settings import Setting
+from osg_ros.spinning import spin
+from osg_ros.stamps import NANOSECONDS, nanoseconds_of, stamp_of
+
+CONFIRM: Final = Setting(
+    "confirm", True, "Give a command only when its gesture is repeated; emergencies at once."
+)
+CONFIRM_WITHIN: Final = Setting(
+    "confirm_seconds",
+    CONFIRM_SECONDS,
+    "Seconds from a gesture to the end of its repetition.",
+    1.0,
+    300.0,
+)
+STALE_AFTER: Final = Setting(
+    "stale_seconds",
+    STALE_SECONDS,
+    "A recognition whose stamp is farther from now, back or ahead, is ignored.",
+    0.1,
+    60.0,
+)
+LEAST_CONFIDENCE: Final = Setting(
+    "least_confidence", 0.0, "Recognitions below it count as rejected.", 0.0, 1.0
+)
+CANCEL: Final = Setting("cancel", [""], "Labels that take back what waits for its repetition.")
+EMERGENCY: Final = Setting("emergency", [""], "Labels whose commands need no repetition.")
+
+CHECK_SECONDS: Final = 0.2
+"""Between two looks at the deadline: a diver notices half a second on the display."""
+
+
+class CommandNode(ManagedNode):
+    """Speaks the commands of the active language; `CommandDialogue` decides."""
+
+    def __init__(self, **options: Any) -> None:
+        settings = (CONFIRM, CONFIRM_WITHIN, STALE_AFTER, LEAST_CONFIDENCE, CANCEL, EMERGENCY)
+        super().__init__("command_node", settings, "recognition", **options)
+        self._dialogue = CommandDialogue(Rules())
+        self._timer: Any = None
+
+    def prepare(self) -> None:
+        """Read the rules and make the publishers.
+
+        Raises
+        ------
+        ValueError
+            When the rules contradict each other.
+
+        """
+        rules = Rules(
+            confirmed=self.settings["confirm"],
+            confirm_seconds=self.settings["confirm_seconds"],
+            stale_seconds=self.settings["stale_seconds"],
+            least_confidence=self.settings["least_confidence"],
+            cancel=frozenset(self.settings["cancel"]),
+            emergency=frozenset(self.settings["emergency"]),
+        )
+        self._dialogue = CommandDialogue(rules)
+        self._commands = self.publisher(Command, "command", RESULTS)
+        self._state = self.publisher(CommandState, "command_state", LATCHED)
+
+    def begin(self) -> None:
+        """Listen from now on; nothing of before counts."""
+        self._dialogue = CommandDialogue(self._dialogue.rules)
+        self._tell(Decision("waiting for a gesture"), self._now())
+        self.subscription(ActiveLanguage, "language", self._speak, LATCHED)
+        self.subscription(GestureRecognition, "recognition", self._hear, RESULTS)
+        self._timer = self.create_timer(CHECK_SECONDS, self._wait)
+
+    def halt(self) -> None:
+        """Forget what waits for its repetition."""
+        if self._timer is not None:
+            self.destroy_timer(self._timer)
+            self._timer = None
+
+    def facts(self) -> Mapping[str, str]:
+        """Tell which commands can be given."""
+        return {
+            "language id": self._dialogue.table.language_id,
+            "commands": ", ".join(sorted(self._dialogue.table.commands)),
+        }
+
+    def _speak(self, language: ActiveLanguage) -> None:
+        meant = zip(language.labels, language.commands, strict=False)
+        commands = {label: command for label, command in meant if command}
+        decision = self._dialogue.speak(CommandTable(language.language_id, commands))
+        if decision is not None:
+            self._tell(decision, self._now())
+        rules = self._dialogue.rules
+        unknown = sorted((rules.cancel | rules.emergency) - set(language.labels))
+        if unknown:
+            self.complain(
+                f"the language {language.name!r} has no {unknown}, which shall cancel or be an "
+                "emergency; correct the parameters or load the language meant"
+            )
+
+    def _hear(self, recognition: GestureRecognition) -> None:
+        self.count_input()
+        stamp = nanoseconds_of(recognition.header.stamp)
+        # A message that contradicts itself is a rejection.
+        label = None if recognition.rejected else recognition.label or None
+        gesture = HeardGesture(
+            label, recognition.confidence, stamp / NANOSECONDS, recognition.language_id
+        )
+        decision = self._dialogue.hear(gesture, self._now() / NANOSECONDS)
+        self._tell(decision, stamp)
+        if decision.command is not None:
+            self._commands.publish(
+                Command(
+                    header=recognition.header,
+                    command=decision.command,
+                    label=decision.label,
+                    emergency=decision.emergency,
+                    body_id=recognition.body_id,
+                    language_id=recognition.language_id,
+                    language_revision=recognition.language_revision,
+                )
+            )
+
+    def _wait(self) -> None:
+        now = self._now()
+        decision = self._dialogue.wait(now / NANOSECONDS)
+        if decision is not None:
+            self._tell(decision, now)
+
+    def _tell(self, decision: Decision, stamp: int) -> None:
+        self.get_logger().info(decision.reason)
+        pending = self._dialogue.pending
+        state = CommandState(header=Header(stamp=stamp_of(stamp)), reason=decision.reason)
+        if pending is not None:
+            state.state = CommandState.CONFIRMING
+            state.label = pending.label
+            state.deadline = stamp_of(round(pending.deadline * NANOSECONDS))
+        self._state.publish(state)
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+
+def main() -> None:
+    """Run the node."""
+    spin(lambda: [CommandNode()])

@@ -1,0 +1,92 @@
+"""The language of a node: read from its file at configuration, and again whenever asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from osg_interfaces.srv import ReloadLanguage
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+
+from app.recognition.recognizer import PROFILES
+from app.robot import SpokenLanguage
+from osg_ros.managed_node import ManagedNode
+from osg_ros.settings import Setting
+
+LANGUAGE: Final = Setting("language", "", "Path of the language file on the robot.")
+PROFILE: Final = Setting(
+    "profile", "full", "The recogniser's set of voters.", choices=tuple(PROFILES)
+)
+
+
+class LanguageService:
+    """Loads languages for a node, and offers the service `reload_language`.
+
+    The service runs beside the node's other callbacks, so that no picture waits for a file.
+
+    Parameters
+    ----------
+    node
+        Whose parameters `LANGUAGE` and `PROFILE` tell the first language.
+    taken
+        Called with every language after the first, maybe in another thread.
+
+    Raises
+    ------
+    ValueError
+        When the parameter is empty, or the file is no language.
+    OSError
+        When the file cannot be read.
+
+    """
+
+    def __init__(self, node: ManagedNode, taken: Callable[[SpokenLanguage], None]) -> None:
+        self._node = node
+        self._taken = taken
+        self._path: str = node.settings["language"]
+        self._profile: str = node.settings["profile"]
+        if not self._path:
+            raise ValueError(
+                "parameter language is empty; set it to a language file, exported from the studio "
+                "or made by osg-studio define"
+            )
+        self.language = SpokenLanguage.load(self._path, self._profile)
+        self._service = node.create_service(
+            ReloadLanguage,
+            "reload_language",
+            self._reload,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
+
+    def facts(self) -> Mapping[str, str]:
+        """Tell diagnostics which language is loaded."""
+        return {
+            "language": self.language.name,
+            "language id": self.language.sha256,
+            "language revision": str(self.language.revision),
+        }
+
+    def close(self) -> None:
+        """Withdraw the service."""
+        self._node.destroy_service(self._service)
+
+    def _reload(
+        self, request: ReloadLanguage.Request, response: ReloadLanguage.Response
+    ) -> ReloadLanguage.Response:
+        path = request.path or self._path
+        try:
+            language = SpokenLanguage.load(path, self._profile)
+        except (ValueError, OSError) as error:
+            response.message = f"{path} is refused, the language stays: {error}"
+            self._node.complain(response.message)
+        else:
+            response.success = True
+            response.message = (
+                f"{language.name!r}, revision {language.revision}, with "
+                f"{len(language.recognizer.language.labels)} gestures"
+            )
+            self._path, self.language = path, language
+            self._taken(language)
+        response.language_id = self.language.sha256
+        response.language_revision = self.language.revision
+        return response

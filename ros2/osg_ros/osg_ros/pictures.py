@@ -1,0 +1,78 @@
+"""Pictures of `sensor_msgs` as RGB images, without cv_bridge."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from av.error import FFmpegError
+from sensor_msgs.msg import CompressedImage, Image
+
+from app.bags.pictures import PacketDecoder, raw_image
+from app.recognition.errors import VideoError
+from app.recognition.estimation import Image as RGBImage
+from app.recognition.video_limits import VideoLimits
+from osg_ros.settings import Setting
+
+TRANSPORT: Final = Setting(
+    "image_transport",
+    "raw",
+    "How pictures come: raw on `image`, or compressed (JPEG, PNG) on `image/compressed`.",
+    choices=("raw", "compressed"),
+)
+
+
+def picture_topic(transport: str) -> tuple[type[Image] | type[CompressedImage], str]:
+    """Return the type and the relative name of the topic of pictures.
+
+    Parameters
+    ----------
+    transport
+        A choice of `TRANSPORT`.
+
+    """
+    return (Image, "image") if transport == "raw" else (CompressedImage, "image/compressed")
+
+
+class PictureDecoder:
+    """Turns messages of one topic into pictures."""
+
+    def __init__(self) -> None:
+        self._limits = VideoLimits()
+        self._packets = PacketDecoder(self._limits)
+
+    def decode(self, message: Image | CompressedImage) -> RGBImage:
+        """Return the picture of a message.
+
+        Returns
+        -------
+        ``(height, width, 3)`` RGB.
+
+        Raises
+        ------
+        RecognitionError
+            When the encoding is not known, the data is damaged, or the picture is too large.
+
+        """
+        if isinstance(message, Image):
+            return raw_image(message, self._limits)
+        try:
+            images = [
+                image for _, image in self._packets.decode(bytes(message.data), message.format, 0)
+            ]
+        except FFmpegError as error:
+            raise VideoError(f"a compressed picture is damaged: {error.strerror}") from error
+        if not images:
+            raise VideoError(f"a message of {len(message.data)} bytes holds no picture")
+        return images[-1]
+
+
+def picture_message(image: RGBImage) -> Image:
+    """Return the message of an RGB image; the caller sets its header."""
+    height, width, channels = image.shape
+    return Image(
+        height=height,
+        width=width,
+        encoding="rgb8",
+        step=width * channels,
+        data=image.tobytes(),
+    )

@@ -1,0 +1,67 @@
+"""The body in every picture: the first of the separate nodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.recognition.errors import RecognitionError
+from app.recognition.estimation.body import BodyTracker
+from app.recognition.estimation.onnx_estimator import body_tracker
+from app.recognition.estimation.water import corrected
+from osg_ros.body_topics import BodyTopics
+from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
+from osg_ros.managed_node import NEWEST, ManagedNode
+from osg_ros.pictures import TRANSPORT, PictureDecoder, picture_topic
+from osg_ros.spinning import spin
+from osg_ros.stamps import Stopwatch, nanoseconds_of
+
+
+class PoseNode(ManagedNode):
+    """Publishes the body in a topic of pictures, with every picture's stamp."""
+
+    def __init__(self, **options: Any) -> None:
+        settings = (TRANSPORT, WATER, THREADS, PROVIDER)
+        super().__init__("pose_node", settings, "image", **options)
+        self._tracker: BodyTracker | None = None
+        self._stopwatch: Stopwatch | None = None
+
+    def prepare(self) -> None:
+        """Load the models and make the publishers."""
+        self._water = self.settings["water"]
+        self._tracker = body_tracker(
+            threads=self.settings["threads"], provider=self.settings["provider"]
+        )
+        self._bodies = BodyTopics(self)
+
+    def begin(self) -> None:
+        """Look at pictures from now on, as at those of another camera."""
+        assert self._tracker
+        self._tracker.reset()
+        self._stopwatch = None
+        self._decoder = PictureDecoder()
+        kind, topic = picture_topic(self.settings["image_transport"])
+        self.subscription(kind, topic, self._look, NEWEST)
+
+    def release(self) -> None:
+        """Release the models."""
+        self._tracker = None
+
+    def _look(self, message: Any) -> None:
+        assert self._tracker
+        self.count_input()
+        stamp = nanoseconds_of(message.header.stamp)
+        if self._stopwatch is None:
+            self._stopwatch = Stopwatch(stamp)
+        try:
+            image = corrected(self._decoder.decode(message), self._water)
+            body = self._tracker.track(image, self._stopwatch.seconds(stamp))
+        except RecognitionError as error:
+            self.complain(f"a picture is left out: {error}")
+            return
+        height, width = image.shape[:2]
+        self._bodies.publish(message.header, (width, height), body)
+
+
+def main() -> None:
+    """Run the node."""
+    spin(lambda: [PoseNode()])

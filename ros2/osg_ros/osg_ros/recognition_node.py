@@ -1,0 +1,162 @@
+"""Takes and recognitions of keypoints that other nodes find: the third of the separate nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from osg_interfaces.msg import BodyKeypoints, Hands
+from std_msgs.msg import Bool
+
+from app.recognition import PoseSequence
+from app.recognition.estimation.base import FrameLandmarks
+from app.recognition.extraction import moment_of
+from app.robot import Listener, SpokenLanguage, StateChanged, TakeRecognized, TakeRejected
+from osg_ros.bodies import body_in, published_moment
+from osg_ros.language_service import LANGUAGE, PROFILE, LanguageService
+from osg_ros.managed_node import SENSOR_DATA, ManagedNode
+from osg_ros.optional_messages import message_type
+from osg_ros.pairing import StampPairs
+from osg_ros.recognition_topics import RecognitionTopics
+from osg_ros.settings import Setting
+from osg_ros.spinning import spin
+from osg_ros.stamps import Stopwatch, nanoseconds_of
+
+INPUT: Final = Setting(
+    "input",
+    "osg",
+    "Whose keypoints: osg (`body_keypoints`, `hands`), or those of the published port's nodes "
+    "(`pose_keypoints`, `vulcan_salute_detected`), which have no stamps.",
+    choices=("osg", "published"),
+)
+IMAGE_WIDTH: Final = Setting(
+    "image_width", 1280, "Pixels of the camera's picture, for the published port's input.", 1, 16384
+)
+IMAGE_HEIGHT: Final = Setting(
+    "image_height", 720, "Pixels of the camera's picture, for the published port's input.", 1, 16384
+)
+
+
+class RecognitionNode(ManagedNode):
+    """Recognises the gestures in topics of keypoints."""
+
+    def __init__(self, **options: Any) -> None:
+        settings = (LANGUAGE, PROFILE, INPUT, IMAGE_WIDTH, IMAGE_HEIGHT)
+        super().__init__("recognition_node", settings, "keypoints", **options)
+        self._service: LanguageService | None = None
+        self._listener: Listener | None = None
+        self._stopwatch: Stopwatch | None = None
+
+    def prepare(self) -> None:
+        """Load the language and make the publishers.
+
+        Raises
+        ------
+        ValueError
+            Also when the published port's messages are asked for and not installed.
+
+        """
+        self._keypoints_type = message_type("keypoints_interfaces", "PoseKeypointsArray")
+        if self.settings["input"] == "published" and self._keypoints_type is None:
+            raise ValueError(
+                "parameter input is 'published' and the package keypoints_interfaces is not "
+                "there; build it with this one and source the workspace"
+            )
+        self._service = LanguageService(self, self._change_language)
+        self._recognitions = RecognitionTopics(self)
+
+    def begin(self) -> None:
+        """Listen from now on, as to another camera."""
+        assert self._service
+        self._listener = Listener(self._service.language)
+        self._stopwatch = None
+        self._recognitions.active(True)
+        self._recognitions.speaks(self._service.language)
+        if self.settings["input"] == "osg":
+            self._pairs: StampPairs[BodyKeypoints, Hands] = StampPairs()
+            self.subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
+            self.subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
+        else:
+            self._size = self.settings["image_width"], self.settings["image_height"]
+            self._body: Any = None
+            self.subscription(self._keypoints_type, "pose_keypoints", self._keep_body, SENSOR_DATA)
+            self.subscription(Bool, "vulcan_salute_detected", self._take_salute, SENSOR_DATA)
+
+    def halt(self) -> None:
+        """Forget the take that was begun."""
+        if self._listener is not None:
+            self._listener = None
+            self._recognitions.active(False)
+
+    def release(self) -> None:
+        """Withdraw the service."""
+        if self._service is not None:
+            self._service.close()
+            self._service = None
+
+    def facts(self) -> Mapping[str, str]:
+        """Tell the language."""
+        return self._service.facts() if self._service else {}
+
+    def _take_body(self, body: BodyKeypoints) -> None:
+        pair = self._pairs.first(nanoseconds_of(body.header.stamp), body)
+        if pair is not None:
+            self._hear(*pair)
+
+    def _take_hands(self, hands: Hands) -> None:
+        pair = self._pairs.second(nanoseconds_of(hands.header.stamp), hands)
+        if pair is not None:
+            self._hear(*pair)
+
+    def _hear(self, body: BodyKeypoints, hands: Hands) -> None:
+        stamp = nanoseconds_of(body.header.stamp)
+        found = FrameLandmarks(body_in(body), ())
+        size = (body.image_width, body.image_height)
+        try:
+            moment = moment_of(found, self._stopwatch_from(stamp).seconds(stamp), size)
+        except ValueError as error:
+            self.complain(f"keypoints are left out: {error}")
+            return
+        self._listen(moment, hands.salute, body.header.frame_id)
+
+    def _keep_body(self, body: Any) -> None:
+        """Keep the published port's body until its salute comes, which it sends for every frame."""
+        self.count_input()
+        self._body = body
+
+    def _take_salute(self, salute: Bool) -> None:
+        now = self.get_clock().now().nanoseconds
+        body, self._body = self._body, None
+        moment = published_moment(body, self._stopwatch_from(now).seconds(now), self._size)
+        self._listen(moment, float(salute.data), "")
+
+    def _stopwatch_from(self, stamp: int) -> Stopwatch:
+        if self._stopwatch is None:
+            self._stopwatch = Stopwatch(stamp)
+        return self._stopwatch
+
+    def _listen(self, moment: PoseSequence, salute: float, frame_id: str) -> None:
+        assert self._listener is not None
+        assert self._stopwatch is not None
+        self.count_input()
+        for event in self._listener.feed(moment, salute):
+            match event:
+                case TakeRecognized() | TakeRejected():
+                    self._recognitions.taken(
+                        event, self._listener.language, self._stopwatch, frame_id
+                    )
+                case StateChanged():
+                    self._recognitions.changed(event, self._stopwatch, frame_id)
+                case _:
+                    pass
+
+    def _change_language(self, language: SpokenLanguage) -> None:
+        listener = self._listener
+        if listener is not None:
+            listener.speak(language)
+            self._recognitions.speaks(language)
+
+
+def main() -> None:
+    """Run the node."""
+    spin(lambda: [RecognitionNode()])

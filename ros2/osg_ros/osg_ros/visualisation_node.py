@@ -1,0 +1,138 @@
+"""What the recogniser sees, drawn into the picture, for a screen or a recording."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from osg_interfaces.msg import BodyKeypoints, GestureRecognition, Hands, Keypoint, RecognizerState
+from sensor_msgs.msg import Image
+
+from app.recognition.errors import RecognitionError
+from app.recognition.estimation import Image as RGBImage
+from app.recognition.landmarks import SKELETON
+from osg_ros.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
+from osg_ros.pairing import StampPairs
+from osg_ros.pictures import TRANSPORT, PictureDecoder, picture_message, picture_topic
+from osg_ros.spinning import spin
+from osg_ros.stamps import nanoseconds_of
+
+BODY, HAND, SALUTE = (64, 224, 255), (255, 200, 64), (64, 255, 96)
+"""Colours, RGB: far apart for colour-blind eyes and bright against water."""
+
+VISIBLE: Final = 0.5
+"""Visibility from which a landmark is drawn; MediaPipe's drawings use the same."""
+
+STATES: Final = {
+    RecognizerState.INACTIVE: "inactive",
+    RecognizerState.IDLE: "idle",
+    RecognizerState.RECORDING: "recording",
+    RecognizerState.DONE: "done",
+}
+
+
+class VisualisationNode(ManagedNode):
+    """Publishes pictures with what was found in them on `processed_frames`."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(
+            "visualisation_node", (TRANSPORT,), "image, body_keypoints, hands", **options
+        )
+
+    def prepare(self) -> None:
+        """Make the publisher."""
+        self._frames = self.publisher(Image, "processed_frames", SENSOR_DATA)
+
+    def begin(self) -> None:
+        """Draw from now on."""
+        self._decoder = PictureDecoder()
+        self._found: StampPairs[BodyKeypoints, Hands] = StampPairs()
+        self._drawn: StampPairs[Any, tuple[BodyKeypoints, Hands]] = StampPairs()
+        self._state = self._words = ""
+        kind, topic = picture_topic(self.settings["image_transport"])
+        self.subscription(kind, topic, self._take_picture, SENSOR_DATA)
+        self.subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
+        self.subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
+        self.subscription(RecognizerState, "state", self._take_state, LATCHED)
+        self.subscription(GestureRecognition, "recognition", self._take_recognition, RESULTS)
+
+    def _take_picture(self, picture: Any) -> None:
+        self._draw(self._drawn.first(nanoseconds_of(picture.header.stamp), picture))
+
+    def _take_body(self, body: BodyKeypoints) -> None:
+        self._take_found(self._found.first(nanoseconds_of(body.header.stamp), body))
+
+    def _take_hands(self, hands: Hands) -> None:
+        self._take_found(self._found.second(nanoseconds_of(hands.header.stamp), hands))
+
+    def _take_found(self, found: tuple[BodyKeypoints, Hands] | None) -> None:
+        if found is not None:
+            self._draw(self._drawn.second(nanoseconds_of(found[0].header.stamp), found))
+
+    def _take_state(self, state: RecognizerState) -> None:
+        self._state = STATES.get(state.state, "")
+
+    def _take_recognition(self, recognition: GestureRecognition) -> None:
+        share = f"{recognition.nearest} {recognition.confidence:.0%}"
+        self._words = f"rejected: {share}" if recognition.rejected else share
+
+    def _draw(self, pair: tuple[Any, tuple[BodyKeypoints, Hands]] | None) -> None:
+        if pair is None:
+            return
+        picture, (body, hands) = pair
+        self.count_input()
+        try:
+            image = np.array(self._decoder.decode(picture))
+        except RecognitionError as error:
+            self.complain(f"a picture is left out: {error}")
+            return
+        drawn_body(image, body)
+        drawn_hands(image, hands)
+        written(image, f"{self._state}  {self._words}")
+        message = picture_message(image)
+        message.header = picture.header
+        self._frames.publish(message)
+
+
+def drawn_body(image: RGBImage, body: BodyKeypoints) -> None:
+    """Draw the bones between visible landmarks into an RGB image."""
+    points = {
+        each.name: pixel
+        for each in body.keypoints
+        if each.confidence >= VISIBLE and (pixel := pixel_of(each))
+    }
+    for one, other in SKELETON:
+        if one in points and other in points:
+            cv2.line(image, points[one], points[other], BODY, 2, cv2.LINE_AA)
+    for point in points.values():
+        cv2.circle(image, point, 3, BODY, -1, cv2.LINE_AA)
+
+
+def drawn_hands(image: RGBImage, hands: Hands) -> None:
+    """Draw the landmarks of hands into an RGB image, in another colour while one salutes."""
+    colour = SALUTE if hands.salute >= VISIBLE else HAND
+    for hand in hands.hands:
+        for point in filter(None, map(pixel_of, hand.keypoints)):
+            cv2.circle(image, point, 2, colour, -1, cv2.LINE_AA)
+
+
+def written(image: RGBImage, words: str) -> None:
+    """Write one line at the bottom of an RGB image."""
+    # OpenCV's letters are ASCII; labels need not be.
+    text = words.encode("ascii", "replace").decode()
+    place = (8, image.shape[0] - 10)
+    for colour, width in (((0, 0, 0), 4), ((255, 255, 255), 1)):
+        cv2.putText(image, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, width, cv2.LINE_AA)
+
+
+def pixel_of(keypoint: Keypoint) -> tuple[int, int] | None:
+    """Return the pixel of a keypoint; None where it was not seen or lies far outside."""
+    if not (abs(keypoint.x) < 2**15 and abs(keypoint.y) < 2**15):
+        return None
+    return round(keypoint.x), round(keypoint.y)
+
+
+def main() -> None:
+    """Run the node."""
+    spin(lambda: [VisualisationNode()])

@@ -1,0 +1,1 @@
+"""Tests that need ROS 2: real rclpy, real messages, real DDS."""

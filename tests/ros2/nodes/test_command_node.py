@@ -1,0 +1,120 @@
+"""Recognitions in, commands out, as messages; what is decided is tested with the dialogue."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition
+from std_msgs.msg import Header
+
+from osg_ros.command_node import CommandNode
+from osg_ros.stamps import stamp_of
+from tests.ros2.nodes.bench import LATCHED, Bench
+
+
+class Robot:
+    """A command node that knows a language, and a diver in front of it."""
+
+    def __init__(self, bench: Bench, **rules: Any) -> None:
+        self.bench = bench
+        self.commands = bench.heard(Command, "command")
+        self.states = bench.heard(CommandState, "command_state", LATCHED)
+        self._languages = bench.probe.create_publisher(ActiveLanguage, "language", LATCHED)
+        self._languages.publish(
+            ActiveLanguage(
+                language_id="id",
+                name="pool",
+                revision=3,
+                labels=["circle", "line", "wave"],
+                commands=["photo", '{"go":"up"}', ""],
+            )
+        )
+        self.node = bench.active(CommandNode, **rules)
+        bench.wait(lambda: self.node.facts()["language id"] == "id", "language")
+        self._recognitions = bench.speaker(GestureRecognition, "recognition")
+
+    def show(self, label: str, *, seconds_ago: float = 0.0, **other: Any) -> str:
+        """Show a gesture, and return what the robot says about it."""
+        told = len(self.states)
+        now = self.bench.probe.get_clock().now().nanoseconds - round(seconds_ago * 1e9)
+        message = GestureRecognition(
+            header=Header(stamp=stamp_of(now)),
+            body_id="diver",
+            language_id="id",
+            language_revision=3,
+            label=label,
+            nearest=label,
+            confidence=0.9,
+        )
+        for name, value in other.items():
+            setattr(message, name, value)
+        self._recognitions.publish(message)
+        self.bench.wait(lambda: len(self.states) > told, "answer")
+        return str(self.states[-1].reason)
+
+
+def test_a_command_comes_with_the_repetition_and_its_stamp(bench: Bench) -> None:
+    robot = Robot(bench)
+    assert robot.show("circle") == "repeat 'circle' to confirm: photo"
+    asked = robot.states[-1]
+    assert (asked.state, asked.label) == (CommandState.CONFIRMING, "circle")
+    assert asked.deadline.sec - asked.header.stamp.sec == 20
+    assert robot.show("circle") == "'circle': photo"
+    bench.wait(lambda: bool(robot.commands), "command")
+    (command,) = robot.commands
+    assert (command.command, command.label, command.emergency) == ("photo", "circle", False)
+    assert (command.body_id, command.language_revision) == ("diver", 3)
+    assert command.header.stamp == robot.states[-1].header.stamp
+    assert robot.states[-1].state == CommandState.WAITING
+
+
+def test_an_emergency_needs_no_repetition_and_an_object_stays_one(bench: Bench) -> None:
+    robot = Robot(bench, emergency=["line"])
+    robot.show("line")
+    bench.wait(lambda: bool(robot.commands), "command")
+    assert (robot.commands[0].command, robot.commands[0].emergency) == ('{"go":"up"}', True)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"rejected": True},
+        {"seconds_ago": 10.0},
+        {"language_id": "older"},
+        {"confidence": 0.3},
+    ],
+)
+def test_nothing_comes_of_what_is_rejected_stale_foreign_or_unsure(
+    bench: Bench, other: dict[str, Any]
+) -> None:
+    robot = Robot(bench, emergency=["line"], least_confidence=0.5)
+    robot.show("line", **other)
+    # Whatever was said about the first would come before what is said about the second.
+    robot.show("circle")
+    robot.show("circle")
+    bench.wait(lambda: bool(robot.commands), "command")
+    assert [command.label for command in robot.commands] == ["circle"]
+
+
+def test_a_gesture_can_take_it_back(bench: Bench) -> None:
+    robot = Robot(bench, cancel=["wave"])
+    robot.show("circle")
+    assert robot.show("wave") == "'circle' is cancelled"
+    assert robot.show("circle").startswith("repeat")
+    assert robot.commands == []
+
+
+def test_what_is_not_repeated_is_given_up_aloud(bench: Bench) -> None:
+    robot = Robot(bench, confirm_seconds=1.0, stale_seconds=0.1)
+    robot.show("circle")
+    told = len(robot.states)
+    bench.wait(lambda: len(robot.states) > told, "end of the wait")
+    assert robot.states[-1].state == CommandState.WAITING
+    assert robot.states[-1].reason == "'circle' was not repeated in time; show it twice"
+
+
+def test_a_label_that_the_language_lacks_is_told_to_diagnostics(bench: Bench) -> None:
+    robot = Robot(bench, emergency=["stop!"])
+    report = robot.node.health.report(0.0, 1.0, {})
+    assert "has no ['stop!']" in report.status[0].message

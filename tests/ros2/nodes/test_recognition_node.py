@@ -1,0 +1,224 @@
+"""Keypoints in, recognitions out: those of the recording, with its stamps, take by take."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from keypoints_interfaces.msg import PoseKeypoints, PoseKeypointsArray
+from osg_interfaces.msg import (
+    ActiveLanguage,
+    BodyKeypoints,
+    GestureRecognition,
+    Hands,
+    RecognizerState,
+)
+from osg_interfaces.srv import ReloadLanguage
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Bool, String
+from vision_msgs.msg import Classification
+
+from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
+from app.recognition.estimation import Body
+from osg_ros.bodies import published_keypoints
+from osg_ros.managed_node import ManagedNode
+from osg_ros.recognition_node import RecognitionNode
+from osg_ros.stamps import nanoseconds_of, stamp_of
+from tests.api.recordings import recording_of
+from tests.ros2.nodes.bench import LATCHED, Bench
+from tests.ros2.nodes.keypoint_messages import messages_of, stamped
+
+
+def language_of(*labels: str) -> Language:
+    """Return a language whose gestures are shown as the recordings of these tests show them."""
+    gestures = [
+        Gesture.from_demonstration(label, takes_in(recording_of(label))[0].poses, command=label)
+        for label in labels
+    ]
+    return Language("two signs", gestures).calibrated()
+
+
+@pytest.fixture(scope="module")
+def two_signs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("languages") / "two-signs.json"
+    language_of("circle", "line").save(path)
+    return path
+
+
+@pytest.fixture
+def recogniser(bench: Bench, two_signs: Path) -> RecognitionNode:
+    node: RecognitionNode = bench.active(RecognitionNode, language=str(two_signs))
+    return node
+
+
+def play(bench: Bench, recording: Recording) -> None:
+    """Send a recording, each picture's body and hands, and wait until all was heard."""
+    bodies = bench.speaker(BodyKeypoints, "body_keypoints")
+    hands = bench.speaker(Hands, "hands")
+    before = bench.nodes[-1].health.inputs
+    for sent, (body, seen) in enumerate(messages_of(recording), 1):
+        bodies.publish(body)
+        hands.publish(seen)
+        heard(bench, bench.nodes[-1], before + sent)
+
+
+def heard(bench: Bench, node: ManagedNode, messages: int) -> None:
+    """Wait until a node has worked on so many messages."""
+    bench.wait(lambda: node.health.inputs == messages, f"{messages} messages heard")
+
+
+def test_takes_are_those_of_the_recording_label_by_label_and_stamp_by_stamp(
+    bench: Bench, recogniser: RecognitionNode, two_signs: Path
+) -> None:
+    recording = recording_of("circle", "line", "circle")
+    said = bench.heard(GestureRecognition, "recognition")
+    play(bench, recording)
+    bench.wait(lambda: len(said) == 3, "three recognitions")
+    language = Language.load(two_signs)
+    recognizer = Recognizer(language)
+    for message, take in zip(said, takes_in(recording), strict=True):
+        answer = recognizer.recognize(take.poses)
+        assert (message.label, message.nearest) == (answer.label, answer.nearest)
+        assert message.confidence == pytest.approx(answer.confidence, abs=1e-9)
+        assert message.margin == pytest.approx(answer.margin, abs=1e-9)
+        assert nanoseconds_of(message.start) == stamped(take.start)
+        assert nanoseconds_of(message.end) == stamped(take.end)
+        assert (message.closed, message.rejected, message.reason) == (True, False, "")
+        assert (message.body_id, message.header.frame_id) == ("diver", "camera")
+        assert json.loads(message.report)["votes"] == answer.votes
+        assert message.language_revision == language.revision
+        assert len(message.language_id) == 64
+    assert [message.label for message in said] == ["circle", "line", "circle"]
+
+
+def test_labels_are_sent_as_the_published_port_and_vision_msgs_have_them(
+    bench: Bench, recogniser: RecognitionNode
+) -> None:
+    labels = bench.heard(String, "recognized_gesture")
+    classes = bench.heard(Classification, "classification")
+    play(bench, recording_of("line"))
+    bench.wait(lambda: bool(labels and classes), "label and class")
+    assert [label.data for label in labels] == ["line"]
+    assert [result.class_id for result in classes[0].results] == ["line"]
+    assert classes[0].results[0].score > 0.5
+
+
+def test_a_rejected_take_says_why_and_reaches_nobody_who_reads_labels(
+    bench: Bench, tmp_path: Path
+) -> None:
+    path = tmp_path / "one-sign.json"
+    language_of("line").save(path)
+    bench.active(RecognitionNode, language=str(path))
+    said = bench.heard(GestureRecognition, "recognition")
+    labels = bench.heard(String, "recognized_gesture")
+    play(bench, recording_of("circle", "line"))
+    bench.wait(lambda: len(said) == 2 and bool(labels), "both takes")
+    assert said[0].rejected
+    assert (said[0].label, said[0].nearest) == ("", "line")
+    assert "no gesture of 'two signs'" in said[0].reason
+    assert [label.data for label in labels] == ["line"]
+
+
+def test_states_are_told_with_the_stamp_of_the_picture_that_changed_them(
+    bench: Bench, recogniser: RecognitionNode
+) -> None:
+    states = bench.heard(RecognizerState, "state", LATCHED)
+    bench.wait(lambda: bool(states), "state of before")
+    recording = recording_of("circle")
+    play(bench, recording)
+    bench.wait(lambda: len(states) == 3, "three states")
+    assert [state.state for state in states] == [
+        RecognizerState.IDLE,
+        RecognizerState.RECORDING,
+        RecognizerState.DONE,
+    ]
+    stamps = {stamped(seconds) for seconds in recording.poses.time.tolist()}
+    assert {nanoseconds_of(state.header.stamp) for state in states[1:]} <= stamps
+
+
+def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
+    bench: Bench, recogniser: RecognitionNode
+) -> None:
+    said = bench.heard(GestureRecognition, "recognition")
+    whole = recording_of("circle")
+    play(bench, cut(whole, 40))
+    play(bench, whole)
+    bench.wait(lambda: len(said) == 2, "both takes")
+    assert said[0].rejected
+    assert "time went back" in said[0].reason
+    assert said[1].label == "circle"
+
+
+def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> None:
+    recording = recording_of("line")
+    size = recording.poses.frame_size
+    # Its messages have no stamps: the node's clock tells how long a gesture took.
+    node = bench.active(
+        RecognitionNode,
+        language=str(two_signs),
+        input="published",
+        image_width=size[0],
+        image_height=size[1],
+        use_sim_time=True,
+    )
+    clock = bench.speaker(Clock, "/clock")
+    bodies = bench.speaker(PoseKeypointsArray, "pose_keypoints")
+    salutes = bench.speaker(Bool, "vulcan_salute_detected")
+    said = bench.heard(GestureRecognition, "recognition")
+    frames = zip(recording.poses.time.tolist(), recording.poses.xy, recording.salute, strict=True)
+    for sent, (seconds, xy, salute) in enumerate(frames):
+        now = stamped(seconds)
+        clock.publish(Clock(clock=stamp_of(now)))
+        bench.wait(lambda now=now: node.get_clock().now().nanoseconds == now, "time")  # type: ignore[misc]
+        body = Body(xy, np.ones(len(xy)), 1.0)
+        bodies.publish(published_keypoints(PoseKeypointsArray, PoseKeypoints, size, body))
+        heard(bench, node, 2 * sent + 1)
+        salutes.publish(Bool(data=bool(salute > 0.5)))
+        heard(bench, node, 2 * sent + 2)
+    bench.wait(lambda: bool(said), "recognition")
+    assert said[0].label == "line"
+    assert nanoseconds_of(said[0].start) == stamped(takes_in(recording)[0].start)
+
+
+def test_another_language_is_spoken_without_missing_a_picture(
+    bench: Bench, recogniser: RecognitionNode, tmp_path: Path
+) -> None:
+    path = tmp_path / "one-sign.json"
+    Language("one sign", language_of("line").gestures).save(path)
+    languages = bench.heard(ActiveLanguage, "language", LATCHED)
+    bench.wait(lambda: bool(languages), "language")
+    response = bench.ask(ReloadLanguage, "reload_language", ReloadLanguage.Request(path=str(path)))
+    assert response.success
+    assert "'one sign', revision 1, with 1 gestures" in response.message
+    bench.wait(lambda: len(languages) == 2, "second language")
+    assert languages[1].language_id == response.language_id != languages[0].language_id
+    assert list(languages[1].labels) == list(languages[1].commands) == ["line"]
+    said = bench.heard(GestureRecognition, "recognition")
+    play(bench, recording_of("line"))
+    bench.wait(lambda: bool(said), "recognition")
+    assert said[0].language_name == "one sign"
+
+
+def test_a_language_that_is_refused_leaves_the_old_one(
+    bench: Bench, recogniser: RecognitionNode, tmp_path: Path
+) -> None:
+    path = tmp_path / "broken.json"
+    path.write_text("{}", encoding="utf-8")
+    request = ReloadLanguage.Request(path=str(path))
+    response = bench.ask(ReloadLanguage, "reload_language", request)
+    assert not response.success
+    assert "is refused, the language stays" in response.message
+    assert response.language_revision == 1
+
+
+def cut(recording: Recording, frames: int) -> Recording:
+    """Return the first frames of a recording."""
+    end = float(recording.poses.time[frames - 1])
+    return Recording(
+        poses=recording.poses.between(0.0, end),
+        hands=recording.hands[:frames],
+        salute=recording.salute[:frames],
+        warnings=(),
+    )

@@ -1,0 +1,203 @@
+"""A command is given for a confirmed gesture or an emergency, and for nothing else."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from osg_ros.command_dialogue import (
+    CommandDialogue,
+    CommandTable,
+    Decision,
+    HeardGesture,
+    Rules,
+)
+
+TABLE = CommandTable("language", {"circle": "photo", "line": "surface", "peak": "follow"})
+RULES = Rules(
+    confirm_seconds=10.0,
+    stale_seconds=1.0,
+    least_confidence=0.5,
+    cancel=frozenset({"cross"}),
+    emergency=frozenset({"line"}),
+)
+LABELS = [*TABLE.commands, "cross", "wave", None]
+
+
+def dialogue(rules: Rules = RULES) -> CommandDialogue:
+    made = CommandDialogue(rules)
+    made.speak(TABLE)
+    return made
+
+
+def shown(
+    label: str | None, stamp: float, confidence: float = 0.9, language: str = "language"
+) -> HeardGesture:
+    return HeardGesture(label, confidence, stamp, language)
+
+
+def commands_of(*gestures: HeardGesture, rules: Rules = RULES) -> list[str | None]:
+    made = dialogue(rules)
+    return [made.hear(gesture, gesture.stamp).command for gesture in gestures]
+
+
+def test_a_gesture_is_confirmed_by_showing_it_again() -> None:
+    assert commands_of(shown("circle", 1), shown("circle", 6)) == [None, "photo"]
+
+
+def test_a_third_showing_begins_anew() -> None:
+    three = [shown("circle", second) for second in (1, 2, 3)]
+    assert commands_of(*three) == [None, "photo", None]
+
+
+def test_a_repetition_that_comes_too_late_is_the_first_of_a_new_pair() -> None:
+    assert commands_of(shown("circle", 1), shown("circle", 12), shown("circle", 13)) == [
+        None,
+        None,
+        "photo",
+    ]
+
+
+def test_another_gesture_takes_the_place_of_the_first() -> None:
+    gestures = [shown("circle", 1), shown("peak", 2), shown("circle", 3), shown("circle", 4)]
+    assert commands_of(*gestures) == [None, None, None, "photo"]
+
+
+def test_a_rejected_take_in_between_changes_nothing() -> None:
+    gestures = [shown("circle", 1), shown(None, 2), shown("circle", 3)]
+    assert commands_of(*gestures) == [None, None, "photo"]
+
+
+@pytest.mark.parametrize("between", ["cross", "wave"])
+def test_a_cancel_or_a_gesture_without_command_takes_it_back(between: str) -> None:
+    gestures = [shown("circle", 1), shown(between, 2), shown("circle", 3)]
+    assert commands_of(*gestures) == [None, None, None]
+
+
+def test_an_emergency_is_given_at_once_and_takes_back_the_rest() -> None:
+    made = dialogue()
+    made.hear(shown("circle", 1), 1)
+    decision = made.hear(shown("line", 2), 2)
+    assert (decision.command, decision.emergency) == ("surface", True)
+    assert made.pending is None
+
+
+def test_without_confirmation_a_gesture_is_enough() -> None:
+    assert commands_of(shown("circle", 1), rules=Rules(confirmed=False)) == ["photo"]
+
+
+@pytest.mark.parametrize("now", [4.5, 1.5, math.nan])
+def test_a_stale_gesture_or_one_of_another_clock_is_ignored(now: float) -> None:
+    made = dialogue()
+    decision = made.hear(shown("line", 3), now)
+    assert decision.command is None
+    assert decision.reason.startswith("ignored")
+
+
+def test_a_gesture_that_is_played_again_is_ignored() -> None:
+    assert commands_of(shown("circle", 1), shown("circle", 1)) == [None, None]
+
+
+def test_a_gesture_of_another_language_is_ignored() -> None:
+    assert commands_of(shown("line", 1, language="older")) == [None]
+
+
+def test_a_confidence_of_nan_is_too_little() -> None:
+    assert commands_of(shown("line", 1, confidence=math.nan)) == [None]
+
+
+def test_another_language_forgets_what_was_begun_in_the_old_one() -> None:
+    made = dialogue()
+    made.hear(shown("circle", 1), 1)
+    decision = made.speak(CommandTable("newer", TABLE.commands))
+    assert decision is not None
+    assert "'circle' is forgotten" in decision.reason
+    assert made.hear(shown("circle", 2, language="newer"), 2).command is None
+
+
+def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
+    made = dialogue()
+    made.hear(shown("circle", 1), 1)
+    assert made.wait(11.5) is None
+    decision = made.wait(12.5)
+    assert decision is not None
+    assert "not repeated in time" in decision.reason
+    assert made.wait(13.5) is None
+    assert made.pending is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"confirm_seconds": 0.0}, "confirm_seconds is 0.0"),
+        ({"stale_seconds": math.nan}, "stale_seconds is nan"),
+        ({"least_confidence": 1.5}, "least_confidence is 1.5"),
+        ({"cancel": frozenset({"line"}), "emergency": frozenset({"line"})}, "'line'"),
+    ],
+)
+def test_rules_that_contradict_themselves_are_refused(wrong: dict[str, object], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Rules(**wrong)  # type: ignore[arg-type]
+
+
+gestures = st.builds(
+    HeardGesture,
+    label=st.sampled_from(LABELS),
+    confidence=st.sampled_from([0.0, 0.4, 0.5, 1.0, math.nan]),
+    stamp=st.integers(0, 60).map(float),
+    language_id=st.sampled_from(["language", "language", "language", "older"]),
+)
+heard = st.lists(st.tuples(gestures, st.sampled_from([-2.0, 0.0, 0.5, 2.0])), max_size=30)
+
+
+def told(made: CommandDialogue, heard: list[tuple[HeardGesture, float]]) -> list[Decision]:
+    """Return what a dialogue decides about gestures heard some seconds after their stamp."""
+    return [made.hear(gesture, gesture.stamp + late) for gesture, late in heard]
+
+
+@given(heard)
+def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
+    heard: list[tuple[HeardGesture, float]],
+) -> None:
+    for (gesture, late), decision in zip(heard, told(dialogue(), heard), strict=True):
+        if decision.command is not None:
+            assert gesture.label is not None
+            assert gesture.confidence >= RULES.least_confidence
+            assert abs(late) <= RULES.stale_seconds
+            assert gesture.language_id == TABLE.language_id
+            assert decision.command == TABLE.commands[gesture.label]
+
+
+@given(heard)
+def test_every_command_but_an_emergency_was_shown_twice_in_time(
+    heard: list[tuple[HeardGesture, float]],
+) -> None:
+    made, asked = dialogue(), {}
+    for gesture, late in heard:
+        before = made.pending
+        decision = made.hear(gesture, gesture.stamp + late)
+        if made.pending is not None and made.pending is not before:
+            asked[made.pending.label] = gesture.stamp
+        if decision.command is not None and not decision.emergency:
+            assert before is not None
+            assert before.label == decision.label == gesture.label
+            assert 0 < gesture.stamp - asked[before.label] <= RULES.confirm_seconds
+            assert made.pending is None
+
+
+@given(heard)
+def test_a_pair_of_showings_gives_one_command_at_most(
+    heard: list[tuple[HeardGesture, float]],
+) -> None:
+    decisions = told(dialogue(), heard)
+    confirmed = [each for each in decisions if each.command and not each.emergency]
+    assert 2 * len(confirmed) <= sum(gesture.label is not None for gesture, _ in heard)
+
+
+@given(heard)
+def test_only_emergencies_are_told_as_such(heard: list[tuple[HeardGesture, float]]) -> None:
+    for decision in told(dialogue(), heard):
+        assert decision.emergency == (decision.command is not None and decision.label == "line")
