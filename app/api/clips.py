@@ -15,9 +15,9 @@ from app.api.intake import client_of, examined, require_place_in_queue, take_in
 from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
 from app.api.problems import ProblemError, documented
 from app.api.ranges import keep_single_range
-from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView
+from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
 from app.api.still_pictures import sent_picture
-from app.api.studio import CurrentStudio
+from app.api.studio import CurrentStudio, Studio
 from app.api.uploads import receive_file
 from app.recognition.poses import PoseSequence
 from app.recognition.takes import takes_in
@@ -40,7 +40,13 @@ _UPLOAD_FORM = {
                 "schema": {
                     "type": "object",
                     "required": ["file"],
-                    "properties": {"file": {"type": "string", "format": "binary"}},
+                    "properties": {
+                        "file": {"type": "string", "format": "binary"},
+                        "topic": {
+                            "type": "string",
+                            "description": "Of a dive recording with several topics: which one",
+                        },
+                    },
                 }
             }
         },
@@ -63,6 +69,10 @@ async def upload_clip(
 ) -> ClipAccepted:
     """Store a clip and queue the extraction of its poses.
 
+    A dive recording (rosbag2) is taken too: of the topic named, or of the only one that can be
+    used. Where there are several, the job fails with the code `topic_needed` and the clip lists
+    them; choose by `POST /clips/{id}/topic`.
+
     An upload that repeats an earlier one's `Idempotency-Key` answers with the earlier clip.
     """
     if idempotency_key and (
@@ -76,7 +86,9 @@ async def upload_clip(
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings)
-        clip = await examined(partial, studio, name=upload.name, size=upload.size)
+        clip = await examined(
+            partial, studio, name=upload.name, size=upload.size, topic=upload.topic
+        )
         clip.idempotency_key = idempotency_key
         return await take_in(clip, partial, studio, client_of(request))
     finally:
@@ -116,8 +128,32 @@ def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
 @router.post("/{clip_id}/jobs", status_code=202, responses=documented(404, 409, 429))
 async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> ClipAccepted:
     """Extract the poses again, after a job that failed or was cancelled."""
-    await run_in_threadpool(studio.clips.get, clip_id)
+    clip = (await run_in_threadpool(studio.clips.get, clip_id)).clip
+    if clip.needs_topic:
+        raise ProblemError(409, "topic_needed", "choose first which topic the clip is made of")
     await require_place_in_queue(request, studio)
+    return await _another_job(request, clip_id, studio)
+
+
+@router.post("/{clip_id}/topic", status_code=202, responses=documented(404, 409, 429))
+async def choose_topic(
+    request: Request, clip_id: str, choice: TopicChoice, studio: CurrentStudio
+) -> ClipAccepted:
+    """Choose the topic of a dive recording that a clip is made of, and extract its poses."""
+    found = await run_in_threadpool(studio.clips.get, clip_id)
+    known = [topic["name"] for topic in json.loads(found.clip.topics)]
+    if choice.topic not in known:
+        detail = f"this clip has no topic {choice.topic!r}; it has {', '.join(known) or 'none'}"
+        raise ProblemError(422, "topic_unusable", detail)
+    if found.job.status in (JobStatus.QUEUED, JobStatus.RUNNING, JobStatus.DONE):
+        detail = f"this clip is made of {found.clip.topic} already; upload the recording again"
+        raise ProblemError(409, "job_not_needed", detail)
+    await require_place_in_queue(request, studio)
+    await run_in_threadpool(studio.clips.choose_topic, clip_id, choice.topic)
+    return await _another_job(request, clip_id, studio)
+
+
+async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAccepted:
     job = await run_in_threadpool(studio.jobs.retry, clip_id, client_of(request))
     if job is None:
         detail = "the poses of this clip are extracted, or are being extracted, already"
@@ -131,19 +167,26 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> C
     "/{clip_id}/video",
     response_class=FileResponse,
     responses={
-        **documented(404, 416),
+        **documented(404, 409, 416),
         200: {"description": "The clip's own bytes", "content": {"video/*": {}}},
         206: {"description": "The range asked for", "content": {"video/*": {}}},
     },
 )
 def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
-    """Send the clip as it was uploaded, or a range of it."""
+    """Send the clip as it was uploaded, or a range of it.
+
+    Of a dive recording, the video that its job made of the topic.
+    """
     clip = studio.clips.get(clip_id).clip
-    keep_single_range(request, clip.size)
+    video = studio.clips.video(clip_id)
+    if clip.from_bag and not video.is_file():
+        detail = "the video of this clip is made while its poses are found; wait for its job"
+        raise ProblemError(409, "clip_not_ready", detail)
+    keep_single_range(request, video.stat().st_size if clip.from_bag else clip.size)
     return FileResponse(
-        studio.clips.video(clip_id),
+        video,
         media_type=clip.media_type,
-        filename=clip.name,
+        filename=f"{clip.name}.mp4" if clip.from_bag else clip.name,
         content_disposition_type="inline",
         headers={"Cache-Control": "private, max-age=3600"},
     )
@@ -191,7 +234,8 @@ def clip_view(found: ClipWithJob) -> ClipView:
     """Return what to tell about a clip."""
     clip, job = found.clip, found.job
     return ClipView(
-        **clip.model_dump(exclude={"idempotency_key", "deleted"}),
+        **clip.model_dump(exclude={"idempotency_key", "deleted", "topics"}),
+        topics=json.loads(clip.topics),
         status=JobStatus(job.status),
         error=job.error,
         error_code=job.error_code,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from fastapi import Request
@@ -12,6 +13,7 @@ from app.api.media_types import HEAD_BYTES, video_type
 from app.api.problems import ProblemError
 from app.api.schemas import ClipAccepted
 from app.api.studio import Studio
+from app.bags.kind import bag_kind
 from app.store import Clip
 
 
@@ -32,8 +34,21 @@ async def require_place_in_queue(request: Request, studio: Studio) -> None:
         )
 
 
-async def examined(partial: Path, studio: Studio, *, name: str, size: int) -> Clip:
+async def examined(
+    partial: Path, studio: Studio, *, name: str, size: int, topic: str | None = None
+) -> Clip:
     """Look into a received file.
+
+    Parameters
+    ----------
+    partial
+        The file.
+    studio
+        What looks into it.
+    name, size
+        What to call it, and its bytes.
+    topic
+        Of a dive recording, which topic to make the clip of; None: the only one, or a choice later.
 
     Returns
     -------
@@ -42,18 +57,26 @@ async def examined(partial: Path, studio: Studio, *, name: str, size: int) -> Cl
     Raises
     ------
     ProblemError
-        415 when it is no video, 422 when it is one that cannot be read.
+        415 when it is neither video nor dive recording, 422 when it is one that cannot be read, or
+        has no such topic.
 
     """
     if size == 0:
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
-    media_type = video_type(await run_in_threadpool(_head, partial))
+    head = await run_in_threadpool(_head, partial)
+    if bag_kind(head) is not None:
+        return await _examined_bag(partial, studio, name, size, topic)
+    media_type = video_type(head)
     if media_type is None:
         raise ProblemError(
             415,
             "unsupported_media_type",
-            f"{name} is not a video this app knows, whatever its name says; "
-            "send MP4, MOV, WebM, MKV, AVI or MPEG-TS",
+            f"{name} is neither a video nor a dive recording this app knows, whatever its name "
+            "says; send MP4, MOV, WebM, MKV, AVI, MPEG-TS, or a rosbag2 (MCAP, sqlite3, zip)",
+        )
+    if topic is not None:
+        raise ProblemError(
+            422, "topic_unusable", f"{name} is a video and has no topics; leave out the topic"
         )
     probed = await studio.runner.probe(partial)
     if isinstance(probed, Failed):
@@ -69,10 +92,45 @@ async def examined(partial: Path, studio: Studio, *, name: str, size: int) -> Cl
     )
 
 
+async def _examined_bag(
+    partial: Path, studio: Studio, name: str, size: int, topic: str | None
+) -> Clip:
+    probed = await studio.runner.probe_bag(partial)
+    if isinstance(probed, Failed):
+        status = 415 if probed.code == "unsupported_media_type" else 422
+        raise ProblemError(status, probed.code, f"{name}: {probed.detail}")
+    if topic is None and len(probed.topics) == 1:
+        topic = probed.topics[0].name
+    named = {each.name: each for each in probed.topics}
+    if topic is not None and topic not in named:
+        raise ProblemError(
+            422,
+            "topic_unusable",
+            f"{name} has no topic {topic!r} that a clip can be made of; it has {', '.join(named)}",
+            topics=[each.model_dump() for each in probed.topics],
+        )
+    shown = named[topic] if topic is not None else probed.topics[0]
+    return Clip(
+        name=name,
+        media_type="video/mp4",
+        size=size,
+        width=shown.width,
+        height=shown.height,
+        duration=shown.duration,
+        frames=shown.messages,
+        topics=json.dumps([each.model_dump() for each in probed.topics]),
+        topic=topic,
+    )
+
+
 async def take_in(clip: Clip, partial: Path, studio: Studio, client: str) -> ClipAccepted:
-    """Store an examined file as `clip`, queue its job, and tell the open pages."""
+    """Store an examined file as `clip`, queue its job, and tell the open pages.
+
+    The job of a dive recording whose topic nobody chose has failed already, for that reason.
+    """
     added = await run_in_threadpool(studio.clips.add, clip, partial, client)
-    await studio.runner.submit(added.job)
+    if not added.clip.needs_topic:
+        await studio.runner.submit(added.job)
     studio.broadcast.publish("clips", id=added.clip.id)
     return ClipAccepted(id=added.clip.id, job_id=added.job.id)
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.extraction.messages import Pose
+from app.api.extraction.messages import Pose, TopicSeen
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.grammar_schema import GrammarEntry
 from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
@@ -53,8 +53,22 @@ class ClipView(BaseModel):
     frames: int | None = Field(description="Frames decoded; before that, as the container says")
     size: int = Field(description="Bytes")
     media_type: str
+    topics: list[TopicSeen] = Field(
+        description="Of a dive recording: what a clip can be made of; empty for a video"
+    )
+    topic: str | None = Field(
+        description="Of a dive recording: what the clip is made of; null while nobody chose"
+    )
     job_id: str
     created: datetime
+
+
+class TopicChoice(BaseModel):
+    """Which topic of a dive recording a clip is to be made of."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    topic: Annotated[str, Field(min_length=1, max_length=255)]
 
 
 class JobView(BaseModel):

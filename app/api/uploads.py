@@ -29,6 +29,9 @@ MOST_PARTS = 16
 LONGEST_NAME = 200
 """Characters of a file name that are shown and kept."""
 
+LONGEST_TOPIC = 255
+"""Bytes of a topic's name: as long as ROS allows one to be."""
+
 _FLUSH_BYTES = 1024 * 1024
 
 
@@ -42,11 +45,14 @@ class Upload:
         What to show for it; see `shown_name`.
     size
         Bytes.
+    topic
+        What the form's field ``topic`` says; None: it has none.
 
     """
 
     name: str
     size: int
+    topic: str | None = None
 
 
 async def receive_file(request: Request, target: Path, settings: Settings) -> Upload:
@@ -96,7 +102,7 @@ def shown_name(name: str) -> str:
 
 
 class _FilePart:
-    """Picks the bytes of the part ``file`` out of a multipart body."""
+    """Picks the bytes of the part ``file``, and the field ``topic``, out of a multipart body."""
 
     def __init__(self, boundary: bytes, limit: int) -> None:
         self.pending = bytearray()
@@ -106,6 +112,8 @@ class _FilePart:
         self._parts = 0
         self._name: str | None = None
         self._in_file = False
+        self._in_topic = False
+        self._topic = bytearray()
         self._ended = False
         self._header = bytearray()
         self._value = bytearray()
@@ -131,14 +139,15 @@ class _FilePart:
             raise _malformed("the form ends before its last boundary; send the clip again")
         if self._name is None:
             raise _malformed("the form has no part named 'file' with a file name; send one clip")
-        return Upload(shown_name(self._name), self._size)
+        topic = bytes(self._topic).decode("utf-8", "replace").strip()
+        return Upload(shown_name(self._name), self._size, topic or None)
 
     def _on_part_begin(self) -> None:
         self._parts += 1
         if self._parts > MOST_PARTS:
             raise _malformed(f"the form has more than {MOST_PARTS} parts; send one clip")
         self._disposition = b""
-        self._in_file = False
+        self._in_file = self._in_topic = False
 
     def _on_header_field(self, data: bytes, start: int, end: int) -> None:
         self._header += data[start:end]
@@ -154,6 +163,7 @@ class _FilePart:
 
     def _on_headers_finished(self) -> None:
         _, options = parse_options_header(self._disposition)
+        self._in_topic = options.get(b"name") == b"topic" and b"filename" not in options
         if options.get(b"name") != b"file" or b"filename" not in options:
             return
         if self._name is not None:
@@ -162,6 +172,10 @@ class _FilePart:
         self._name = options[b"filename"].decode("utf-8", "replace")
 
     def _on_part_data(self, data: bytes, start: int, end: int) -> None:
+        if self._in_topic:
+            self._topic += data[start:end]
+            if len(self._topic) > LONGEST_TOPIC:
+                raise _malformed(f"the field 'topic' is longer than {LONGEST_TOPIC} bytes")
         if not self._in_file:
             return
         self._size += end - start

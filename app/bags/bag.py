@@ -95,13 +95,16 @@ class Bag:
     ----------
     reader
         Of rosbags, open.
+    place
+        What it reads.
     name
         What to call the recording in messages.
 
     """
 
-    def __init__(self, reader: Reader, name: str) -> None:
+    def __init__(self, reader: Reader, place: Path, name: str) -> None:
         self._reader = reader
+        self._place = place
         self.name = name
         self.topics = tuple(_topic(name, info) for name, info in reader.topics.items())
 
@@ -149,7 +152,7 @@ class Bag:
         if not connections:
             return
         kind = connections[0].msgtype
-        with _told(self.name):
+        with _told(self._place, self.name):
             store = _typestore(connections[0])
             for _, received, data in self._reader.messages(connections):
                 yield Message(received, store.deserialize_cdr(data, kind))
@@ -162,7 +165,7 @@ class Bag:
         usable = {topic.name for topic in self.topics if topic.usable}
         chosen = [each for each in self._reader.connections if each.topic in usable]
         spans: dict[str, tuple[int, int]] = {}
-        with suppress(BagError), _told(self.name):
+        with suppress(BagError), _told(self._place, self.name):
             for connection, received, _ in self._reader.messages(chosen):
                 first, last = spans.get(connection.topic, (received, received))
                 spans[connection.topic] = min(first, received), max(last, received)
@@ -208,9 +211,9 @@ def opened_bag(path: str | Path) -> Iterator[Bag]:
         ) from error
     with ExitStack() as open_things:
         found = open_things.enter_context(placed(place))
-        with _told(place.name):
+        with _told(found, place.name):
             reader = open_things.enter_context(Reader(found))
-            bag = Bag(reader, place.name)
+            bag = Bag(reader, found, place.name)
         yield bag
 
 
@@ -249,8 +252,11 @@ def _typestore(connection: Connection) -> Typestore:
 
 
 @contextmanager
-def _told(name: str) -> Iterator[None]:
-    """Turn whatever a reader trips over in a damaged recording into one line."""
+def _told(place: Path, name: str) -> Iterator[None]:
+    """Turn whatever a reader trips over in a damaged recording into one line.
+
+    It calls the recording by `name`, not by the `place` where it lies while it is read.
+    """
     try:
         yield
     except (RecognitionError, MemoryError, OSError):
@@ -259,6 +265,7 @@ def _told(name: str) -> Iterator[None]:
     # and those of three compression libraries and SQLite all mean the same here.
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        reason = reason.replace(str(place), name)
         raise BagError(
             f"{name} is damaged or cut short ({reason}); copy it again, or repair it with "
             "`ros2 bag reindex` or `mcap recover`"

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
 
 from app.bags.bag import Bag, Topic, opened_bag
 from app.bags.frames import BagFrames
@@ -110,7 +107,6 @@ def _shown(
     observer: Observer | None,
 ) -> Recording:
     """Draw the skeleton frame by frame where somebody wants to look at it."""
-    recording = _with_even_size(recording)
     poses, confidence = recording.poses, recording.poses.confidence
     assert confidence is not None
     if video is None and observer is None:
@@ -131,10 +127,3 @@ def _shown(
             if progress is not None:
                 progress(index + 1, len(poses))
     return recording
-
-
-def _with_even_size(recording: Recording) -> Recording:
-    """Make width and height even, as the usual video codecs want; the landmarks stay."""
-    size = np.array(recording.poses.frame_size)
-    width, height = (int(side) for side in np.maximum(2, size // 2 * 2))
-    return replace(recording, poses=replace(recording.poses, frame_size=(width, height)))

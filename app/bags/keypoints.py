@@ -83,6 +83,25 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
     return _recording(gathered, salute_track(bag, topic, gathered.by_header), bag, topic)
 
 
+def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
+    """Return width and height in pixels of the picture that a topic's keypoints lie in.
+
+    Raises
+    ------
+    BagError
+        When the first message cannot be read.
+
+    """
+    first = next(bag.messages(topic.name))
+    return even(_READERS[topic.type](first.content).size or _picture_size(bag) or ASSUMED_SIZE)
+
+
+def even(size: tuple[int, int]) -> tuple[int, int]:
+    """Make a size even, as the usual video codecs want."""
+    width, height = (max(2, side // 2 * 2) for side in size)
+    return width, height
+
+
 @dataclass
 class _Gathered:
     """What was read so far, with the time of each."""
@@ -123,7 +142,7 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
         xy=np.stack([_pixels(posed, size) for posed in gathered.posed]),
         confidence=np.stack([posed.confidence for posed in gathered.posed]),
         time=np.array(gathered.seconds),
-        frame_size=size,
+        frame_size=even(size),
     )
     hands: tuple[tuple[Hand, ...], ...] = salute.hands_at(stamps)
     return Recording(

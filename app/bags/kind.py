@@ -21,6 +21,10 @@ _BEGINNINGS: dict[bytes, BagKind] = {
 }
 
 
+HEAD_BYTES = max(map(len, _BEGINNINGS))
+"""How much of a file `bag_kind` wants to see."""
+
+
 def bag_kind(head: bytes) -> BagKind | None:
     """Return what kind of recording begins with `head`, or None; a zip may hold anything else."""
     return next((kind for start, kind in _BEGINNINGS.items() if head.startswith(start)), None)
@@ -33,7 +37,7 @@ def kind_of(path: Path) -> BagKind | None:
     if not path.is_file():
         return None
     with path.open("rb") as file:
-        return bag_kind(file.read(max(map(len, _BEGINNINGS))))
+        return bag_kind(file.read(HEAD_BYTES))
 
 
 def bag_and_topic(text: str) -> tuple[Path, str | None]:

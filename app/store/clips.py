@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from contextlib import suppress
 from dataclasses import dataclass
@@ -14,15 +15,20 @@ from sqlmodel import Session, col, select
 from app.store.database import Database
 from app.store.errors import NotFound
 from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
-from app.store.models import Clip, Job, new_id, now
+from app.store.models import Clip, Job, JobStatus, new_id, now
 
-VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
+BAG, VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
+    "bag",
     "video",
     "recording.npz",
     "poster.jpg",
     "filmstrip.jpg",
 )
-"""The files of a clip."""
+"""The files of a clip; one from a dive recording has the recording, and its video once its job is
+done."""
+
+TOPIC_NEEDED = "topic_needed"
+"""Why the job of a clip failed that needs somebody to choose a topic."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +64,17 @@ class ClipStore:
     def add(self, clip: Clip, partial: Path, client: str) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
+        A dive recording with several topics waits for `choose_topic`: its job has failed already.
         The file gets its place first: a row never refers to what is not on disk. When two
         uploads with one idempotency key race, the second one gets the first one's clip.
         """
-        target = self.video(clip.id)
+        target = self.bag(clip.id) if clip.from_bag else self.video(clip.id)
         target.parent.mkdir()
         job = Job(clip_id=clip.id, client=client)
+        if clip.needs_topic:
+            job.status, job.finished = JobStatus.FAILED.value, now()
+            job.error_code = TOPIC_NEEDED
+            job.error = "the recording holds several topics; choose one of them"
         try:
             publish(partial, target)
             sync_directory(self.folder)
@@ -146,6 +157,28 @@ class ClipStore:
             clip.deleted = None
             session.add(clip)
 
+    def choose_topic(self, clip_id: str, topic: str) -> None:
+        """Note which topic of its dive recording a clip is made of, and that topic's measures.
+
+        Raises
+        ------
+        NotFound
+            When there is no such clip, or its recording has no such topic to choose.
+
+        """
+        with self._database.writing() as session:
+            clip = session.get(Clip, clip_id)
+            if clip is None or clip.deleted is not None:
+                raise NotFound(f"there is no clip {clip_id!r}")
+            known = {each["name"]: each for each in json.loads(clip.topics)}
+            if topic not in known:
+                raise NotFound(f"clip {clip_id!r} has no topic {topic!r} to choose")
+            chosen = known[topic]
+            clip.topic, clip.frames = topic, chosen["messages"]
+            clip.width, clip.height = chosen["width"], chosen["height"]
+            clip.duration = chosen["duration"]
+            session.add(clip)
+
     def purge(self, before: datetime) -> int:
         """Remove for good what was deleted `before` that moment; return how many clips went."""
         with self._database.writing() as session:
@@ -170,8 +203,12 @@ class ClipStore:
                     path.unlink()
         return len(orphans)
 
+    def bag(self, clip_id: str) -> Path:
+        """Return where the dive recording is that a clip came as, if it did."""
+        return self._home(clip_id) / BAG
+
     def video(self, clip_id: str) -> Path:
-        """Return where the clip's own bytes are."""
+        """Return where the clip's video is: its own bytes, or the copy made of a topic."""
         return self._home(clip_id) / VIDEO
 
     def recording(self, clip_id: str) -> Path:

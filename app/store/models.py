@@ -52,7 +52,10 @@ class JobStatus(StrEnum):
 
 
 class Clip(SQLModel, table=True):
-    """One video the user gave us; its file and its recording lie under `id` in the clip folder."""
+    """One video, or topic of a dive recording, that the user gave us.
+
+    Its file and what was found in it lie under `id` in the clip folder.
+    """
 
     __tablename__ = "clip"
 
@@ -69,9 +72,23 @@ class Clip(SQLModel, table=True):
     """Seconds; ``None`` where the container does not say."""
     frames: int | None = None
     """Frames the container states, then those decoded; ``None`` while unknown."""
+    topics: str = Field(default="[]", sa_column=Column(Text, nullable=False, server_default="[]"))
+    """Of a dive recording: the topics that a clip can be made of, as a JSON array; else empty."""
+    topic: str | None = Field(default=None, max_length=255)
+    """Name of the topic that this clip is made of; ``None`` where nobody chose, or for a video."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+    @property
+    def from_bag(self) -> bool:
+        """Whether it came as a dive recording and not as a video file."""
+        return self.topics != "[]"
+
+    @property
+    def needs_topic(self) -> bool:
+        """Whether somebody has to choose a topic before its job can begin."""
+        return self.from_bag and self.topic is None
 
 
 class Job(SQLModel, table=True):

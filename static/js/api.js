@@ -53,6 +53,7 @@ export const clips = {
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
+  chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
   video: (clip) => `${BASE}/clips/${id(clip)}/video`,
 };

@@ -6,6 +6,7 @@ import { duration, plural, timeLeft } from "./format.js";
 import { refresh } from "./refresh.js";
 import { state, update } from "./state.js";
 import { attempt } from "./toasts.js";
+import { openTopics } from "./topics.js";
 import { did, tellDone } from "./undo.js";
 
 export const BUSY = new Set(["queued", "running"]);
@@ -36,8 +37,12 @@ export function followJob(job) {
   if (!clip || clip.status !== job.status) reloadClip(job.clip_id);
 }
 
+/** Whether a clip is a dive recording of which nobody chose a topic yet. */
+export const needsTopic = (clip) => clip.error_code === "topic_needed";
+
 /** Say in words how far a clip is. */
 export function statusText(clip, job) {
+  if (needsTopic(clip)) return `${plural(clip.topics.length, "topic")}: choose one`;
   if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
   if (clip.status === "cancelled") return "Cancelled before its poses were found";
   if (BUSY.has(clip.status)) {
@@ -64,8 +69,9 @@ async function retry(clip) {
 
 function buttons(clip) {
   if (BUSY.has(clip.status)) return [iconButton("close", `Cancel ${clip.name}`, () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id)))];
-  const again = clip.status === "done" ? null : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
-  return [again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
+  const choose = needsTopic(clip) ? h("button", { type: "button", className: "choose-topic", "aria-label": `Choose the topic of ${clip.name}`, onclick: () => openTopics(clip) }, "Choose\u2026") : null;
+  const again = clip.status === "done" || choose ? null : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
+  return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
 }
 
 /** The clip's picture; once made it is kept, since progress redraws the rest often. */
@@ -95,7 +101,7 @@ function draw(clip, element) {
   const drawn = element ?? h("li");
   drawn.dataset.signature = signature;
   drawn.dataset.shape = shape;
-  drawn.className = `clip ${clip.status}${chosen ? " chosen" : ""}`;
+  drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
   const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   drawn.replaceChildren(
     h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },

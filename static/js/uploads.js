@@ -1,12 +1,13 @@
 // Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
 
 import * as api from "./api.js";
-import { select } from "./clips.js";
+import { needsTopic, select } from "./clips.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { bytes, timeLeft } from "./format.js";
 import { importLanguage } from "./languages.js";
 import { state, update } from "./state.js";
 import { complain } from "./toasts.js";
+import { openTopics } from "./topics.js";
 
 const AT_ONCE = 2; // More only share the same line, and each would finish later.
 
@@ -55,6 +56,8 @@ async function start(upload) {
     // Of several files the first is shown; the others must not take its place one after the other.
     if (upload.uploaded) upload.uploaded(accepted.id);
     else if (upload.first) select(accepted.id);
+    const clip = state.clips.find((each) => each.id === accepted.id);
+    if (clip && needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
     else change(upload.key, { status: "failed", error: error.message });
@@ -65,7 +68,7 @@ async function start(upload) {
 function stage(upload) {
   if (upload.status === "waiting") return "Waiting for the other uploads";
   if (upload.status === "failed") return upload.error;
-  if (upload.loaded >= upload.total) return "Checking the video";
+  if (upload.loaded >= upload.total) return "Checking what is in it";
   const elapsed = (performance.now() - upload.started) / 1000;
   const left = upload.loaded ? ((upload.total - upload.loaded) / upload.loaded) * elapsed : null;
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;

@@ -1,10 +1,11 @@
 // What stands in the middle while there is nothing to show yet: the way to begin, or the progress.
 
 import * as api from "./api.js";
-import { BUSY, samplesList, statusText } from "./clips.js";
+import { BUSY, needsTopic, samplesList, statusText } from "./clips.js";
 import { byId, h } from "./dom.js";
 import { drawPose, skeleton } from "./skeleton.js";
 import { selectedClip } from "./state.js";
+import { topicsPanel } from "./topics.js";
 
 const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
@@ -43,7 +44,8 @@ function welcome(samples) {
 function progressPanel(clip) {
   return h("div", { className: "welcome-progress" },
     h("div", { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
-      h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" }),
+      // The video of a dive recording is made while its poses are found.
+      clip.topics.length ? null : h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" }),
       skeleton(clip.width, clip.height)),
     h("h1"),
     h("progress", { "aria-label": "Progress" }),
@@ -76,11 +78,12 @@ export function drawWelcome({ clips, uploads, samples, jobs, loaded }) {
   const clip = selectedClip();
   const busy = clip !== null && BUSY.has(clip.status);
   const nothing = loaded && !clips.length && !uploads.length;
-  const shows = busy ? clip.job_id : nothing ? `welcome ${samples.length}` : "";
+  const asks = clip !== null && needsTopic(clip);
+  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : nothing ? `welcome ${samples.length}` : "";
   box.hidden = !shows;
   if (box.dataset.shows !== shows) {
     box.dataset.shows = shows;
-    box.replaceChildren(...(busy ? [progressPanel(clip)] : nothing ? [h("div", {}, welcome(samples))] : []));
+    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : nothing ? [h("div", {}, welcome(samples))] : []));
   }
   if (busy) showProgress(box, clip, jobs.get(clip.job_id));
 }

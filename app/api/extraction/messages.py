@@ -31,6 +31,25 @@ class Probed(BaseModel):
     codec: str
 
 
+class TopicSeen(BaseModel):
+    """A topic of a dive recording that a clip can be made of."""
+
+    name: str = Field(description="As in ROS, with its leading slash")
+    type: str = Field(description="Of its messages, such as sensor_msgs/msg/Image")
+    use: Literal["pictures", "keypoints"]
+    messages: int
+    duration: float = Field(description="Seconds from its first message to its last")
+    width: int = Field(description="Pixels of the upright picture")
+    height: int
+
+
+class BagProbed(BaseModel):
+    """What a dive recording offers (`app.bags.summary.usable_topics`)."""
+
+    kind: Literal["bag_probed"] = "bag_probed"
+    topics: tuple[TopicSeen, ...]
+
+
 class Progressed(BaseModel):
     """How far the work is, and the newest pose.
 
@@ -71,7 +90,7 @@ class Failed(BaseModel):
     detail: str
 
 
-Message = Probed | Progressed | Finished | Failed
+Message = Probed | BagProbed | Progressed | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 

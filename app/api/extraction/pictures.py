@@ -27,16 +27,45 @@ FEWEST_THUMBNAILS = 32
 
 def write_poster(clip: Path, poster: Path) -> None:
     """Write a small JPEG of the frame at `POSTER_SECONDS`, or of the last one before."""
-    image = None
+    wanted = Poster(poster)
     with video.read_frames(clip) as frames:
         for frame in frames:
-            image = frame.image
-            if frame.time >= POSTER_SECONDS:
-                break
-    if image is None:
-        return
-    height, width = image.shape[:2]
-    _write(_resized(image, POSTER_WIDTH, round(height * POSTER_WIDTH / width)), poster)
+            if wanted.add(frame.time, frame.image):
+                return
+    wanted.write()
+
+
+class Poster:
+    """Keeps the frame at `POSTER_SECONDS`, or the last one before, as a small JPEG.
+
+    Parameters
+    ----------
+    path
+        Where to write it.
+
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._image: Image | None = None
+        self._written = False
+
+    def add(self, time: float, image: Image) -> bool:
+        """Take the frame at `time` seconds; return whether the picture is written by now."""
+        if not self._written:
+            self._image = image
+            if time >= POSTER_SECONDS:
+                self.write()
+        return self._written
+
+    def write(self) -> None:
+        """Write the last frame taken, unless it is done or there is none."""
+        if self._written or self._image is None:
+            return
+        height, width = self._image.shape[:2]
+        size = (POSTER_WIDTH, round(height * POSTER_WIDTH / width))
+        _write(_resized(self._image, *size), self._path)
+        self._written, self._image = True, None
 
 
 class Thumbnails:

@@ -5,16 +5,31 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import sys
+import tempfile
 from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncGenerator, AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from contextlib import aclosing, asynccontextmanager
 from pathlib import Path
 
-from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, parse
+from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.messages import (
+    BagProbed,
+    Failed,
+    Finished,
+    Message,
+    Probed,
+    Progressed,
+    parse,
+)
 from app.settings import Settings
 
 PROBE_SECONDS = 30.0
 """Longest time for looking into a clip; it decodes one frame, which takes milliseconds."""
+
+PROBE_BAG_SECONDS = 120.0
+"""Longest time for looking into a dive recording. All of it is read once to know how long its
+topics are, and unpacked before: the largest there may be (`app.bags.unpacking.MOST_BYTES`) at
+20 MB/s, the slowest disk that is still sold."""
 
 _PACKAGE_PARENT = Path(__file__).resolve().parents[3]
 
@@ -22,6 +37,11 @@ _DECODER_FAILED = Failed(
     code="decoder",
     detail="the process that read this clip broke off: the clip is damaged, or it needs more "
     "memory or time than a job may use; convert it to an MP4 with H.264 and try again",
+)
+_BAG_FAILED = Failed(
+    code="bag_unreadable",
+    detail="the process that read this dive recording broke off: the recording is damaged, or it "
+    "needs more memory or time than a job may use; cut out the part with the gestures",
 )
 _DECODER_HANGS = Failed(
     code="decoder",
@@ -39,14 +59,44 @@ async def probe(clip: Path, settings: Settings) -> Probed | Failed:
     return _DECODER_FAILED
 
 
+async def probe_bag(bag: Path, settings: Settings) -> BagProbed | Failed:
+    """Look into a dive recording, in a process of its own."""
+    with _scratch(bag.parent) as scratch:
+        command = [*scratch, "probe-bag", str(bag)]
+        async with aclosing(_messages(command, settings, PROBE_BAG_SECONDS)) as messages:
+            async for message in messages:
+                if isinstance(message, BagProbed | Failed):
+                    return message
+    return _BAG_FAILED
+
+
 async def extract(
-    clip: Path, recording: Path, poster: Path, filmstrip: Path, settings: Settings
+    files: ClipFiles, settings: Settings
 ) -> AsyncGenerator[Progressed | Finished | Failed, None]:
     """Extract a clip, in a process of its own; the last message says how it ended."""
-    files = [str(file) for file in (clip, recording, poster, filmstrip)]
-    command = ["extract", f"--water={settings.water}", *files]
-    silence_seconds = settings.worker_silence_seconds
-    async with aclosing(_messages(command, settings, silence_seconds)) as messages:
+    command = ["extract", f"--water={settings.water}", *files.arguments]
+    async with aclosing(_extraction(command, settings)) as messages:
+        async for message in messages:
+            yield message
+
+
+async def extract_bag(
+    bag: Path, topic: str | None, files: ClipFiles, settings: Settings
+) -> AsyncGenerator[Progressed | Finished | Failed, None]:
+    """Extract a topic of a dive recording as `extract` does, and write its video."""
+    chosen = [] if topic is None else [f"--topic={topic}"]
+    with _scratch(bag.parent) as scratch:
+        command = [*scratch, "extract-bag", f"--water={settings.water}", *chosen]
+        command += [str(bag), *files.arguments]
+        async with aclosing(_extraction(command, settings)) as messages:
+            async for message in messages:
+                yield message
+
+
+async def _extraction(
+    command: list[str], settings: Settings
+) -> AsyncGenerator[Progressed | Finished | Failed, None]:
+    async with aclosing(_messages(command, settings, settings.worker_silence_seconds)) as messages:
         async for message in messages:
             if isinstance(message, Progressed):
                 yield message
@@ -54,6 +104,14 @@ async def extract(
                 yield message
                 return
     yield _DECODER_FAILED
+
+
+@contextlib.contextmanager
+def _scratch(folder: Path) -> Iterator[list[str]]:
+    """Give a worker the argument for a folder that goes even when the worker is killed."""
+    # Beside the recording: on the same disk, and swept at the next start if this process dies.
+    with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=folder) as made:
+        yield [f"--scratch={made}"]
 
 
 async def _messages(
@@ -82,6 +140,7 @@ async def _worker(command: list[str], settings: Settings) -> AsyncIterator[Proce
         "app.api.extraction.worker",
         f"--memory-bytes={settings.worker_memory_bytes}",
         f"--cpu-seconds={settings.worker_cpu_seconds}",
+        f"--file-bytes={settings.worker_file_bytes}",
         *command,
         stdin=PIPE,
         stdout=PIPE,

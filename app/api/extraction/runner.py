@@ -13,10 +13,18 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.broadcast import Broadcast
 from app.api.extraction import process
-from app.api.extraction.messages import Failed, Finished, Pose, Probed, Progressed
+from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.messages import (
+    BagProbed,
+    Failed,
+    Finished,
+    Pose,
+    Probed,
+    Progressed,
+)
 from app.api.extraction.queue import FairQueue
 from app.settings import Settings
-from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
+from app.store import ClipStore, Job, JobStatus, JobStore, NotFound, StoreError
 
 MOST_PROBES = 2
 """Received files looked into at the same time: a hundred uploads must not be as many processes."""
@@ -104,6 +112,11 @@ class ExtractionRunner:
         async with self._probing:
             return await process.probe(clip, self._settings)
 
+    async def probe_bag(self, bag: Path) -> BagProbed | Failed:
+        """Look into a received dive recording, in a process of its own."""
+        async with self._probing:
+            return await process.probe_bag(bag, self._settings)
+
     async def cancel(self, job: Job) -> bool:
         """End a job that waits or runs; return whether it did."""
         cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
@@ -156,13 +169,21 @@ class ExtractionRunner:
         if not await run_in_threadpool(self._jobs.is_running, job.id):
             return  # Cancelled after it was started and before it could be found here.
         self._show(job, Progress("starting"))
-        messages = process.extract(
-            self._clips.video(job.clip_id),
-            self._clips.recording(job.clip_id),
-            self._clips.poster(job.clip_id),
-            self._clips.filmstrip(job.clip_id),
-            self._settings,
+        try:
+            clip = (await run_in_threadpool(self._clips.get, job.clip_id)).clip
+        except NotFound:
+            return  # Deleted meanwhile; its job is about to be cancelled.
+        files = ClipFiles(
+            self._clips.video(clip.id),
+            self._clips.recording(clip.id),
+            self._clips.poster(clip.id),
+            self._clips.filmstrip(clip.id),
         )
+        if clip.from_bag:
+            bag = self._clips.bag(clip.id)
+            messages = process.extract_bag(bag, clip.topic, files, self._settings)
+        else:
+            messages = process.extract(files, self._settings)
         started: float | None = None
         async with aclosing(messages) as steps:
             async for message in steps:

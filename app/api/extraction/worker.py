@@ -10,6 +10,7 @@ import argparse
 import contextlib
 import os
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable
@@ -17,12 +18,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import (
+    BagProbed,
     Failed,
     Finished,
     Message,
     Probed,
     Progressed,
+    TopicSeen,
     dump,
     pose_in,
 )
@@ -30,6 +34,7 @@ from app.api.extraction.messages import (
 if TYPE_CHECKING:
     from app.recognition.estimation.base import Body, FrameLandmarks
     from app.recognition.estimation.water import WaterCorrection
+    from app.recognition.recording import Recording
     from app.recognition.video import VideoFrame
 
 PROGRESS_SECONDS = 0.1
@@ -45,52 +50,103 @@ def probe(clip: Path, report: Report) -> None:
     report(Probed(**asdict(video.probe(clip))))
 
 
-def extract(
-    clip: Path,
-    recording: Path,
-    poster: Path,
-    filmstrip: Path,
-    water: WaterCorrection,
-    report: Report,
-) -> None:
+def probe_bag(bag: Path, report: Report) -> None:
+    """Report which topics of a dive recording a clip can be made of."""
+    from app.bags.kind import HEAD_BYTES, bag_kind
+    from app.bags.summary import usable_topics
+    from app.bags.unpacking import is_bag_archive
+
+    with bag.open("rb") as file:
+        kind = bag_kind(file.read(HEAD_BYTES))
+    if kind == "zip" and not is_bag_archive(bag):
+        detail = "the archive holds no dive recording (no .mcap and no .db3 file)"
+        report(Failed(code="unsupported_media_type", detail=detail))
+        return
+    report(BagProbed(topics=tuple(TopicSeen(**asdict(topic)) for topic in usable_topics(bag))))
+
+
+def extract(files: ClipFiles, water: WaterCorrection, report: Report) -> None:
     """Write the clip's pictures and recording, reporting progress and the newest pose."""
-    from app.api.extraction.pictures import Thumbnails, write_poster
-    from app.recognition import extraction, video
+    from app.api.extraction.pictures import write_poster
+    from app.recognition import extraction
 
-    write_poster(clip, poster)
-    info = video.probe(clip)
-    reported, newest_time = 0.0, 0.0
-    newest: Body | None = None
-    thumbnails = Thumbnails()
-
-    def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-        nonlocal newest_time, newest
-        newest_time, newest = frame.time, found.body
-        thumbnails.add(frame.index, frame.image)
-
-    def progress(done: int, total: int) -> None:
-        nonlocal reported
-        if (now := time.monotonic()) - reported >= PROGRESS_SECONDS or done == total:
-            reported = now
-            pose = pose_in(newest.xy, info.width, info.height) if newest else None
-            seconds = round(newest_time, 3)
-            report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
-
-    recorded = extraction.record(clip, progress=progress, observer=observe, water=water)
-    frames = len(recorded.poses)
-    report(Progressed(stage="saving", done=frames, total=frames))
-    thumbnails.write(filmstrip)
-    recorded.save(recording)
-    report(Finished(frames=frames, warnings=recorded.warnings))
+    # First of all: a card with a picture says more than one without.
+    write_poster(files.video, files.poster)
+    steps = _Steps(files, report)
+    recorded = extraction.record(
+        files.video, progress=steps.progress, observer=steps.observe, water=water
+    )
+    steps.save(recorded)
 
 
-def limit_resources(memory_bytes: int, cpu_seconds: int) -> None:
-    """Have the system end this process at these limits; 0 is none, as where POSIX is absent."""
+def extract_bag(
+    bag: Path, topic: str | None, files: ClipFiles, water: WaterCorrection, report: Report
+) -> None:
+    """Write the video, pictures and recording of a topic, reporting as `extract` does."""
+    from app.bags import record_bag
+
+    steps = _Steps(files, report)
+    partial = files.video.with_suffix(".part")
+    recorded = record_bag(
+        bag, topic, video=partial, progress=steps.progress, observer=steps.observe, water=water
+    )
+    partial.replace(files.video)
+    steps.save(recorded)
+
+
+class _Steps:
+    """Takes the frames of a clip one by one, and reports how far the work is."""
+
+    def __init__(self, files: ClipFiles, report: Report) -> None:
+        from app.api.extraction.pictures import Poster, Thumbnails
+
+        self._files, self._report = files, report
+        self._reported = 0.0
+        self._newest: tuple[VideoFrame, Body | None] | None = None
+        self._thumbnails = Thumbnails()
+        self._poster = None if files.poster.exists() else Poster(files.poster)
+
+    def observe(self, frame: VideoFrame, found: FrameLandmarks) -> None:
+        self._newest = frame, found.body
+        self._thumbnails.add(frame.index, frame.image)
+        if self._poster is not None:
+            self._poster.add(frame.time, frame.image)
+
+    def progress(self, done: int, total: int) -> None:
+        if (now := time.monotonic()) - self._reported < PROGRESS_SECONDS and done != total:
+            return
+        self._reported = now
+        seconds, pose = None, None
+        if self._newest is not None:
+            frame, body = self._newest
+            height, width = frame.image.shape[:2]
+            seconds = round(frame.time, 3)
+            pose = pose_in(body.xy, width, height) if body else None
+        self._report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
+
+    def save(self, recorded: Recording) -> None:
+        frames = len(recorded.poses)
+        self._report(Progressed(stage="saving", done=frames, total=frames))
+        if self._poster is not None:
+            self._poster.write()
+        self._thumbnails.write(self._files.filmstrip)
+        recorded.save(self._files.recording)
+        self._report(Finished(frames=frames, warnings=recorded.warnings))
+
+
+def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> None:
+    """Have the system hold this process to these limits; 0 is none, as where POSIX is absent."""
     if os.name != "posix":
         return
     import resource
 
-    for kind, limit in ((resource.RLIMIT_AS, memory_bytes), (resource.RLIMIT_CPU, cpu_seconds)):
+    limits = (
+        (resource.RLIMIT_AS, memory_bytes),
+        (resource.RLIMIT_CPU, cpu_seconds),
+        # Of one file that is written: what was packed by a million to one must not fill the disk.
+        (resource.RLIMIT_FSIZE, file_bytes),
+    )
+    for kind, limit in limits:
         if limit:
             _, hard = resource.getrlimit(kind)
             soft = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
@@ -115,45 +171,76 @@ def end_with_server() -> None:
 
 def main() -> None:
     """Run one command and report how it went."""
-    parser = argparse.ArgumentParser(prog="osg-studio worker")
-    parser.add_argument("--memory-bytes", type=int, default=0)
-    parser.add_argument("--cpu-seconds", type=int, default=0)
-    commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("probe").add_argument("clip", type=Path)
-    extracting = commands.add_parser("extract")
-    for name in ("clip", "recording", "poster", "filmstrip"):
-        extracting.add_argument(name, type=Path)
-    extracting.add_argument("--water", default="auto")
-    chosen = parser.parse_args()
-
+    chosen = _arguments()
     # Libraries that print must not write into the messages.
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1, encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    limit_resources(chosen.memory_bytes, chosen.cpu_seconds)
+    tempfile.tempdir = chosen.scratch
+    limit_resources(chosen.memory_bytes, chosen.cpu_seconds, chosen.file_bytes)
     end_with_server()
 
     def report(message: Message) -> None:
         channel.write(dump(message) + "\n")
 
-    from app.recognition.errors import ModelError, RecognitionError
+    from app.recognition.errors import (
+        BagError,
+        ModelError,
+        RecognitionError,
+        TopicError,
+    )
 
     try:
-        if chosen.command == "probe":
-            probe(chosen.clip, report)
-        else:
-            files = (chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip)
-            extract(*files, chosen.water, report)
+        _run(chosen, report)
     except MemoryError:
         report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
     except RecognitionError as error:
+        codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
         # Our own name of the file means nothing to whoever sent it.
-        detail = str(error).replace(chosen.clip.name, "the clip")
-        report(Failed(code="video_unreadable", detail=detail))
+        name = (chosen.bag if chosen.command.endswith("bag") else chosen.clip).name
+        detail = str(error).replace(name, "the clip")
+        report(Failed(code=codes.get(type(error), "video_unreadable"), detail=detail))
     except OSError as error:
         detail = f"the server's storage cannot be used ({error.strerror}); free space and retry"
         report(Failed(code="storage_unavailable", detail=detail))
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="osg-studio worker")
+    for name in ("memory-bytes", "cpu-seconds", "file-bytes"):
+        parser.add_argument(f"--{name}", type=int, default=0)
+    parser.add_argument("--scratch", help="folder for what is unpacked")
+    commands = parser.add_subparsers(dest="command", required=True)
+    for command in ("probe", "probe-bag", "extract", "extract-bag"):
+        taking = commands.add_parser(command)
+        if command.endswith("bag"):
+            taking.add_argument("bag", type=Path)
+        if command != "probe-bag":
+            taking.add_argument("clip", type=Path)
+        if command.startswith("extract"):
+            for name in ("recording", "poster", "filmstrip"):
+                taking.add_argument(name, type=Path)
+            taking.add_argument("--water", default="auto")
+        if command == "extract-bag":
+            taking.add_argument("--topic")
+    return parser.parse_args()
+
+
+def _run(chosen: argparse.Namespace, report: Report) -> None:
+    match chosen.command:
+        case "probe":
+            probe(chosen.clip, report)
+        case "probe-bag":
+            probe_bag(chosen.bag, report)
+        case "extract":
+            extract(_files(chosen), chosen.water, report)
+        case "extract-bag":
+            extract_bag(chosen.bag, chosen.topic, _files(chosen), chosen.water, report)
+
+
+def _files(chosen: argparse.Namespace) -> ClipFiles:
+    return ClipFiles(chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,90 @@
+"""What a recording offers to make a clip of, proven by its first pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.bags.bag import Bag, Topic, Use, opened_bag
+from app.bags.frames import BagFrames
+from app.bags.keypoints import keypoint_frame_size
+from app.recognition.errors import BagError, RecognitionError
+from app.recognition.video_limits import VideoLimits
+
+LONGEST_NAME = 255
+"""Characters of a topic's name: as long as ROS allows one to be."""
+
+
+@dataclass(frozen=True)
+class TopicSummary:
+    """One topic that a clip can be made of.
+
+    Attributes
+    ----------
+    name, type, use, messages
+        See `app.bags.bag.Topic`.
+    duration
+        Seconds from its first message to its last.
+    width, height
+        Pixels of its first picture.
+
+    """
+
+    name: str
+    type: str
+    use: Use
+    messages: int
+    duration: float
+    width: int
+    height: int
+
+
+def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[TopicSummary, ...]:
+    """Look into a recording, and decode the first picture of every topic that could be used.
+
+    Returns
+    -------
+    The topics, at least one, in the recording's order.
+
+    Raises
+    ------
+    BagError
+        When the file is no recording, is damaged, or no topic can be used.
+    VideoError
+        When every topic breaks a limit.
+
+    """
+    limits = limits or VideoLimits()
+    found: list[TopicSummary] = []
+    refused: RecognitionError | None = None
+    with opened_bag(path) as bag:
+        candidates = [topic for topic in bag.topics if _choosable(topic)]
+        if not candidates:
+            bag.topic()  # raises, and says why
+        durations = bag.durations()
+        for topic in candidates:
+            try:
+                limits.require_frames(topic.messages)
+                duration = durations.get(topic.name, 0.0)
+                limits.require_seconds(duration)
+                found.append(_summary(bag, topic, duration, limits))
+            except RecognitionError as error:
+                refused = refused or error
+    if not found:
+        raise refused or BagError(f"{Path(path).name} has no topic whose name can be used")
+    return tuple(found)
+
+
+def _choosable(topic: Topic) -> bool:
+    return topic.usable and len(topic.name) <= LONGEST_NAME
+
+
+def _summary(bag: Bag, topic: Topic, duration: float, limits: VideoLimits) -> TopicSummary:
+    assert topic.use is not None
+    if topic.use == "pictures":
+        info = BagFrames(bag, topic, limits).info
+        width, height = info.width, info.height
+    else:
+        width, height = keypoint_frame_size(bag, topic)
+        limits.require_pixels(width, height)
+    return TopicSummary(topic.name, topic.type, topic.use, topic.messages, duration, width, height)
