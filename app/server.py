@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import sys
 import threading
 import webbrowser
@@ -44,6 +45,7 @@ from app.api import (
     workspaces,
 )
 from app.api.body_limit import BodyLimit
+from app.api.ending import EndsInTime, OpenRequests, StudioServer
 from app.api.headers import SecurityHeaders
 from app.api.security import SameOrigin, TokenRequired
 from app.api.studio import check_store, running_studio
@@ -59,8 +61,8 @@ BAD_STORE = 2
 """Exit code when the data folder cannot be used: bad input, as everywhere in the command line."""
 
 GRACEFUL_SECONDS = 3
-"""Time for open answers at the end; event streams never end by themselves, and the whole server
-must be gone within ten seconds."""
+"""Time for connections to close at the end, after `ENDING_SECONDS` for open answers; the whole
+server must be gone within ten seconds."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -95,6 +97,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
+    app.state.requests = OpenRequests()
     api = APIRouter(prefix=API)
     for router in (
         health.router,
@@ -143,9 +146,10 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         Whether to show the page to whoever sits at this machine, once it is up.
 
     """
+    app = create_app(settings)
     server = _AnnouncedServer(
         uvicorn.Config(
-            create_app(settings),
+            app,
             host=settings.host,
             port=settings.port,
             log_level="warning",
@@ -156,6 +160,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
             proxy_headers=False,
             server_header=False,
         ),
+        app,
         settings,
         open_browser=open_browser,
     )
@@ -167,13 +172,20 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         raise SystemExit(BAD_STORE) from error
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
+    if any(thread.ident != threading.get_ident() for thread in threading.enumerate()):
+        # A computation that nobody waits for any more cannot be interrupted; all is stored and
+        # closed, and waiting for it could take a minute.
+        sys.stdout.flush()
+        os._exit(0)
 
 
-class _AnnouncedServer(uvicorn.Server):
+class _AnnouncedServer(StudioServer):
     """Says where it listens as soon as it does, and opens a browser there if asked."""
 
-    def __init__(self, config: uvicorn.Config, settings: Settings, *, open_browser: bool) -> None:
-        super().__init__(config)
+    def __init__(
+        self, config: uvicorn.Config, app: FastAPI, settings: Settings, *, open_browser: bool
+    ) -> None:
+        super().__init__(config, app)
         self._settings = settings
         self._open_browser = open_browser
 
@@ -227,4 +239,5 @@ def _guard(app: FastAPI, settings: Settings) -> None:
     app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)
+    app.add_middleware(EndsInTime, requests=app.state.requests)
     app.add_middleware(SecurityHeaders)

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Response
 
 from app import __version__
+from app.api.ending import stopping
 from app.api.languages import Revision
 from app.api.problems import ProblemError, documented
 from app.api.studio import CurrentStudio
@@ -55,6 +56,8 @@ def check_language(
     response.headers["ETag"] = tag
 
     def tell(stage: str, done: int, total: int) -> None:
+        if studio.stopping.is_set():
+            raise stopping()
         if done % TOLD_EVERY == 1:
             told = {"revision": state.revision.revision, "stage": stage, "done": done}
             studio.broadcast.publish("checks", id=language_id, **told, total=total)

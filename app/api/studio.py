@@ -5,9 +5,10 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import lru_cache
+from threading import Event
 from typing import Annotated
 
 from fastapi import Depends
@@ -58,6 +59,8 @@ class Studio:
         Tells the open pages what changed.
     samples
         The languages and clips we bring.
+    stopping
+        Set when the server is about to stop: what takes long is given up.
 
     """
 
@@ -69,6 +72,12 @@ class Studio:
     runner: ExtractionRunner
     broadcast: Broadcast
     samples: Samples
+    stopping: Event = field(default_factory=Event)
+
+    def stop_soon(self) -> None:
+        """Give up what takes long, and end the event streams."""
+        self.stopping.set()
+        self.broadcast.close()
 
     def recording(self, clip_id: str) -> Recording:
         """Return what was found in a clip.

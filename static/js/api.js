@@ -15,6 +15,9 @@ export class ApiError extends Error {
 const unreachable = () =>
   new ApiError({ title: "No connection", detail: "The server did not answer. Is it still running? It is tried again by itself.", code: "offline" }, 0);
 
+/** Whether a call failed only because the server is away for now. */
+export const isAway = ({ code }) => code === "offline" || code === "server_stopping";
+
 async function problemOf(response) {
   try {
     return await response.json();

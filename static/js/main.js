@@ -2,13 +2,14 @@
 
 import { showJoint, showMoment } from "./alignment.js";
 import * as api from "./api.js";
-import { drawClips, drawSamples, followJob, reloadClip, reloadClips } from "./clips.js";
+import { drawClips, drawSamples } from "./clips.js";
 import { byId, icon } from "./dom.js";
 import { drawGestures } from "./gestures.js";
-import { drawExport, drawPicker, manageLanguages, reloadLanguages, reloadOneLanguage } from "./languages.js";
+import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
 import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
 import { listenToKeys, showKeys } from "./keys.js";
 import { rememberFrame } from "./playback.js";
+import { drawConnection, followServer } from "./server.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
 import { drawNow } from "./timeline.js";
 import { attempt } from "./toasts.js";
@@ -19,40 +20,7 @@ import { acceptFiles, drawUploads } from "./uploads.js";
 import { followViews, go } from "./views.js";
 import { drawWelcome } from "./welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./why.js";
-import { followTheme, openWorkspace, restart } from "./workspace.js";
-
-/** Hear of every change on the server; when that begins, also after a break, load what was missed. */
-function followServer() {
-  const stream = api.changes();
-  let lost = false;
-  const data = (event) => { try { return JSON.parse(event.data); } catch { return {}; } };
-  stream.onopen = () => {
-    update({ connected: true });
-    // What changed since everything was loaded was not heard of; nothing is sent twice.
-    reloadClips();
-    reloadLanguages();
-    if (lost) restart();
-    lost = false;
-  };
-  stream.onerror = () => {
-    lost = true;
-    update({ connected: false });
-  };
-  stream.addEventListener("clips", (event) => reloadClip(data(event).id));
-  stream.addEventListener("languages", (event) => reloadOneLanguage(data(event).id));
-  stream.addEventListener("checks", (event) => update({ checking: data(event) }));
-  stream.addEventListener("recognitions", (event) => update({ recognised: data(event).id }));
-  stream.addEventListener("jobs", (event) => {
-    const job = data(event);
-    if (job.id) followJob(job);
-  });
-}
-
-function drawConnection({ connected }) {
-  const element = byId("connection");
-  element.textContent = { true: "Connected", false: "Reconnecting\u2026" }[connected] ?? "Connecting\u2026";
-  element.classList.toggle("on", connected === true);
-}
+import { followTheme, openWorkspace } from "./workspace.js";
 
 /** What is drawn, and which values it depends on. */
 function drawEverything() {
@@ -86,6 +54,12 @@ function loadWithSelection() {
   });
   follow(["recognition"], loadResult);
   follow(["result"], loadWhy);
+  follow(["returns"], ({ returns, takes }) => {
+    if (!returns) return;
+    if (!takes) loadTakes();
+    loadResult();
+    loadWhy(state);
+  });
   follow(["clips", "clip", "takes", "take", "start", "end", "recognition"], showSelection);
 }
 

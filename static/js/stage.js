@@ -85,8 +85,12 @@ async function recognise() {
 export async function loadResult() {
   if (!state.recognition) return update({ result: null });
   if (state.result?.id === state.recognition) return undefined;
-  const result = await attempt("Loading the recognition", () => api.recognitions.get(state.recognition));
-  return update(result ? { result } : { result: null, recognition: null });
+  try {
+    return update({ result: await api.recognitions.get(state.recognition) });
+  } catch (error) {
+    complain(error, "Loading the recognition");
+    return update(api.isAway(error) ? { result: null } : { result: null, recognition: null });
+  }
 }
 
 /** Say in the page what was recognised; the reasons are in the workspace. */

@@ -2,8 +2,9 @@
 
 import * as api from "./api.js";
 import { byId, h } from "./dom.js";
-import { followClock } from "./playback.js";
+import { followClock, frameShown, rememberFrame } from "./playback.js";
 import { listenToKeys } from "./keys.js";
+import { state } from "./state.js";
 import { complain } from "./toasts.js";
 
 const KEY = "osg-studio.workspace"; // sessionStorage: every tab is its own workspace.
@@ -100,9 +101,10 @@ export function openWorkspace() {
 
 /** Load the frame again: viser reconnects by itself only while its frame has the focus. */
 export async function restart() {
+  rememberFrame(state.frame);
   try {
     await openWorkspace();
-    if (wanted) show(wanted);
+    if (wanted) show(wanted).then(frameShown);
   } catch (error) {
     complain(error, "Opening the 3D view");
   }

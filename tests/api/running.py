@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import httpx
 import uvicorn
 
+from app.api.ending import StudioServer
 from app.api.studio import Studio
 from app.server import create_app
 from app.settings import Settings
@@ -48,7 +49,7 @@ def running(settings: Settings) -> Iterator[Running]:
     config = uvicorn.Config(
         app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
     )
-    server = uvicorn.Server(config)
+    server = StudioServer(config, app)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     until(lambda: server.started or not thread.is_alive())

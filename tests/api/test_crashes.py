@@ -4,50 +4,29 @@ from __future__ import annotations
 
 import os
 import signal
+import struct
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import httpx
 import pytest
 
-from tests.api.running import PATIENCE_SECONDS, until
+from tests.api.running import assert_problem, until
+from tests.api.serving import SERVE, served
 from tests.api.test_clips import CLIPS, upload
 from tests.api.test_jobs import JOBS
 from tests.api.workers import alive, linux, workers_of
 from tests.recognition.damaged_clips import write_clip
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line, square, wedge
 
 pytestmark = [pytest.mark.slow, linux]
 
-SERVE = """
-import sys
-from pathlib import Path
-from app.server import run
-from app.settings import Settings
-data = Path(sys.argv[1])
-run(Settings(data_dir=data, samples_dir=data / "none", port=0), open_browser=False)
-"""
-
 STOP_SECONDS = 10
 """What a service manager waits for after SIGTERM, at the least."""
-
-
-@contextmanager
-def served(data_dir: Path) -> Iterator[tuple[subprocess.Popen[str], httpx.Client]]:
-    """Serve in a process of its own, that may be killed."""
-    command = [sys.executable, "-c", SERVE, str(data_dir)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    try:
-        assert process.stdout is not None
-        line = process.stdout.readline()
-        address = next(word for word in line.split() if word.startswith("http://"))
-        with httpx.Client(base_url=address, timeout=PATIENCE_SECONDS) as client:
-            yield process, client
-    finally:
-        process.kill()
-        process.wait()
 
 
 def working_on(clip: Path, process: subprocess.Popen[str], client: httpx.Client) -> tuple[str, int]:
@@ -99,6 +78,33 @@ def test_sigterm_ends_server_and_workers_soon_and_the_job_waits(tmp_path: Path) 
         assert not alive(worker)
     with served(data) as (process, client):
         until(finished(client, job_id))
+
+
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM])
+def test_a_stop_in_the_middle_of_work_is_told_and_leaves_no_traceback(
+    tmp_path: Path, ending: signal.Signals
+) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=2)
+    # More than the sockets of both sides hold, in a box that players skip: nobody reads it to the
+    # end, and so its answer is still under way.
+    free = 16_000_000
+    clip.write_bytes(clip.read_bytes() + struct.pack(">I4s", free, b"free") + bytes(free - 8))
+    with (tmp_path / "errors").open("w+") as errors, ThreadPoolExecutor(1) as other:
+        with served(tmp_path / "data", errors) as (process, client):
+            video = f"{CLIPS}/{upload(client, clip).json()['id']}/video"
+            document = pool(circle=circle, line=line, wedge=wedge, square=square).to_json()
+            language = client.post("/api/v1/languages/import", content=document).json()["id"]
+            with (
+                client.stream("GET", video),
+                client.stream("GET", "/api/v1/events") as events,
+            ):
+                checking = other.submit(client.get, f"/api/v1/languages/{language}/check")
+                next(line for line in events.iter_lines() if line == "event: checks")
+                process.send_signal(ending)
+                process.wait(STOP_SECONDS)
+            assert_problem(checking.result(), 503, "server_stopping")
+        errors.seek(0)
+        assert errors.read() == ""
 
 
 @pytest.mark.parametrize("uploads", [1, 3])

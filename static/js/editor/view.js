@@ -132,7 +132,7 @@ function build(section, about) {
     restored.hidden = false;
   }
   section.replaceChildren(form);
-  editor = { about, take: parts.take };
+  editor = { about, take: parts.take, changed };
   changed();
   if (gesture === null) parts.texts.focus();
 }
@@ -168,6 +168,8 @@ export function open(section) {
     close();
     return build(section, about);
   });
+  // What could not be asked while the server was away is asked now.
+  follow(["returns"], () => editor?.changed());
   guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
   const when = () => state.view === "gesture" && editor !== null;
   const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });

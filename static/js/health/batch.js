@@ -74,6 +74,7 @@ export async function workOff() {
     try {
       await recognise(clip, expected);
     } catch (error) {
+      if (api.isAway(error)) break; // It is kept for when the server is back.
       complain(error, `Recognising ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
     }
     forget(clip);

@@ -23,13 +23,13 @@ export async function check() {
     const report = await api.languages.check(language.id, language.revision);
     settle({ status: "done", report, shown: language.revision });
   } catch (error) {
-    settle(error.code === "check_cancelled" ? { status: "cancelled" } : { status: "failed", error: error.message });
+    settle(error.code === "check_cancelled" ? { status: "cancelled" } : { status: "failed", error: error.message, away: api.isAway(error) });
   }
 }
 
-/** Check again where what is on display is not what was checked. */
-export function keepChecked({ view, gestures }) {
-  if (view === "health" && gestures?.gestures.length && !isCurrent(state.health)) check();
+/** Check again where what is on display is not what was checked, or the server was away. */
+export function keepChecked({ view, gestures, health }) {
+  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health.away)) check();
 }
 
 /** Cancel the check that runs. */

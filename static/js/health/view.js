@@ -124,7 +124,7 @@ export function open(root) {
   const two = h("div", { className: "health-page pair-page", hidden: true });
   root.append(all, two);
   let shown = null;
-  follow(["view", "gestures"], keepChecked);
+  follow(["view", "gestures", "returns"], keepChecked);
   follow(["pair", "gestures"], ({ pair, gestures }) => {
     const opens = pair !== null && gestures !== null;
     all.hidden = opens;

@@ -1,0 +1,127 @@
+"""The end of a server: who waits for an answer is told, and what goes on is ended in order."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.problems import ProblemError
+from app.api.studio import Studio
+
+ENDING_SECONDS = 2.0
+"""Time for open requests once the server is to stop: all but checks and long explanations are done
+by then, and the whole server must be gone within ten seconds."""
+
+FLUSH_SECONDS = 0.1
+"""Time for the last answers to leave; they are short, and only who reads is waited for."""
+
+
+class OpenRequests:
+    """The requests that a server is answering."""
+
+    def __init__(self) -> None:
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._ending = False
+
+    async def answer(self, app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let `app` answer one; with 503 instead when the server stops before the answer begins."""
+        task = asyncio.current_task()
+        assert task is not None
+        begun = False
+
+        async def send_noting(message: Message) -> None:
+            nonlocal begun
+            begun = True
+            await send(message)
+
+        if self._ending:
+            return await stopping().response()(scope, receive, send)
+        self._tasks.add(task)
+        try:
+            await app(scope, receive, send_noting)
+        except asyncio.CancelledError:
+            if begun or not self._ending:
+                raise
+            task.uncancel()
+            await stopping().response()(scope, receive, send)
+        finally:
+            self._tasks.discard(task)
+
+    async def end(self, seconds: float = ENDING_SECONDS) -> None:
+        """Wait for all of them; those that take longer are ended, and new ones refused."""
+        self._ending = True
+        if waiting := set(self._tasks):
+            await asyncio.wait(waiting, timeout=seconds)
+        for task in self._tasks:
+            task.cancel()
+
+
+class EndsInTime:
+    """Keeps count of the requests that are being answered.
+
+    Parameters
+    ----------
+    app
+        What answers.
+    requests
+        Where they are kept.
+
+    """
+
+    def __init__(self, app: ASGIApp, requests: OpenRequests) -> None:
+        self._app = app
+        self._requests = requests
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on."""
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        return await self._requests.answer(self._app, scope, receive, send)
+
+
+class StudioServer(uvicorn.Server):
+    """Ends what goes on before it stops.
+
+    Parameters
+    ----------
+    config
+        How to serve.
+    app
+        What `config` serves, with its `OpenRequests` and, once it runs, its `Studio`.
+
+    """
+
+    def __init__(self, config: uvicorn.Config, app: FastAPI) -> None:
+        super().__init__(config)
+        self._app = app
+        logging.getLogger("uvicorn.error").addFilter(_is_news)
+
+    async def shutdown(self, sockets: Any = None) -> None:
+        """Stop what can be stopped, answer what cannot, and close."""
+        studio: Studio | None = getattr(self._app.state, "studio", None)
+        if studio is not None:
+            studio.stop_soon()
+        requests: OpenRequests = self._app.state.requests
+        await requests.end()
+        await asyncio.sleep(FLUSH_SECONDS)
+        for connection in list(self.server_state.connections):
+            # Whoever has not read by now, as a player that is paused, would hold the server up.
+            if connection.transport.get_write_buffer_size():
+                connection.transport.abort()
+        await super().shutdown(sockets)
+
+
+def stopping() -> ProblemError:
+    """Return the refusal of a server that is about to stop."""
+    detail = "the server is being stopped; try again when it is back"
+    return ProblemError(503, "server_stopping", detail, headers={"Retry-After": "5"})
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Leave out that an answer was broken off, as of a video that somebody watches: we did it."""
+    return not (record.exc_info and isinstance(record.exc_info[1], asyncio.CancelledError))

@@ -1,0 +1,43 @@
+"""A real server in a process of its own, that may be killed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+import httpx
+
+from tests.api.running import PATIENCE_SECONDS
+
+SERVE = """
+import sys
+from pathlib import Path
+from app.server import run
+from app.settings import Settings
+data = Path(sys.argv[1])
+port = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+run(Settings(data_dir=data, samples_dir=data / "none", port=port), open_browser=False)
+"""
+"""Serves a folder, on a free port unless one is told."""
+
+
+@contextmanager
+def served(
+    data_dir: Path, errors: TextIO | None = None, *, port: int = 0
+) -> Iterator[tuple[subprocess.Popen[str], httpx.Client]]:
+    """Serve `data_dir` until the context ends; `errors` gets the process's standard error."""
+    command = [sys.executable, "-c", SERVE, str(data_dir), str(port)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True)
+    try:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        address = next(word for word in line.split() if word.startswith("http://"))
+        with httpx.Client(base_url=address, timeout=PATIENCE_SECONDS) as client:
+            yield process, client
+    finally:
+        process.kill()
+        process.wait()

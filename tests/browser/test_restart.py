@@ -1,0 +1,93 @@
+"""The server is killed and started again under every view: the page says so, and loses nothing."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.settings import Settings
+from tests.api.running import running
+from tests.api.serving import served
+from tests.browser.conftest import OpenPage
+from tests.browser.library import library_of
+
+pytestmark = pytest.mark.slow
+
+FRAME = 12
+
+
+@dataclass
+class Address:
+    """Where the server is, whichever process it is."""
+
+    address: str = ""
+
+
+@pytest.fixture
+def server() -> Address:
+    """Return the place that `open_page` opens."""
+    return Address()
+
+
+@pytest.fixture
+def query(tmp_path: Path) -> dict[str, str]:
+    """Return what a link names: a clip, a language of two gestures and a misread take."""
+    settings = Settings(data_dir=tmp_path, samples_dir=tmp_path / "none")
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        library = library_of(server, client, "kept")
+        return {**library.address, "recognition": library.recognise("line")}
+
+
+def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
+    """Open every view in a browser of its own, with something to lose."""
+    pages = {
+        "studio": open_page(query | {"frame": str(FRAME)}, scene=False),
+        "languages": open_page(query | {"view": "languages"}, scene=False),
+        "gesture": open_page(query | {"view": "gesture", "gesture": "circle"}, scene=False),
+        "live": open_page(query | {"view": "live"}, scene=False),
+        "health": open_page(query | {"view": "health"}, scene=False),
+    }
+    expect(pages["studio"].locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
+    expect(pages["languages"].get_by_role("heading", name="kept")).to_be_visible()
+    pages["gesture"].get_by_label("Description").fill("half finished")
+    expect(pages["live"].get_by_role("button", name="Start the camera")).to_be_visible()
+    expect(pages["health"].get_by_role("heading", name="Health of kept")).to_be_visible()
+    return pages
+
+
+def test_every_view_survives_a_server_that_is_killed(
+    open_page: OpenPage, server: Address, query: dict[str, str], tmp_path: Path
+) -> None:
+    with served(tmp_path) as (process, client):
+        server.address = str(client.base_url).rstrip("/")
+        pages = opened(open_page, query)
+        process.kill()
+        for page in pages.values():
+            expect(page.locator("#away")).to_contain_text("No connection to the server")
+            expect(page.get_by_role("status").get_by_text("Reconnecting")).to_be_visible()
+    shown = pages["studio"].expect_response(re.compile("/workspaces/.+/view"))
+    with shown, served(tmp_path, port=client.base_url.port or 0) as (_, client):
+        for page in pages.values():
+            expect(page.get_by_text("Connected", exact=True)).to_be_visible()
+            expect(page.locator("#away")).to_be_hidden()
+        client.post("/api/v1/languages", json={"name": "made meanwhile"})
+        expect(pages["languages"].get_by_role("heading", name="made meanwhile")).to_be_visible()
+        studio = pages["studio"]
+        expect(studio.get_by_role("region", name="Why")).to_contain_text("instead of 'line'")
+        expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
+        studio.keyboard.press(".")
+        expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
+        confusions = pages["health"].get_by_role("grid", name="Predicted confusions")
+        expect(confusions).to_be_visible()
+        pages["health"].close()
+        editor = pages["gesture"]
+        expect(editor.get_by_label("Description")).to_have_value("half finished")
+        editor.get_by_role("button", name="Save", exact=True).click()
+        expect(editor.get_by_text("Gesture saved")).to_be_visible()
+        pages["live"].keyboard.press("Space")
+        expect(pages["live"].get_by_text("No camera found")).to_be_visible()
