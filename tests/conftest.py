@@ -1,11 +1,13 @@
 """Fixtures that several parts of the suite share."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
+from app.recognition import Recording, record
 from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
@@ -36,6 +38,26 @@ def installed_models() -> None:
             model_path(name)
     except ModelError as error:
         pytest.skip(f"needs the pose and hand models: {error}")
+
+
+@pytest.fixture(scope="session")
+def sample_recording(
+    tmp_path_factory: pytest.TempPathFactory, sample_clips: Path, installed_models: None
+) -> Callable[[str], Recording]:
+    """Return what finds the poses of a sample clip by its name, once in a run of the tests."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # which the workers have in common
+
+    def recording_of(name: str) -> Recording:
+        kept = folder / f"{name}.recording"
+        if not kept.exists():
+            own = tmp_path_factory.mktemp("recording") / name
+            record(sample_clips / f"{name}.mp4").save(own)
+            own.replace(kept)
+        return Recording.load(kept)
+
+    return recording_of
 
 
 @pytest.fixture

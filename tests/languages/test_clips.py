@@ -1,6 +1,7 @@
 """The sample clips: complete, small, playable, and showing what their names say."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import av
@@ -8,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from app.recognition import find_takes, record, takes_in
+from app.recognition import Recording, takes_in
 from languages.build import TABLE_2
 
 GESTURES = [entry.label for entry in TABLE_2]
@@ -74,9 +75,11 @@ def test_both_salutes_are_held_long_enough_to_be_seen(
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["circle-demonstration", "sweep-test-2", "wedge-test-2"])
 def test_a_take_is_found_where_it_truly_is(
-    sample_clips: Path, phases: dict[str, list[tuple[str, float, float]]], name: str
+    sample_recording: Callable[[str], Recording],
+    phases: dict[str, list[tuple[str, float, float]]],
+    name: str,
 ) -> None:
-    recording = record(sample_clips / f"{name}.mp4")
+    recording = sample_recording(name)
     # Raised arms and a quick turn may cost a few frames; a second body would cost many more.
     assert recording.poses.seen.any(axis=1).mean() > 0.9
     (take,) = takes_in(recording)
@@ -89,8 +92,8 @@ def test_a_take_is_found_where_it_truly_is(
 
 
 @pytest.mark.slow
-def test_ordinary_movement_is_no_take(sample_clips: Path) -> None:
-    assert find_takes(sample_clips / "ordinary-movement.mp4") == ()
+def test_ordinary_movement_is_no_take(sample_recording: Callable[[str], Recording]) -> None:
+    assert takes_in(sample_recording("ordinary-movement")) == ()
 
 
 def _mean_colours(path: Path) -> npt.NDArray[np.float64]:

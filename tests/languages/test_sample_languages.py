@@ -1,12 +1,11 @@
 """The sample languages and clips together: what a new user tries first works."""
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
 
-from app.recognition import Gesture, Language, Recognizer, Take, find_takes
+from app.recognition import Gesture, Language, Recognizer, Recording, Take, takes_in
 from languages.build import FOLDER, LANGUAGES, TABLE_2
 
 # Two dozen clips: minutes on a busy machine, while the limit of the suite is meant for one.
@@ -26,9 +25,9 @@ Takes = Mapping[str, tuple[Take, ...]]
 
 
 @pytest.fixture(scope="module")
-def takes(sample_clips: Path, installed_models: None) -> Takes:
+def takes(sample_recording: Callable[[str], Recording]) -> Takes:
     names = [f"{label}-{kind}" for label in LABELS for kind in KINDS]
-    return {name: find_takes(sample_clips / f"{name}.mp4") for name in names}
+    return {name: takes_in(sample_recording(name)) for name in names}
 
 
 @pytest.fixture(scope="module")
@@ -60,10 +59,10 @@ def test_takes_of_other_divers_are_named(takes: Takes, table_2: Language, profil
 
 @pytest.mark.parametrize("profile", AT_LEAST)
 def test_a_triangle_without_its_third_side_is_misread(
-    sample_clips: Path, table_2: Language, profile: str
+    sample_recording: Callable[[str], Recording], table_2: Language, profile: str
 ) -> None:
     """What the user guide explains to a new user is what the recogniser does."""
-    (take,) = find_takes(sample_clips / "unfinished-triangle.mp4")
+    (take,) = takes_in(sample_recording("unfinished-triangle"))
     assert take.closed
     assert Recognizer(table_2, profile).recognize(take.poses).nearest == "wedge"
 
