@@ -116,10 +116,10 @@ DRIFTS = 2
 """Cosines of a landmark's own drift, of which the first is another place: the body sways about once
 in a gesture."""
 
-MOST_HAND_SWAY = 0.35
-"""Most that a hand's landmark drifts about its wrist, in lengths of the bone between them: that
-turns the hand by 20 degrees, as people's attitudes differ; without a bound, hands that swing far
-would also bend far."""
+MOST_SWAYED = 10.0
+"""Size, in lengths of the bone, of the widest movement that makes a hand drift more about its wrist:
+that of both arms at their widest. Without a bound, a wrist whose arm swings far, or whose body is
+recorded with more landmarks, would also bend far."""
 
 HAND_PARTS = frozenset({"hand", "hand_tip", "index", "pinky", "thumb"})
 """Landmarks that a wrist carries, by the part of the body without its side."""
@@ -234,9 +234,10 @@ def _displaced(
     drift = _along(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
     wrists = _wrists(landmarks)
     bones = np.sqrt(((xy - xy[:, wrists]) ** 2).sum(axis=2)).mean(axis=0)
-    free = spread.sway * whole_size
-    about_wrist = np.minimum(np.sqrt(2) * free, MOST_HAND_SWAY * bones)[:, None] * drift
-    return np.asarray(formed + own_size[:, None] * waver + free * drift[:, :, wrists] + about_wrist)
+    sway = spread.sway * whole_size * drift[:, :, wrists]
+    swayed = np.sqrt(2) * np.minimum(whole_size, MOST_SWAYED * bones)  # two landmarks drift
+    sway += spread.sway * swayed[:, None] * drift
+    return np.asarray(formed + own_size[:, None] * waver + sway)
 
 
 def _along(
