@@ -117,9 +117,9 @@ DRIFTS = 2
 in a gesture."""
 
 MOST_SWAYED = 10.0
-"""Size, in lengths of the bone, of the widest movement that makes a hand drift more about its wrist:
-that of both arms at their widest. Without a bound, a wrist whose arm swings far, or whose body is
-recorded with more landmarks, would also bend far."""
+"""Size, in lengths of the bone, of the widest movement that makes a hand drift more about its
+wrist: that of both arms at their widest. Without a bound, a wrist whose arm swings far, or whose
+body is recorded with more landmarks, would also bend far."""
 
 HAND_PARTS = frozenset({"hand", "hand_tip", "index", "pinky", "thumb"})
 """Landmarks that a wrist carries, by the part of the body without its side."""
