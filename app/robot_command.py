@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
 
 import typer
 
-from app.recognition.estimation import create_estimator
-from app.recognition.estimation.water import WaterCorrection
+from app.clip_argument import EstimatorOption, HandsOption, WaterOption
+from app.recognition.errors import EstimatorError
+from app.recognition.estimation import create_estimator, finds_hands
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.recognizer import PROFILES
-from app.robot import Event, Listener, Runtime, SpottingListener, TakeRecognized, open_source
+from app.robot import (
+    Event,
+    Listener,
+    Runtime,
+    Source,
+    SpottingListener,
+    TakeRecognized,
+    open_source,
+)
+from app.robot.energy import energy_meter
 from app.robot.messages import line_of
+from app.robot.stage_profile import StageProfiler
 from app.robot.watched_language import WatchedLanguage
-from app.robot_text import sentence_of
+from app.robot_text import profile_table, sentence_of
 from app.terminal import people
 
 NOTHING_RECOGNISED = 1
@@ -30,30 +43,45 @@ def robot(
     language: Annotated[Path, typer.Option(help="Language file; read again when it changes.")],
     source: Annotated[
         str,
-        typer.Option(help="Camera number or device, rtsp:// or http:// address, or a clip."),
+        typer.Option(help="Camera number or device, rtsp:// or http:// address, clip, or bag."),
     ] = "0",
     profile: Annotated[str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")] = "full",
     without_salutes: Annotated[
         bool, typer.Option("--without-salutes", help="Hear gestures that no salute announces.")
     ] = False,
-    water: Annotated[
-        WaterCorrection,
-        typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
-    ] = "auto",
+    water: WaterOption = "auto",
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
+    profile_stages: Annotated[
+        bool,
+        typer.Option("--profile-stages", help="Measure what each stage costs, and tell that only."),
+    ] = False,
 ) -> None:
     """Listen for a language and print what happens, one JSON object a line.
 
     A clip ends by itself, with exit code 1 when nothing was recognised in it; a camera is
     listened to until Ctrl-C or SIGTERM. SIGHUP reads the language file again.
     """
-    hearing = SpottingListener if without_salutes else Listener
-    with WatchedLanguage(language, profile) as spoken:
-        listener = hearing(spoken.first)
-        with closing(open_source(source)) as opened, closing(create_estimator()) as estimator:
-            runtime = Runtime(opened, estimator, listener, water=water, changes=spoken.changes)
-            with signals_heeded(runtime.stop, spoken.reload):
-                recognised = told(runtime)
-    if not recognised and not opened.live:
+    with ExitStack() as opened:
+        spoken = opened.enter_context(WatchedLanguage(language, profile))
+        listener = SpottingListener(spoken.first) if without_salutes else Listener(spoken.first)
+        frames = opened.enter_context(closing(open_source(source)))
+        finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
+        if not without_salutes and not finds_hands(finder):
+            raise EstimatorError(
+                f"--hands {hands} finds no hand and so no salute: choose others, or hear gestures "
+                "with --without-salutes"
+            )
+        if profile_stages:
+            body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
+            if meter := energy_meter():
+                opened.enter_context(closing(meter))
+            show_profile(frames, StageProfiler(body, finder, listener, water=water, meter=meter))
+            return
+        runtime = Runtime(frames, finder, listener, water=water, changes=spoken.changes)
+        with signals_heeded(runtime.stop, spoken.reload):
+            recognised = told(runtime)
+    if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
 
 
@@ -71,6 +99,15 @@ def told(runtime: Runtime) -> int:
         # Python flushes stdout once more at its end, and would complain there.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return recognised
+
+
+def show_profile(source: Source, profiler: StageProfiler) -> None:
+    """Profile a source until it ends or somebody stops it; write JSON, and a table for people."""
+    asked: list[bool] = []
+    with signals_heeded(lambda: asked.append(True), lambda: None):
+        profile = profiler.run(source, lambda: bool(asked))
+    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
+    people.print(profile_table(profile))
 
 
 def tell(event: Event) -> None:

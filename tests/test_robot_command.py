@@ -19,8 +19,10 @@ from typer.main import get_command
 
 from app.cli import command_line
 from app.robot.messages import published_schema
+from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
+from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
 from tests.test_layers import modules_of, requirements_of
@@ -158,6 +160,18 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
     assert "Traceback" not in error
 
 
+def test_the_cost_of_each_stage_is_one_object_and_a_table(
+    osg_studio: OsgStudio, installed_models: None, language: Path, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=12)
+    ended = osg_studio("robot", "--language", language, "--source", clip, "--profile-stages")
+    assert ended.code == 0
+    profile = json.loads(ended.out)
+    assert profile["frames"] == 2
+    assert [stage["up_to"] for stage in profile["stages"]] == list(STAGES)
+    assert "+ recognition" in ended.error
+
+
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
@@ -167,12 +181,21 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
         (["--language", "{language}", "--source", "rtsp://a:b@127.0.0.1:1/"], "127.0.0.1:1"),
         (["--language", "{language}", "--profile", "no"], "no profile 'no'"),
         (["--language", "{language}", "--profile", "paper", "--without-salutes"], "profile full"),
+        (["--language", "{language}", "--source", "{clip}", "--hands", "none"], "no salute"),
+        (["--language", "{language}", "--source", "{clip}", "--estimator", "no"], "backend 'no'"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_two(
-    osg_studio: OsgStudio, language: Path, arguments: list[str], what: str
+    osg_studio: OsgStudio,
+    installed_models: None,
+    language: Path,
+    tmp_path: Path,
+    arguments: list[str],
+    what: str,
 ) -> None:
-    ended = osg_studio("robot", *[each.format(language=language) for each in arguments])
+    clip = write_clip(tmp_path / "dive.mp4", frames=2)
+    names = {"language": language, "clip": clip}
+    ended = osg_studio("robot", *[each.format(**names) for each in arguments])
     assert (ended.code, ended.out) == (2, "")
     assert ended.error.startswith("osg-studio: ")
     assert what in ended.error

@@ -86,7 +86,9 @@ class LiveTakes:
         """
         time = float(moment.time[0])
         self._moments.append(moment)
-        while time - self._moments[0].time[0] > LONGEST_TAKE + LONGEST_SALUTE:
+        idle = self._machine.state is TakeState.idle
+        memory = LONGEST_SALUTE if idle else LONGEST_TAKE + LONGEST_SALUTE
+        while time - self._moments[0].time[0] > memory:
             self._moments.popleft()
         bracket = self._machine.update(time, salute)
         return Sight(

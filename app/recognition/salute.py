@@ -8,6 +8,7 @@ the whole shape.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -43,8 +44,8 @@ class Condition:
 
     def fulfilment(self, value: float) -> float:
         """Tell in [0, 1] how far `value` is above the threshold."""
-        slope = np.clip(8 * (value - self.middle) / self.width, -50, 50)
-        return float(1 / (1 + np.exp(-slope)))
+        slope = min(max(8 * (value - self.middle) / self.width, -50.0), 50.0)
+        return 1 / (1 + math.exp(-slope))
 
 
 # All thresholds: chosen on rendered hands with known pose, checked on photographs and drawings

@@ -7,9 +7,11 @@ from datetime import UTC, datetime
 from typing import Final
 
 from app.recognition.errors import RecognitionError
+from app.recognition.estimation import landmarks_of
 from app.recognition.estimation.base import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
 from app.recognition.extraction import moment_of
+from app.recognition.requirements import require_landmarks
 from app.recognition.salute import best_salute
 from app.robot.events import (
     Event,
@@ -29,6 +31,9 @@ from app.robot.spoken_language import SpokenLanguage
 REPORT_SECONDS: Final = 10.0
 """Between two reports of dropped frames: a slow machine drops some all the time, and a log of days
 must stay readable."""
+
+THE_ESTIMATOR: Final = "the pose estimator"
+"""What lacks a landmark, in messages."""
 
 LanguageChanges = Callable[[], SpokenLanguage | RecognitionError | None]
 """Tells, without waiting, which language is to be spoken from now on, why a new one cannot be, or
@@ -69,6 +74,12 @@ class Runtime:
     observer
         Called with every frame and its landmarks, before the listener hears them.
 
+    Raises
+    ------
+    LandmarkError
+        When the estimator cannot find a landmark that the language needs; a later language that
+        needs one is refused.
+
     """
 
     def __init__(
@@ -81,6 +92,9 @@ class Runtime:
         changes: LanguageChanges = nothing_new,
         observer: Observer | None = None,
     ) -> None:
+        require_landmarks(
+            listener.language.recognizer.language, landmarks_of(estimator), THE_ESTIMATOR
+        )
         self._source = source
         self._estimator = estimator
         self._listener = listener
@@ -148,6 +162,8 @@ class Runtime:
         change = self._changes()
         if isinstance(change, SpokenLanguage):
             try:
+                language = change.recognizer.language
+                require_landmarks(language, landmarks_of(self._estimator), THE_ESTIMATOR)
                 self._listener.speak(change)
             except RecognitionError as error:
                 change = error

@@ -69,3 +69,32 @@ def test_a_salute_held_for_minutes_is_not_remembered_whole() -> None:
 def test_a_frame_without_anybody_is_a_frame() -> None:
     sight = LiveTakes(FRAME_SIZE).feed(3.0, FrameLandmarks(None, ()))
     assert (sight.salute, sight.held, sight.state, sight.take) == (0.0, False, TakeState.idle, None)
+
+
+def test_a_take_that_was_begun_is_what_a_recording_cut_there_says() -> None:
+    whole = recording_of("circle")
+    end = whole.poses.time[-1] - 1.5
+    frames = [frame for frame in frames_of(whole) if frame[0] <= end]
+    takes = LiveTakes(FRAME_SIZE)
+    assert not [each for each in frames if takes.feed(*each).take]
+    begun = takes.finish()
+    recording = Recording(
+        poses=joined([moment_of(found, time, FRAME_SIZE) for time, found in frames]),
+        hands=tuple(found.hands for _, found in frames),
+        salute=np.array([best_salute(found.hands) for _, found in frames]),
+    )
+    (expected,) = takes_in(recording)
+    assert begun is not None
+    assert (begun.start, begun.end, begun.closed) == (expected.start, expected.end, False)
+    assert begun.poses == expected.poses
+
+
+def test_a_stream_without_frames_has_no_take() -> None:
+    assert LiveTakes(FRAME_SIZE).finish() is None
+
+
+def test_who_waits_for_a_salute_remembers_no_more_than_a_salute() -> None:
+    takes = LiveTakes(FRAME_SIZE)
+    for frame in range(300):
+        takes.feed(frame / 10, FrameLandmarks(None, ()))
+    assert len(takes) <= 10 * LONGEST_SALUTE + 1

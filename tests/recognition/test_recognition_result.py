@@ -66,3 +66,11 @@ def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:
 def test_the_distances_of_a_result_cannot_be_changed() -> None:
     with pytest.raises(ValueError, match="read-only"):
         result().distances[0, 0] = 9.0
+
+
+@pytest.mark.parametrize(
+    ("scores", "margin"),
+    [([0.4, 1.0], 0.6), ([0.4, np.inf], np.inf), ([1.0, 0.4], -0.6), ([], np.nan)],
+)
+def test_the_margin_is_to_the_nearest_other_gesture(scores: list[float], margin: float) -> None:
+    assert replace(result(), scores=np.array(scores)).margin == pytest.approx(margin, nan_ok=True)

@@ -7,10 +7,11 @@ from contextlib import closing
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from app.recognition import RecognitionError, record
-from app.recognition.errors import LanguageError
+from app.recognition import Gesture, Language, PoseSequence, RecognitionError, record
+from app.recognition.errors import LandmarkError, LanguageError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.takes import TakeState
 from app.robot import (
@@ -123,3 +124,29 @@ def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_r
     (refused,) = [event for event in told if isinstance(event, LanguageRefused)]
     assert refused.reason == "/format: not a language file"
     assert (refused.sha256, refused.revision) == (after.sha256, 2)
+
+
+def test_a_language_that_the_estimator_cannot_follow_is_refused(
+    estimator: PoseEstimator, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=2)
+    time = np.linspace(0, 2, 40)
+    tail = np.stack([300 + 80 * np.cos(3 * time), 200 + 80 * np.sin(3 * time)], axis=1)
+    poses = PoseSequence(
+        landmarks=("tail_fin",), xy=tail[:, None], time=time, frame_size=(640, 480)
+    )
+    fish = Language("fish", [Gesture.from_demonstration("wag", poses)])
+    wagging = SpokenLanguage.from_json(fish.to_json())
+    with closing(open_source(str(clip))) as source:
+        with pytest.raises(LandmarkError, match="tail_fin"):
+            Runtime(source, estimator, Listener(wagging))
+        changes = [wagging]
+        runtime = Runtime(
+            source,
+            estimator,
+            Listener(spoken("circle")),
+            changes=lambda: changes.pop() if changes else None,
+        )
+        (refused,) = [event for event in runtime if isinstance(event, LanguageRefused)]
+    assert "tail_fin" in refused.reason
+    assert refused.sha256 == spoken("circle").sha256

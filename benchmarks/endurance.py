@@ -1,0 +1,276 @@
+"""Whether the robot's runtime can listen for days: a clip over and over, as one stream.
+
+``python -m benchmarks.endurance`` runs 30 minutes of stream time as fast as it goes, and states how
+memory grows, how many frames are remembered, and whether every loop says the same.
+``--models-once`` lets the models look at the first loop alone: all else is done for every frame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+
+from app.recognition.estimation import create_estimator
+from app.recognition.estimation.base import FrameLandmarks, Image, PoseEstimator
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.live import LONGEST_SALUTE
+from app.recognition.takes import LONGEST_TAKE
+from app.recognition.video import FrameReader
+from app.resources import samples_dir
+from app.robot import (
+    Frame,
+    Listener,
+    Notice,
+    Runtime,
+    Source,
+    SpokenLanguage,
+    TakeRecognized,
+    TakeRejected,
+)
+
+SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
+"""Seconds that do not count for the slope: what may be remembered has been by then."""
+
+SAME: Final = 0.02
+"""Seconds that the same stamp may differ by from loop to loop: half a frame."""
+
+
+BEAT: Final = 1e-6
+"""Seconds by which sums of periods may be off."""
+
+STOCK_EVERY: Final = 10
+"""Frames between two looks at the memory; the last one of a loop stands."""
+
+
+class Looped(Source, Protocol):
+    """A source that says the same again and again.
+
+    Attributes
+    ----------
+    period
+        Seconds of one loop.
+
+    """
+
+    period: float
+
+
+class LoopedClip:
+    """A clip over and over until the time is full; a `Source` of one steady clock.
+
+    Parameters
+    ----------
+    clip
+        The file, opened again for every loop.
+    seconds
+        Of stream time, rounded up to whole loops.
+    every
+        Of so many frames one is given: 3 of a clip of 25 frames a second leaves 8.
+
+    Attributes
+    ----------
+    period
+        Seconds of one loop.
+    frames
+        Given in one loop.
+
+    """
+
+    live = False
+
+    def __init__(self, clip: Path, seconds: float, every: int = 1) -> None:
+        self.name = f"{clip.name}, looped"
+        self._clip = clip
+        self._every = every
+        with FrameReader(clip) as reader:
+            self.frame_size = (reader.info.width, reader.info.height)
+            times = [frame.time for frame in reader]
+        self.period = times[-1] + times[1]
+        self.frames = len(times[::every])
+        self.loops = int(np.ceil(seconds / self.period))
+
+    def __iter__(self) -> Iterator[Frame | Notice]:
+        """Give the frames of every loop."""
+        for loop in range(self.loops):
+            with FrameReader(self._clip) as reader:
+                for frame in reader:
+                    if frame.index % self._every == 0:
+                        yield Frame(loop * self.period + frame.time, frame.image)
+
+    def close(self) -> None:
+        """Do nothing: every loop closes its file."""
+
+
+class FirstLoopEstimator:
+    """Finds landmarks in the first loop and repeats them in all others; a `PoseEstimator`.
+
+    Parameters
+    ----------
+    estimator
+        What finds them.
+    frames
+        Of one loop.
+
+    """
+
+    def __init__(self, estimator: PoseEstimator, frames: int) -> None:
+        self._estimator = estimator
+        self._frames = frames
+        self._found: list[FrameLandmarks] = []
+        self._number = 0
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        """Return what was found in this frame of the first loop."""
+        if len(self._found) < self._frames:
+            self._found.append(self._estimator.estimate(image, time))
+            return self._found[-1]
+        self._number += 1
+        return self._found[(self._number - 1) % self._frames]
+
+    def reset(self) -> None:
+        """Forget everything."""
+        self._estimator.reset()
+        self._found.clear()
+        self._number = 0
+
+    def close(self) -> None:
+        """Release the models."""
+        self._estimator.close()
+
+
+@dataclass(frozen=True)
+class Said:
+    """What one take was answered with.
+
+    Attributes
+    ----------
+    label
+        None: rejected.
+    start, end
+        Seconds after its loop began.
+    confidence
+        In [0, 1]; None where the recogniser was not asked.
+
+    """
+
+    label: str | None
+    start: float
+    end: float
+    confidence: float | None
+
+    def is_same(self, other: Said) -> bool:
+        """Tell whether two loops said the same at the same moments."""
+        apart = max(abs(self.start - other.start), abs(self.end - other.end))
+        return self.label == other.label and apart <= SAME
+
+
+@dataclass
+class Lap:
+    """One loop of the stream.
+
+    Attributes
+    ----------
+    frames
+        Looked at in it.
+    remembered
+        Most frames that the listener remembered.
+    resident
+        Bytes of memory at its end.
+    said
+        What its takes were answered with.
+
+    """
+
+    frames: int = 0
+    remembered: int = 0
+    resident: int = 0
+    said: list[Said] = field(default_factory=list)
+
+
+def endure(
+    source: Looped, estimator: PoseEstimator, listener: Listener, water: WaterCorrection = "auto"
+) -> list[Lap]:
+    """Run a looped stream to its end and take stock of every loop."""
+    laps: defaultdict[int, Lap] = defaultdict(Lap)
+
+    def take_stock(frame: Frame, found: FrameLandmarks) -> None:
+        lap = laps[int((frame.time + BEAT) // source.period)]
+        lap.frames += 1
+        lap.remembered = max(lap.remembered, len(listener))
+        if lap.frames % STOCK_EVERY == 0:
+            lap.resident = resident_bytes()
+
+    for event in Runtime(source, estimator, listener, water=water, observer=take_stock):
+        if isinstance(event, TakeRecognized | TakeRejected):
+            loop = int((event.end + BEAT) // source.period)
+            start, end = (moment - loop * source.period for moment in (event.start, event.end))
+            label = event.label if isinstance(event, TakeRecognized) else None
+            laps[loop].said.append(Said(label, start, end, event.confidence))
+    return [laps[loop] for loop in sorted(laps)]
+
+
+def resident_bytes() -> int:
+    """Return the memory that this process has now (Linux)."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def slope_of(laps: Sequence[Lap], period: float) -> tuple[float, float]:
+    """Return bytes a minute of stream time, and half of the 95 % interval, by least squares."""
+    resident = np.array([lap.resident for lap in laps], dtype=np.float64)
+    minutes = np.arange(len(laps)) * period / 60
+    centred = minutes - minutes.mean()
+    slope = float(centred @ resident / (centred @ centred))
+    left = resident - resident.mean() - slope * centred
+    error = float(np.sqrt(left @ left / max(1, len(laps) - 2) / (centred @ centred)))
+    return slope, 1.96 * error
+
+
+def report(laps: Sequence[Lap], period: float) -> None:
+    """Print what was found; of more loops than it takes to settle."""
+    settled = laps[int(SETTLING / period) :]
+    slope, half = slope_of(settled, period)
+    first = settled[0].said
+    same = sum(
+        len(lap.said) == len(first)
+        and all(one.is_same(other) for one, other in zip(lap.said, first, strict=True))
+        for lap in laps
+    )
+    sure = [said.confidence for lap in laps for said in lap.said if said.confidence is not None]
+    frames = sum(lap.frames for lap in laps)
+    print(f"{len(laps)} loops, {len(laps) * period / 60:.1f} min of stream, {frames} frames")
+    print(f"memory: {settled[0].resident / 1e6:.1f} MB at first, {laps[-1].resident / 1e6:.1f} MB")
+    print(f"slope: {slope / 1e3:+.2f} kB a minute (95 %: {half / 1e3:.2f} more or less)")
+    print(f"most frames remembered in a loop: {laps[0].remembered} in the first, ", end="")
+    print(f"{max(lap.remembered for lap in laps)} in any")
+    print(f"loops that say {[said.label for said in first]}: {same} of {len(laps)}, ", end="")
+    print(f"confidences {min(sure):.4f} to {max(sure):.4f}")
+
+
+def main() -> None:
+    """Run the stream and report."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.endurance", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=30.0, help="of stream time")
+    parser.add_argument("--every", type=int, default=1, help="look at one frame of so many")
+    parser.add_argument("--models-once", action="store_true", help="in the first loop alone")
+    parser.add_argument("--clip", type=Path, default=samples_dir() / "clips" / "line-test-1.mp4")
+    parser.add_argument("--language", type=Path, default=samples_dir() / "osg-table-2.json")
+    chosen = parser.parse_args()
+    source = LoopedClip(chosen.clip, 60 * chosen.minutes, chosen.every)
+    with closing(create_estimator()) as models:
+        once = chosen.models_once
+        estimator = FirstLoopEstimator(models, source.frames) if once else models
+        laps = endure(source, estimator, Listener(SpokenLanguage.load(chosen.language)))
+    report(laps, source.period)
+
+
+if __name__ == "__main__":
+    main()

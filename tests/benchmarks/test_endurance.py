@@ -1,0 +1,88 @@
+"""The runtime for hours: a stream that repeats itself is heard the same, in the same memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition.estimation import FrameLandmarks, Image
+from app.recognition.live import LONGEST_SALUTE
+from app.recognition.takes import LONGEST_TAKE
+from app.robot import Frame, Listener, Notice
+from benchmarks.endurance import Lap, LoopedClip, endure, resident_bytes, slope_of
+from tests.api.recordings import FRAME_SIZE, RATE, recording_of
+from tests.recognition.damaged_clips import write_clip
+from tests.recognition.test_live import frames_of
+from tests.robot.languages import spoken
+
+MINUTES = 6
+"""Of stream time: what grew by one frame's landmarks a frame would have grown by 20 MB."""
+
+
+class LoopedLandmarks:
+    """A stream whose landmarks are known: a source, and the estimator that finds them."""
+
+    live = False
+    name = "landmarks"
+    frame_size = FRAME_SIZE
+
+    def __init__(self, *shapes: str, seconds: float) -> None:
+        self._frames = list(frames_of(recording_of(*shapes)))
+        self.period = len(self._frames) / RATE
+        self._loops = round(seconds / self.period)
+        self._number = 0
+
+    def __iter__(self) -> Iterator[Frame | Notice]:
+        width, height = FRAME_SIZE
+        image = np.zeros((height, width, 3), np.uint8)
+        for loop in range(self._loops):
+            for time, _ in self._frames:
+                yield Frame(loop * self.period + time, image)
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        found = self._frames[self._number % len(self._frames)][1]
+        self._number += 1
+        return found
+
+    def reset(self) -> None:
+        self._number = 0
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.slow
+def test_every_loop_says_the_same_in_the_same_memory() -> None:
+    stream = LoopedLandmarks("circle", "line", seconds=60 * MINUTES)
+    listener = Listener(spoken("circle", "line"))
+    laps = endure(stream, stream, listener, water="off")
+    assert len(laps) == round(60 * MINUTES / stream.period)
+    for lap in laps:
+        assert [said.label for said in lap.said] == ["circle", "line"]
+        for one, first in zip(lap.said, laps[0].said, strict=True):
+            assert one.is_same(first)
+            # The last bits of later times move the edge of a stroke by one frame.
+            assert one.confidence == pytest.approx(first.confidence, abs=0.05)
+        assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE
+    settled = laps[len(laps) // 2 :]
+    assert settled[-1].resident - settled[0].resident < 4e6
+
+
+def test_a_looped_clip_is_one_stream(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=10)
+    source = LoopedClip(clip, 1.0, every=2)
+    times = [given.time for given in source if isinstance(given, Frame)]
+    assert source.period == pytest.approx(0.4)
+    assert source.loops == 3
+    assert times == pytest.approx(np.arange(15) * 0.08)
+
+
+def test_the_slope_is_that_of_the_line_through_the_laps() -> None:
+    laps = [Lap(resident=1000 + 300 * number) for number in range(10)]
+    slope, half = slope_of(laps, period=30.0)
+    assert slope == pytest.approx(600)
+    assert half == pytest.approx(0, abs=1e-6)
+    assert resident_bytes() > 10e6
