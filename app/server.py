@@ -37,6 +37,7 @@ from app.api import (
     previews,
     problems,
     recognitions,
+    resumable,
     revisions,
     sample_clips,
     sample_languages,
@@ -102,6 +103,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for router in (
         health.router,
         clips.router,
+        resumable.router,
         timelines.router,
         jobs.router,
         languages.router,
@@ -234,6 +236,7 @@ def _guard(app: FastAPI, settings: Settings) -> None:
     """Put in front of the routes, outermost last, what every request must pass."""
     limits = {
         f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
+        f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.max_language_bytes,
     }
     app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)

@@ -23,7 +23,7 @@ class BodyLimit:
     default
         Bytes allowed.
     exceptions
-        Bytes allowed for single paths.
+        Bytes allowed for single paths; ``/*`` at the end stands for every name in that place.
 
     """
 
@@ -36,7 +36,9 @@ class BodyLimit:
         """Pass on, counting."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
-        limit = self._exceptions.get(scope["path"], self._default)
+        path = scope["path"]
+        place = path.rpartition("/")[0] + "/*"
+        limit = self._exceptions.get(path, self._exceptions.get(place, self._default))
         stated = Headers(scope=scope).get("content-length", "")
         if stated.isdecimal() and int(stated) > limit:
             return await too_large(limit).response()(scope, receive, send)

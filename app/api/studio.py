@@ -31,6 +31,7 @@ from app.store import (
     LanguageState,
     LanguageStore,
     RecognitionStore,
+    UploadStore,
 )
 from app.store.models import now
 
@@ -51,7 +52,7 @@ class Studio:
     ----------
     settings
         How it was started.
-    clips, jobs, languages, recognitions
+    clips, uploads, jobs, languages, recognitions
         The store.
     runner
         Extracts poses from clips.
@@ -66,6 +67,7 @@ class Studio:
 
     settings: Settings
     clips: ClipStore
+    uploads: UploadStore
     jobs: JobStore
     languages: LanguageStore
     recognitions: RecognitionStore
@@ -167,6 +169,7 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
     studio = Studio(
         settings=settings,
         clips=clips,
+        uploads=UploadStore(settings.data_dir / "uploads"),
         jobs=jobs,
         languages=languages,
         recognitions=RecognitionStore(database),
@@ -189,8 +192,9 @@ def _bring_in_order(studio: Studio, database: Database) -> None:
     database.migrate()
     before = now() - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(before) + studio.languages.purge(before)
+    purged += studio.uploads.purge(before)
     if (swept := studio.clips.sweep()) or purged:
-        logger.info("removed %d orphaned files and %d deleted objects", swept, purged)
+        logger.info("removed %d orphaned files and %d deleted or abandoned objects", swept, purged)
     studio.samples.seed(studio.languages)
 
 

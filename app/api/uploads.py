@@ -67,11 +67,12 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
         file is too large, 415 when the body is no multipart form, 507 when the disk is too full.
 
     """
-    _require_space(request, target, settings)
+    stated = request.headers.get("content-length", "")
+    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
-            async for chunk in _paced(request, settings):
+            async for chunk in paced(request, settings):
                 parser.feed(chunk)
                 if len(parser.pending) >= _FLUSH_BYTES:
                     await _flush(parser, file)
@@ -209,8 +210,17 @@ async def _flush(parser: _FilePart, file: BinaryIO) -> None:
     await run_in_threadpool(file.write, data)
 
 
-async def _paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
-    """Yield the body's chunks as long as they come fast enough."""
+async def paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
+    """Yield the body's chunks as long as they come fast enough.
+
+    Raises
+    ------
+    ProblemError
+        408 when they do not.
+    ClientDisconnect
+        When the sender is gone.
+
+    """
     began, received = time.monotonic(), 0
     chunks = aiter(request.stream())
     while True:
@@ -228,10 +238,10 @@ async def _paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
         yield chunk
 
 
-def _require_space(request: Request, target: Path, settings: Settings) -> None:
-    stated = request.headers.get("content-length", "")
-    needed = (int(stated) if stated.isdecimal() else 0) + settings.free_disk_bytes
-    free = shutil.disk_usage(target.parent).free
+def require_space(folder: Path, size: int, settings: Settings) -> None:
+    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`."""
+    needed = size + settings.free_disk_bytes
+    free = shutil.disk_usage(folder).free
     if free < needed:
         raise ProblemError(
             507,

@@ -15,6 +15,7 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.recognitions import RecognitionStore
+from app.store.uploads import Upload, UploadStore
 
 __all__ = [
     "Clip",
@@ -36,4 +37,6 @@ __all__ = [
     "RecognitionStore",
     "StoreError",
     "StoreUnavailable",
+    "Upload",
+    "UploadStore",
 ]

@@ -12,13 +12,15 @@ export class ApiError extends Error {
   }
 }
 
-const unreachable = () =>
+/** What is told when nobody answered. */
+export const unreachable = () =>
   new ApiError({ title: "No connection", detail: "The server did not answer. Is it still running? It is tried again by itself.", code: "offline" }, 0);
 
 /** Whether a call failed only because the server is away for now. */
 export const isAway = ({ code }) => code === "offline" || code === "server_stopping";
 
-async function problemOf(response) {
+/** The problem that an answer tells; a proxy's own error page tells none. */
+export async function problemOf(response) {
   try {
     return await response.json();
   } catch {
@@ -116,30 +118,3 @@ export const workspaces = {
 
 /** Follow everything that changes on the server. */
 export const changes = () => new EventSource(`${BASE}/events`);
-
-/**
- * Upload a clip. `fetch` tells nothing of an upload's progress, so this is an XMLHttpRequest.
- * Returns `{ done, cancel }`; `key` makes a repeated upload the same clip.
- */
-export function upload(file, key, onProgress) {
-  const call = new XMLHttpRequest();
-  const form = new FormData();
-  form.append("file", file);
-  const done = new Promise((resolve, reject) => {
-    call.upload.onprogress = (event) => onProgress(event.loaded, event.lengthComputable ? event.total : file.size);
-    call.onload = () => {
-      let answer = {};
-      try {
-        answer = JSON.parse(call.responseText);
-      } catch { /* a proxy's own error page */ }
-      if (call.status < 300) resolve(answer);
-      else reject(new ApiError(answer, call.status));
-    };
-    call.onerror = () => reject(unreachable());
-    call.onabort = () => reject(new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0));
-  });
-  call.open("POST", `${BASE}/clips`);
-  call.setRequestHeader("Idempotency-Key", key);
-  call.send(form);
-  return { done, cancel: () => call.abort() };
-}

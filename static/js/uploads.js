@@ -5,6 +5,7 @@ import { needsTopic, select } from "./clips.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { bytes, timeLeft } from "./format.js";
 import { importLanguage } from "./languages.js";
+import { upload as send } from "./resumable.js";
 import { state, update } from "./state.js";
 import { complain } from "./toasts.js";
 import { openTopics } from "./topics.js";
@@ -13,10 +14,9 @@ const AT_ONCE = 2; // More only share the same line, and each would finish later
 
 let counter = 0;
 
-/** An upload that has not begun; its key makes a repeated attempt the same clip. */
+/** An upload that has not begun. */
 const waiting = (file, first, uploaded) => ({
-  key: `${Date.now()}-${Math.random().toString(36).slice(2)}-${counter++}`,
-  file, first, uploaded, status: "waiting", loaded: 0, total: file.size, started: 0, error: null, cancel: null,
+  key: String(counter++), file, first, uploaded, status: "waiting", loaded: 0, total: file.size, away: false, began: null, error: null, cancel: null,
 });
 
 /**
@@ -47,16 +47,22 @@ function startNext() {
 }
 
 async function start(upload) {
-  const call = api.upload(upload.file, upload.key, (loaded, total) => change(upload.key, { loaded, total }));
-  change(upload.key, { status: "uploading", started: performance.now(), cancel: call.cancel, loaded: 0, error: null });
+  // The rate counts from where this attempt found the file, which may be its middle.
+  let began = null;
+  const advanced = (loaded, away) => {
+    began = away ? null : began ?? { loaded, at: performance.now() };
+    change(upload.key, { loaded, away, began });
+  };
+  const call = send(upload.file, advanced);
+  change(upload.key, { status: "uploading", cancel: call.cancel, loaded: 0, away: false, began: null, error: null });
   try {
-    const accepted = await call.done;
+    const id = await call.done;
     forget(upload.key);
     update({ clips: await api.clips.list() });
     // Of several files the first is shown; the others must not take its place one after the other.
-    if (upload.uploaded) upload.uploaded(accepted.id);
-    else if (upload.first) select(accepted.id);
-    const clip = state.clips.find((each) => each.id === accepted.id);
+    if (upload.uploaded) upload.uploaded(id);
+    else if (upload.first) select(id);
+    const clip = state.clips.find((each) => each.id === id);
     if (clip && needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
@@ -68,9 +74,11 @@ async function start(upload) {
 function stage(upload) {
   if (upload.status === "waiting") return "Waiting for the other uploads";
   if (upload.status === "failed") return upload.error;
+  if (upload.away) return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; goes on by itself`;
   if (upload.loaded >= upload.total) return "Checking what is in it";
-  const elapsed = (performance.now() - upload.started) / 1000;
-  const left = upload.loaded ? ((upload.total - upload.loaded) / upload.loaded) * elapsed : null;
+  const { began } = upload;
+  const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at); // bytes a ms
+  const left = rate ? (upload.total - upload.loaded) / rate / 1000 : null;
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
 }
 

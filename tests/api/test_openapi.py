@@ -32,6 +32,9 @@ CHECKS = (
     status_code_conformance,
 )
 
+# A part of a file is plain bytes, whatever the tus protocol calls them.
+schemathesis.serializer.alias("application/offset+octet-stream", "application/octet-stream")
+
 
 @pytest.fixture(scope="module")
 def lasting_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import struct
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,10 +12,12 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from app.settings import Settings
-from tests.api.running import running
+from tests.api.running import running, until
 from tests.api.serving import served
 from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
 from tests.browser.library import library_of
+from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.slow
 
@@ -58,6 +61,41 @@ def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
     expect(pages["live"].get_by_role("button", name="Start the camera")).to_be_visible()
     expect(pages["health"].get_by_role("heading", name="Health of kept")).to_be_visible()
     return pages
+
+
+def padded(path: Path, size: int) -> Path:
+    """Write a clip that is `size` bytes longer than it need be, in a box that players skip."""
+    write_clip(path, frames=2)
+    path.write_bytes(path.read_bytes() + struct.pack(">I4s", size, b"free") + bytes(size - 8))
+    return path
+
+
+def test_an_upload_goes_on_where_a_killed_server_left_it(
+    open_page: OpenPage, server: Address, tmp_path: Path
+) -> None:
+    clip = padded(tmp_path / "long dive.mp4", 10_000_000)
+    data = tmp_path / "data"
+    with served(data) as (process, client):
+        server.address = str(client.base_url).rstrip("/")
+        page = open_page(scene=False)
+        expect(page.get_by_text("Connected", exact=True)).to_be_visible()
+        network = page.context.new_cdp_session(page)
+        slow = {"offline": False, "latency": 0, "downloadThroughput": -1}
+        network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": 2_000_000})
+        drop(page, clip)
+        uploads = page.get_by_role("list", name="Uploads")
+        until(lambda: sum(path.stat().st_size for path in data.glob("uploads/*")) > 500_000)
+        process.kill()
+        expect(uploads).to_contain_text("goes on by itself")
+    came = max(path.stat().st_size for path in data.glob("uploads/*"))
+    with served(data, port=client.base_url.port or 0) as (_, client):
+        with page.expect_request(lambda request: request.method == "PATCH") as going_on:
+            network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
+        assert int(going_on.value.headers["upload-offset"]) == came
+        expect(page.get_by_role("button", name="Show long dive.mp4")).to_be_visible()
+        expect(uploads.get_by_role("listitem")).to_have_count(0)
+        (kept,) = client.get("/api/v1/clips").json()
+        assert client.get(f"/api/v1/clips/{kept['id']}/video").content == clip.read_bytes()
 
 
 def test_every_view_survives_a_server_that_is_killed(

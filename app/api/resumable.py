@@ -1,0 +1,177 @@
+"""Uploads that go on after a lost connection: the tus protocol 1.0.0 (https://tus.io).
+
+Core, creation and termination, which every tus client knows. Not by a library: the kept one for
+FastAPI answers with files of its own that anybody may fetch, and knows neither our limits of rate,
+disk and queue nor how an upload becomes a clip.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import binascii
+from typing import Annotated, Final
+from weakref import WeakValueDictionary
+
+from fastapi import APIRouter, Depends, Header, Request, Response
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import ClientDisconnect
+
+from app.api.body_limit import too_large
+from app.api.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.problems import ProblemError, documented
+from app.api.studio import CurrentStudio, Studio
+from app.api.uploads import paced, require_space, shown_name
+from app.store import ClipWithJob, NotFound, Upload
+
+VERSION: Final = "1.0.0"
+EXTENSIONS: Final = "creation,termination"
+OFFSETS: Final = "application/offset+octet-stream"
+"""Media type of a part of a file (tus, core protocol)."""
+
+_COMMON = {"Tus-Resumable": VERSION, "Cache-Control": "no-store"}
+
+_finishing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+
+
+def spoken(tus_resumable: Annotated[str | None, Header()] = None) -> None:
+    """Refuse a version of the protocol that is not ours."""
+    if tus_resumable != VERSION:
+        detail = f"the header Tus-Resumable says {tus_resumable!r}; this server speaks {VERSION}"
+        raise ProblemError(412, "tus_version", detail, headers={"Tus-Version": VERSION})
+
+
+router = APIRouter(prefix="/uploads", tags=["clips"])
+
+
+@router.options("", status_code=204)
+def tell_abilities(studio: CurrentStudio) -> Response:
+    """Tell what of the tus protocol is understood."""
+    size = str(studio.settings.max_clip_bytes)
+    told = {"Tus-Version": VERSION, "Tus-Extension": EXTENSIONS, "Tus-Max-Size": size}
+    return Response(status_code=204, headers=_COMMON | told)
+
+
+@router.post("", status_code=201, dependencies=[Depends(spoken)], responses=documented(412, 429))
+async def begin_upload(
+    request: Request,
+    studio: CurrentStudio,
+    upload_length: Annotated[int, Header(ge=0, description="Bytes of the whole file")],
+    upload_metadata: Annotated[
+        str, Header(max_length=4096, description="`filename` and its base64")
+    ] = "",
+) -> Response:
+    """Begin an upload; `Location` is where its parts go."""
+    if upload_length > studio.settings.max_clip_bytes:
+        raise too_large(studio.settings.max_clip_bytes)
+    await require_place_in_queue(request, studio)
+    require_space(studio.clips.folder, upload_length, studio.settings)
+    name = shown_name(_file_name(upload_metadata))
+    upload = await run_in_threadpool(studio.uploads.create, name, upload_length)
+    location = f"{request.url.path}/{upload.id}"
+    return Response(status_code=201, headers=_COMMON | {"Location": location})
+
+
+@router.head("/{upload_id}", dependencies=[Depends(spoken)], responses=documented(404, 412))
+def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
+    """Tell how much of a file has come; `Content-Location` is the clip once all of it has."""
+    if clip := studio.clips.by_idempotency_key(upload_id):
+        size = str(clip.clip.size)
+        return Response(headers=_finished(clip) | {"Upload-Offset": size, "Upload-Length": size})
+    upload = studio.uploads.get(upload_id)
+    told = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.size)}
+    return Response(headers=_COMMON | told)
+
+
+@router.patch(
+    "/{upload_id}",
+    status_code=204,
+    dependencies=[Depends(spoken)],
+    responses=documented(404, 409, 412, 415),
+    openapi_extra={"requestBody": {"content": {OFFSETS: {"schema": {"type": "string"}}}}},
+)
+async def append_part(
+    request: Request,
+    upload_id: str,
+    studio: CurrentStudio,
+    upload_offset: Annotated[int, Header(ge=0, description="Where this part begins")],
+    content_type: Annotated[str, Header()] = "",
+) -> Response:
+    """Add a part; with the last one the file becomes a clip, whose place is `Content-Location`."""
+    if content_type != OFFSETS:
+        detail = f"a part must be sent as {OFFSETS}, not as {content_type[:80]!r}"
+        raise ProblemError(415, "unsupported_media_type", detail)
+    upload = await run_in_threadpool(studio.uploads.get, upload_id)
+    if upload_offset != upload.offset:
+        detail = f"{upload.offset} bytes have come; go on there instead of at {upload_offset}"
+        raise ProblemError(409, "upload_offset", detail)
+    require_space(studio.clips.folder, upload.size - upload.offset, studio.settings)
+    offset = await _written(request, upload, studio)
+    headers = _COMMON | {"Upload-Offset": str(offset)}
+    if offset == upload.size:
+        headers |= await _accepted(request, upload, studio)
+    return Response(status_code=204, headers=headers)
+
+
+@router.delete(
+    "/{upload_id}", status_code=204, dependencies=[Depends(spoken)], responses=documented(404, 412)
+)
+def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
+    """Forget an upload and what came of it."""
+    studio.uploads.get(upload_id)
+    studio.uploads.remove(upload_id)
+    return Response(status_code=204, headers=_COMMON)
+
+
+def _file_name(metadata: str) -> str:
+    """Return the file name in ``Upload-Metadata``: pairs of a key and a value in base64."""
+    for pair in metadata.split(","):
+        key, _, value = pair.strip().partition(" ")
+        if key == "filename":
+            try:
+                return base64.b64decode(value, validate=True).decode("utf-8", "replace")
+            except binascii.Error as error:
+                detail = "the filename in Upload-Metadata is not base64"
+                raise ProblemError(400, "malformed_upload", detail) from error
+    return ""
+
+
+async def _written(request: Request, upload: Upload, studio: Studio) -> int:
+    """Write what comes to where the upload ends; return the offset after it.
+
+    What came before the connection was lost stays, so that the next part goes on after it.
+    """
+    offset = upload.offset
+    with await run_in_threadpool(upload.path.open, "r+b") as file:
+        file.seek(offset)
+        try:
+            async for chunk in paced(request, studio.settings):
+                offset += len(chunk)
+                if offset > upload.size:
+                    raise too_large(upload.size)
+                await run_in_threadpool(file.write, chunk)
+        except ClientDisconnect as error:
+            detail = f"the connection was lost after {offset} of {upload.size} bytes; go on there"
+            raise ProblemError(400, "upload_broken_off", detail) from error
+    return offset
+
+
+async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
+    """Make a clip of a file that is whole; of two who finish it the second gets the same one."""
+    async with _finishing.setdefault(upload.id, asyncio.Lock()):
+        clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
+        if clip is None:
+            try:
+                made = await examined(upload.path, studio, name=upload.name, size=upload.size)
+                made.idempotency_key = upload.id
+                await take_in(made, upload.path, studio, client_of(request))
+            finally:
+                await run_in_threadpool(studio.uploads.remove, upload.id)
+            clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
+    if clip is None:
+        raise NotFound(f"the clip of upload {upload.id} was deleted meanwhile")
+    return _finished(clip)
+
+
+def _finished(clip: ClipWithJob) -> dict[str, str]:
+    return _COMMON | {"Content-Location": f"/api/v1/clips/{clip.clip.id}"}

@@ -1,0 +1,111 @@
+"""Uploads under way: the bytes that came so far, kept over lost connections and restarts."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from app.store.errors import NotFound
+from app.store.models import new_id
+
+_ID = re.compile(r"[0-9a-f]{32}")
+
+
+@dataclass(frozen=True)
+class Upload:
+    """A file that is being received.
+
+    Attributes
+    ----------
+    id
+        Ours; the clip that it becomes remembers it as its idempotency key.
+    name
+        What its sender calls it.
+    size
+        Bytes of the whole file.
+    path
+        What has come of it so far.
+
+    """
+
+    id: str
+    name: str
+    size: int
+    path: Path
+
+    @property
+    def offset(self) -> int:
+        """Bytes that have come."""
+        return self.path.stat().st_size
+
+
+class UploadStore:
+    """Keeps uploads.
+
+    Parameters
+    ----------
+    folder
+        Where the files are: ``<id>`` with the bytes and ``<id>.json`` with what they are. On the
+        same file system as the clips, so that a finished one is renamed and not copied.
+
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def create(self, name: str, size: int) -> Upload:
+        """Begin an upload of `size` bytes."""
+        upload_id = new_id()
+        self._about(upload_id).write_text(json.dumps({"name": name, "size": size}))
+        path = self._folder / upload_id
+        path.touch()
+        return Upload(upload_id, name, size, path)
+
+    def get(self, upload_id: str) -> Upload:
+        """Return an upload that is not finished.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        path = self._folder / upload_id
+        # Only ids of our own become paths.
+        if not _ID.fullmatch(upload_id) or not path.is_file():
+            raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
+        told = json.loads(self._about(upload_id).read_text())
+        return Upload(upload_id, told["name"], told["size"], path)
+
+    def remove(self, upload_id: str) -> None:
+        """Forget an upload and what came of it; does nothing where there is none."""
+        for path in (self._folder / upload_id, self._about(upload_id)):
+            if path.is_dir():  # What a crash left of looking into it.
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink(missing_ok=True)
+
+    def purge(self, before: datetime) -> int:
+        """Remove uploads to which nothing came since `before`; return how many went."""
+        newest: dict[str, datetime] = {}
+        for path in self._folder.iterdir():
+            newest[path.stem] = max(_changed(path), newest.get(path.stem, _changed(path)))
+        stale = [upload_id for upload_id, changed in newest.items() if changed < before]
+        for upload_id in stale:
+            self.remove(upload_id)
+        return len(stale)
+
+    def _about(self, upload_id: str) -> Path:
+        return self._folder / f"{upload_id}.json"
+
+
+def _changed(path: Path) -> datetime:
+    with suppress(OSError):
+        return datetime.fromtimestamp(path.stat().st_mtime, UTC)
+    return datetime.now(UTC)

@@ -1,0 +1,134 @@
+// Sending a file so that a lost connection, a reload or a restarted server loses nothing (tus 1.0.0).
+
+import { ApiError, isAway, problemOf, unreachable } from "./api.js";
+
+const PLACE = "/api/v1/uploads";
+const VERSION = { "Tus-Resumable": "1.0.0" };
+const PART = 8 * 2 ** 20; // bytes of one request: what is sent again at most where a proxy holds bodies back.
+const FIRST_PAUSE = 500; // ms before the first attempt to go on; each further one waits twice as long,
+const LONGEST_PAUSE = 8000; // up to this: whoever comes back into the network's reach waits no longer.
+
+const cancelled = () => new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
+
+/** Where the address of a file's upload is kept, so that the same file goes on after a reload. */
+const keyOf = ({ name, size, lastModified }) => `osg-studio.upload.${size}.${lastModified}.${name}`;
+
+function keep(file, place) {
+  try {
+    if (place) localStorage.setItem(keyOf(file), place);
+    else localStorage.removeItem(keyOf(file));
+  } catch { /* A full or forbidden store: the upload goes on as long as its tab lives. */ }
+}
+
+function kept(file) {
+  try {
+    return localStorage.getItem(keyOf(file));
+  } catch {
+    return null;
+  }
+}
+
+async function ask(method, place, headers = {}) {
+  let response;
+  try {
+    response = await fetch(place, { method, headers: { ...VERSION, ...headers } });
+  } catch {
+    throw unreachable();
+  }
+  if (!response.ok) throw new ApiError(await problemOf(response), response.status);
+  return response.headers;
+}
+
+const stand = (place, headers) => ({ place, offset: Number(headers.get("Upload-Offset")), clip: headers.get("Content-Location")?.split("/").at(-1) ?? null });
+
+async function begin(file) {
+  const name = btoa(String.fromCharCode(...new TextEncoder().encode(file.name)));
+  const headers = await ask("POST", PLACE, { "Upload-Length": String(file.size), "Upload-Metadata": `filename ${name}` });
+  const place = headers.get("Location");
+  keep(file, place);
+  return { place, offset: 0, clip: null };
+}
+
+/** Ask how much of a file the server has; begin anew where it knows nothing of it. */
+async function resume(file) {
+  const place = kept(file);
+  if (!place) return begin(file);
+  try {
+    return stand(place, await ask("HEAD", place));
+  } catch (error) {
+    if (error.status !== 404) throw error;
+    return begin(file);
+  }
+}
+
+/** Send the next part. `fetch` tells nothing of an upload's progress, so this is an XMLHttpRequest. */
+function send(call, file, { place, offset }, onProgress) {
+  const sent = new Promise((resolve, reject) => {
+    call.upload.onprogress = ({ loaded }) => onProgress(offset + loaded);
+    call.onload = () => {
+      if (call.status < 300) return resolve(stand(place, { get: (name) => call.getResponseHeader(name) }));
+      let problem = {};
+      try {
+        problem = JSON.parse(call.responseText);
+      } catch { /* a proxy's own error page */ }
+      return reject(new ApiError(problem, call.status));
+    };
+    call.onerror = () => reject(unreachable());
+    call.onabort = () => reject(cancelled());
+  });
+  call.open("PATCH", place);
+  for (const [name, value] of Object.entries({ ...VERSION, "Upload-Offset": String(offset), "Content-Type": "application/offset+octet-stream" })) call.setRequestHeader(name, value);
+  call.send(file.slice(offset, offset + PART));
+  return sent;
+}
+
+/** Whether going on later may help: nobody answered, or the server and this page disagree how far it is. */
+const mayGoOn = (error) => isAway(error) || [502, 503, 504].includes(error.status) || ["upload_offset", "upload_broken_off"].includes(error.code);
+
+/**
+ * Upload a file. `onProgress(loaded, away)` hears of the bytes that came, and whether the server is
+ * away at present. Returns `{ done, cancel }`; `done` resolves to the clip's id.
+ */
+export function upload(file, onProgress) {
+  let call = null;
+  let place = null;
+  let came = 0; // bytes, as far as is known
+  let wake = () => {};
+  let gone = false;
+
+  async function run() {
+    let at = null;
+    let pause = FIRST_PAUSE;
+    while (!at?.clip) {
+      if (gone) throw cancelled();
+      try {
+        at ??= await resume(file);
+        ({ place } = at);
+        came = at.offset;
+        if (at.clip) break;
+        call = new XMLHttpRequest();
+        at = await send(call, file, at, (loaded) => onProgress(loaded, false));
+        pause = FIRST_PAUSE;
+      } catch (error) {
+        if (!mayGoOn(error)) throw error;
+        onProgress(came, true);
+        at = null;
+        await new Promise((resolve) => { wake = resolve; setTimeout(resolve, pause); });
+        pause = Math.min(LONGEST_PAUSE, 2 * pause);
+      }
+    }
+    keep(file, null);
+    return at.clip;
+  }
+
+  return {
+    done: run(),
+    cancel() {
+      gone = true;
+      wake();
+      call?.abort();
+      keep(file, null);
+      if (place) ask("DELETE", place).catch(() => {}); // The server forgets it by itself, a day later.
+    },
+  };
+}

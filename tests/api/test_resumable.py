@@ -1,0 +1,150 @@
+"""Uploads that go on where a lost connection or a stopped server left them."""
+
+from __future__ import annotations
+
+import base64
+import os
+import socket
+from datetime import timedelta
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.settings import Settings
+from app.store import UploadStore
+from app.store.models import now
+from tests.api.running import Running, assert_problem, running, until
+from tests.api.test_clips import CLIPS, assert_nothing_kept
+
+UPLOADS = "/api/v1/uploads"
+TUS = {"Tus-Resumable": "1.0.0"}
+PART = TUS | {"Content-Type": "application/offset+octet-stream"}
+
+
+def begun(client: httpx.Client, size: int, name: str = "dive.mp4") -> str:
+    """Begin an upload, and return its path."""
+    metadata = f"filename {base64.b64encode(name.encode()).decode()},filetype dmlkZW8="
+    headers = TUS | {"Upload-Length": str(size), "Upload-Metadata": metadata}
+    answer = client.post(UPLOADS, headers=headers)
+    assert answer.status_code == 201, answer.text
+    return str(answer.headers["location"])
+
+
+def sent(client: httpx.Client, place: str, offset: int, content: bytes) -> httpx.Response:
+    return client.patch(place, headers=PART | {"Upload-Offset": str(offset)}, content=content)
+
+
+def offset_of(client: httpx.Client, place: str) -> int:
+    answer = client.head(place, headers=TUS)
+    assert answer.status_code == 200
+    assert answer.headers["tus-resumable"] == "1.0.0"
+    return int(answer.headers["upload-offset"])
+
+
+def broken_off(server: Running, place: str, content: bytes, length: int) -> None:
+    """Send the beginning of a part of `length` bytes, and vanish."""
+    with socket.create_connection(("127.0.0.1", server.port)) as connection:
+        head = (
+            f"PATCH {place} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+            f"Tus-Resumable: 1.0.0\r\nUpload-Offset: 0\r\n"
+            f"Content-Type: {PART['Content-Type']}\r\nContent-Length: {length}\r\n\r\n"
+        )
+        connection.sendall(head.encode() + content)
+        with httpx.Client(base_url=server.address, timeout=60) as client:
+            until(lambda: offset_of(client, place) > 0)
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+def test_the_last_part_makes_the_clip(client: httpx.Client, small_clip: Path, parts: int) -> None:
+    content = small_clip.read_bytes()
+    place = begun(client, len(content), "../größer.mp4")
+    step = -(-len(content) // parts)
+    for offset in range(0, len(content), step):
+        assert offset_of(client, place) == offset
+        answer = sent(client, place, offset, content[offset : offset + step])
+        assert answer.status_code == 204
+    clip = answer.headers["content-location"]
+    assert client.get(clip).json()["name"] == "größer.mp4"
+    assert client.get(f"{clip}/video").content == content
+    # Who lost the last answer asks again, and hears that all is done.
+    finished = client.head(place, headers=TUS)
+    assert finished.headers["content-location"] == clip
+    assert finished.headers["upload-offset"] == str(len(content))
+
+
+def test_a_lost_connection_and_a_restart_lose_nothing_that_came(
+    settings: Settings, small_clip: Path
+) -> None:
+    content = small_clip.read_bytes()
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        place = begun(client, len(content))
+        half = len(content) // 2
+        broken_off(server, place, content[:half], len(content))
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        came = offset_of(client, place)
+        assert 0 < came <= half
+        clip = sent(client, place, came, content[came:]).headers["content-location"]
+        assert client.get(f"{clip}/video").content == content
+        assert [each["name"] for each in client.get(CLIPS).json()] == ["dive.mp4"]
+
+
+def test_what_is_no_video_is_refused_at_the_end_and_forgotten(
+    client: httpx.Client, settings: Settings
+) -> None:
+    place = begun(client, 5)
+    assert_problem(sent(client, place, 0, b"hello"), 415, "unsupported_media_type")
+    assert client.head(place, headers=TUS).status_code == 404
+    assert_nothing_kept(client, settings)
+
+
+def test_an_upload_that_is_given_up_is_forgotten(client: httpx.Client, settings: Settings) -> None:
+    place = begun(client, 100)
+    sent(client, place, 0, b"beginning")
+    assert client.delete(place, headers=TUS).status_code == 204
+    assert list((settings.data_dir / "uploads").iterdir()) == []
+    assert_problem(client.delete(place, headers=TUS), 404, "not_found")
+
+
+def test_a_part_for_another_place_is_refused(client: httpx.Client) -> None:
+    place = begun(client, 100)
+    problem = assert_problem(sent(client, place, 7, b"x"), 409, "upload_offset")
+    assert "0 bytes have come" in str(problem["detail"])
+
+
+def test_more_than_was_said_is_refused(client: httpx.Client) -> None:
+    place = begun(client, 3)
+    assert_problem(sent(client, place, 0, b"four"), 413, "too_large")
+
+
+def test_a_file_that_is_too_large_is_refused_before_it_comes(
+    client: httpx.Client, settings: Settings
+) -> None:
+    headers = TUS | {"Upload-Length": str(settings.max_clip_bytes + 1)}
+    assert_problem(client.post(UPLOADS, headers=headers), 413, "too_large")
+
+
+def test_another_version_or_type_is_refused_and_ours_is_told(client: httpx.Client) -> None:
+    place = begun(client, 3)
+    assert_problem(client.post(UPLOADS, headers={"Upload-Length": "3"}), 412, "tus_version")
+    assert_problem(
+        client.patch(place, headers=TUS | {"Upload-Offset": "0"}), 415, "unsupported_media_type"
+    )
+    told = client.options(UPLOADS).headers
+    assert told["tus-version"] == "1.0.0"
+    assert told["tus-extension"] == "creation,termination"
+
+
+@pytest.mark.parametrize("name", ["none", "..%2Fstudio.db", "0" * 32])
+def test_an_upload_that_is_not_there_is_404(client: httpx.Client, name: str) -> None:
+    assert client.head(f"{UPLOADS}/{name}", headers=TUS).status_code == 404
+
+
+def test_what_nobody_goes_on_with_is_removed_after_a_while(tmp_path: Path) -> None:
+    store = UploadStore(tmp_path)
+    old, fresh = store.create("old.mp4", 3), store.create("fresh.mp4", 3)
+    long_ago = (now() - timedelta(days=3)).timestamp()
+    for path in tmp_path.glob(f"{old.id}*"):
+        os.utime(path, (long_ago, long_ago))
+    assert store.purge(now() - timedelta(days=1)) == 1
+    assert {path.stem for path in tmp_path.iterdir()} == {fresh.id}
