@@ -74,7 +74,9 @@ def test_a_bag_comes_out_as_the_same_gestures_as_the_clip_itself(
             "mcap" if storage == "mcap" else "sqlite3",
         )
         page = open_page({"language": library.language}, scene=False)
-        drop(page, file_of(folder) if storage == "mcap" else zipped(folder))
+        bag = file_of(folder) if storage == "mcap" else zipped(folder)
+        drop(page, bag)
+        expect(page.locator("#clip-name")).to_have_text(bag.name)
         expect(page.get_by_role("button", name=re.compile("^Take 3"))).to_be_visible()
         from_bag = clip_shown(page)
         assert takes_of(client, from_bag) == takes_of(client, itself)
@@ -151,7 +153,9 @@ def test_pictures_in_a_bag_are_read_like_the_clip_they_come_from(
         content = compressed(frame.image, ".jpg", stamp)
         rows.append(("/camera/image/compressed", content, stamp + DELAY))
     page = open_page({"language": language["id"]}, scene=False)
-    drop(page, file_of(write_bag(tmp_path / "dive", rows)))
+    bag = file_of(write_bag(tmp_path / "dive", rows))
+    drop(page, bag)
+    expect(page.locator("#clip-name")).to_have_text(bag.name)
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_be_visible(
         timeout=EXTRACTION_MS
     )
