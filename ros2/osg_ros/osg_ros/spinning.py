@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from typing import Final
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import TransitionCallbackReturn
+from rclpy.signals import SignalHandlerOptions
 
 from osg_ros.managed_node import ManagedNode
 
 NOT_STARTED = 1
 """Exit code where a node that shall start by itself could not; the log says why."""
+
+LONGEST_WAIT: Final = 0.5
+"""Seconds until a signal is noticed while nothing happens."""
 
 
 def start(node: ManagedNode) -> bool:
@@ -42,11 +49,26 @@ def running(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
     finally:
         executor.shutdown()
         for node in nodes:
-            if rclpy.ok():
-                node.trigger_shutdown()
-            else:
-                node.on_shutdown(None)
+            node.trigger_shutdown()
             node.destroy_node()
+
+
+@contextmanager
+def told_to_end() -> Iterator[threading.Event]:
+    """Give what is set by SIGINT and SIGTERM.
+
+    ROS's own handlers would take the topics away before a node could say that it is inactive.
+    """
+    ending = threading.Event()
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in numbers}
+    for number in numbers:
+        signal.signal(number, lambda *_: ending.set())
+    try:
+        yield ending
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
@@ -58,11 +80,13 @@ def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
         Makes the nodes once ROS is initialised.
 
     """
-    rclpy.init()
-    with running(make()) as executor:
-        nodes: Sequence[ManagedNode] = executor.get_nodes()
-        if not all([start(node) for node in nodes]):
-            sys.exit(NOT_STARTED)
-        with suppress(KeyboardInterrupt, ExternalShutdownException):
-            executor.spin()
-    rclpy.try_shutdown()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        nodes = make()
+        with told_to_end() as ending, running(nodes) as executor:
+            if not all([start(node) for node in nodes]):
+                sys.exit(NOT_STARTED)
+            while not ending.is_set():
+                executor.spin_once(timeout_sec=LONGEST_WAIT)
+    finally:
+        rclpy.try_shutdown()

@@ -44,7 +44,7 @@ def bench(domain: int) -> Iterator[Bench]:
         rclpy.try_shutdown()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def language_file() -> Path:
     """Return a sample language: circle, wedge and three."""
     return LANGUAGE

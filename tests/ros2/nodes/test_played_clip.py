@@ -1,0 +1,158 @@
+"""A clip played into nodes of other processes is recognised as the file is."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from osg_interfaces.msg import GestureRecognition, Hands
+from sensor_msgs.msg import Image
+
+from app.recognition.video import read_frames
+from osg_ros.pictures import picture_message
+from osg_ros.stamps import nanoseconds_of, stamp_of
+from tests.ros2 import workspace
+from tests.ros2.nodes.bench import RELIABLE, Bench
+from tests.ros2.nodes.keypoint_messages import stamped
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("installed_models")]
+
+SEPARATE = ("pose_node", "hand_node", "recognition_node")
+TOGETHER = ("gesture_process",)
+
+PARAMETERS = """
+/**:
+  ros__parameters:
+    language: {language}
+    threads: 1
+    diagnostic_period: 0.2
+    qos_overrides:
+      /image.subscription.reliability: reliable
+      /body_keypoints.publisher.reliability: reliable
+      /body_keypoints.subscription.reliability: reliable
+      /hands.publisher.reliability: reliable
+      /hands.subscription.reliability: reliable
+"""
+"""No picture may be lost: this is about what is recognised, not about what a network does."""
+
+
+@pytest.fixture(scope="module")
+def clip(sample_clips: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a clip of the sample's every other frame, at half its size: a quarter of the work."""
+    path = tmp_path_factory.mktemp("clips") / "circle.mp4"
+    with read_frames(sample_clips / "circle-test-1.mp4") as frames, av.open(path, "w") as made:
+        stream = made.add_stream("mpeg4", rate=1000)
+        stream.width, stream.height, stream.bit_rate = 320, 240, 2_000_000
+        for frame in frames:
+            if frame.index % 2 == 0:
+                picture = av.VideoFrame.from_ndarray(frame.image).reformat(320, 240, "yuv420p")
+                picture.pts = round(frame.time * 1000)
+                made.mux(stream.encode(picture))
+        made.mux(stream.encode(None))
+    return path
+
+
+@pytest.fixture(scope="module")
+def recognised(clip: Path, language_file: Path) -> list[dict[str, Any]]:
+    """Return the takes that `osg-studio recognize --json` tells of the clip."""
+    asked = ["recognize", str(clip), "--language", str(language_file), "--json"]
+    command = [sys.executable, "-m", "app", *asked]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=workspace.ROOT)
+    takes: list[dict[str, Any]] = json.loads(said.stdout)["takes"]
+    return takes
+
+
+@contextmanager
+def process(executable: str, environment: dict[str, str], parameters: Path) -> Iterator[None]:
+    """Run an executable of the package as `ros2 run` does."""
+    started = [
+        sys.executable,
+        "-c",
+        f"from osg_ros.{executable} import main; main()",
+        "--ros-args",
+        "--params-file",
+        str(parameters),
+    ]
+    running = subprocess.Popen(started, env=environment)
+    try:
+        yield
+    finally:
+        running.terminate()
+        assert running.wait(timeout=60) == 0
+
+
+@pytest.mark.parametrize("executables", [TOGETHER, SEPARATE], ids=["one process", "three"])
+def test_label_by_label_and_stamp_by_stamp(
+    bench: Bench,
+    domain: int,
+    clip: Path,
+    language_file: Path,
+    tmp_path: Path,
+    recognised: list[dict[str, Any]],
+    executables: Sequence[str],
+) -> None:
+    parameters = tmp_path / "parameters.yaml"
+    parameters.write_text(PARAMETERS.format(language=language_file), encoding="utf-8")
+    seen = bench.heard(Hands, "hands")
+    said = bench.heard(GestureRecognition, "recognition")
+    pictures = bench.probe.create_publisher(Image, "image", RELIABLE)
+    with ExitStack() as running:
+        for executable in executables:
+            running.enter_context(process(executable, workspace.environment(domain), parameters))
+        warm_up(bench, pictures)
+        play(bench, clip, pictures, seen)
+        bench.wait(lambda: bool(said), "recognition")
+    assert len(said) == len(recognised) == 1
+    for message, take in zip(said, recognised, strict=True):
+        assert message.label == take["label"] == "circle"
+        assert message.nearest == take["nearest"]
+        assert message.confidence == pytest.approx(take["confidence"], abs=1e-6)
+        assert json.loads(message.report)["votes"] == take["votes"]
+        assert nanoseconds_of(message.start) == stamped(take["start"])
+        assert nanoseconds_of(message.end) == stamped(take["end"])
+
+
+def warm_up(bench: Bench, pictures: Any) -> None:
+    """Send black pictures of an hour ago until the last of the nodes has heard of one.
+
+    Processes find each other one by one, and what is sent before is lost.
+    """
+    reports = bench.heard(DiagnosticArray, "/diagnostics")
+    black = np.zeros((240, 320, 3), dtype=np.uint8)
+    for number in itertools.count():
+        message = picture_message(black)
+        message.header.stamp = stamp_of(stamped(number - 3600))
+        pictures.publish(message)
+        news = len(reports) + 3
+        bench.wait(lambda news=news: len(reports) >= news, "diagnostics")  # type: ignore[misc]
+        if any(recogniser_heard(report.status[0]) for report in reports):
+            return
+
+
+def recogniser_heard(status: DiagnosticStatus) -> bool:
+    """Tell whether the node that recognises has worked on a picture."""
+    values = {value.key: value.value for value in status.values}
+    return status.name in ("/gesture_node", "/recognition_node") and values["messages"] != "0"
+
+
+def play(bench: Bench, clip: Path, pictures: Any, seen: list[Hands]) -> None:
+    """Send the clip's frames with their timestamps, each when the one before was looked at."""
+    with read_frames(clip) as frames:
+        for frame in frames:
+            message = picture_message(frame.image)
+            message.header.stamp = stamp_of(stamped(frame.time))
+            pictures.publish(message)
+            bench.wait(
+                lambda: bool(seen) and seen[-1].header.stamp == message.header.stamp,  # noqa: B023
+                f"hands in the picture at {frame.time:g} s",
+            )
