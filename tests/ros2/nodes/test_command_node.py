@@ -9,7 +9,7 @@ from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRec
 from std_msgs.msg import Header
 
 from osg_ros.command_node import CommandNode
-from osg_ros.stamps import stamp_of
+from osg_ros.stamps import nanoseconds_of, stamp_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 
 
@@ -32,11 +32,11 @@ class Robot:
         )
         self.node = bench.active(CommandNode, **rules)
         bench.wait(lambda: self.node.facts()["language id"] == "id", "language")
+        bench.wait(lambda: bool(self.states), "first state")
         self._recognitions = bench.speaker(GestureRecognition, "recognition")
 
     def show(self, label: str, *, seconds_ago: float = 0.0, **other: Any) -> str:
         """Show a gesture, and return what the robot says about it."""
-        told = len(self.states)
         now = self.bench.probe.get_clock().now().nanoseconds - round(seconds_ago * 1e9)
         message = GestureRecognition(
             header=Header(stamp=stamp_of(now)),
@@ -50,7 +50,9 @@ class Robot:
         for name, value in other.items():
             setattr(message, name, value)
         self._recognitions.publish(message)
-        self.bench.wait(lambda: len(self.states) > told, "answer")
+        self.bench.wait(
+            lambda: self.states[-1].header.stamp == message.header.stamp, f"answer to {label}"
+        )
         return str(self.states[-1].reason)
 
 
@@ -59,7 +61,8 @@ def test_a_command_comes_with_the_repetition_and_its_stamp(bench: Bench) -> None
     assert robot.show("circle") == "repeat 'circle' to confirm: photo"
     asked = robot.states[-1]
     assert (asked.state, asked.label) == (CommandState.CONFIRMING, "circle")
-    assert asked.deadline.sec - asked.header.stamp.sec == 20
+    seconds = nanoseconds_of(asked.deadline) - nanoseconds_of(asked.header.stamp)
+    assert seconds / 1e9 == pytest.approx(20.0)
     assert robot.show("circle") == "'circle': photo"
     bench.wait(lambda: bool(robot.commands), "command")
     (command,) = robot.commands
