@@ -83,6 +83,7 @@ export const languages = {
   duplicate: (language) => request("POST", `/languages/${id(language)}/duplicate`),
   revisions: (language) => request("GET", `/languages/${id(language)}/revisions`),
   compare: (language, older, newer) => request("GET", `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`),
+  phrases: ({ id: language, revision }, gestures, paused) => request("GET", `/languages/${id(language)}/phrases?${new URLSearchParams([["revision", revision], ["then", paused ? "pause" : "wait"], ...gestures.map((label) => ["gesture", label])])}`),
   check: (language, revision) => request("GET", `/languages/${id(language)}/check?revision=${revision}`),
   cancelCheck: (language, revision) => request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
   contrast: (language, one, other, revision) => request("GET", `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`),

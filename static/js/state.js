@@ -1,7 +1,7 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
 const IN_URL = { view: "view", source: "source", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition", joint: "joint",
-  panel: "panel", older: "older", newer: "newer", pair: "pair", cell: "cell" };
+  panel: "panel", older: "older", newer: "newer", pair: "pair", cell: "cell", phrase: "phrase", shown: "shown", paused: "paused" };
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 // `returns` counts how often the server came back: what could not be asked meanwhile is asked then.
@@ -9,7 +9,7 @@ const values = {
   view: null, source: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
   timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, connected: null, returns: 0, loaded: false, health: null, checking: null, recognised: null,
   clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null, joint: null,
-  panel: null, older: null, newer: null, pair: null, cell: null,
+  panel: null, older: null, newer: null, pair: null, cell: null, phrase: null, shown: null, paused: null,
 };
 
 const listeners = [];

@@ -12,6 +12,7 @@ const VIEWS = [
   { name: FIRST, title: "Studio" },
   { name: "languages", title: "Languages", load: () => import("./languages/view.js") },
   { name: "gesture", title: "Gesture", load: () => import("./editor/view.js"), passing: true },
+  { name: "phrases", title: "Phrases", load: () => import("./phrases/view.js") },
   { name: "health", title: "Health", load: () => import("./health/view.js") },
   { name: "live", title: "Live", load: () => import("./live/view.js") },
 ];

@@ -9,12 +9,13 @@ import { attempt, toast } from "../toasts.js";
 const FORMATS = {
   "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio robot --language ${file} --source 0` },
   "osg-reference": { title: "Published OSG format", text: "For the published ROS node: images and salient keypoints only. Movement, thresholds and commands are left out.", command: (file) => `osg-studio convert ${file} language.json` },
+  proteus: { title: "PROTEUS language definition", text: "The gestures as input symbols, for a robot that answers by PROTEUS: names and kinds only.", suffix: ".ldf", command: (file) => `osg-studio convert language.json ${file}` },
 };
 
 const readable = (names) => names.map((name) => name.replaceAll("_", " ")).join(", ");
 
 /** A name that a shell takes without quotes. */
-const fileName = (name) => `${name.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}.json`;
+const fileName = (name, { suffix = ".json" }) => `${name.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}${suffix}`;
 
 function choice({ format, bytes: size }, chosen, onchange) {
   const { title, text } = FORMATS[format];
@@ -59,11 +60,12 @@ export async function openExport() {
   if (!contents) return;
   const dialog = byId("dialog");
   let format = contents.files[0].format;
-  const name = fileName(contents.name);
-  const command = () => FORMATS[format].command(name);
+  const name = () => fileName(contents.name, FORMATS[format]);
+  const command = () => FORMATS[format].command(name());
   const { copy, code } = commandLine(command);
-  const download = h("a", { className: "button primary", download: name }, "Download");
+  const download = h("a", { className: "button primary" }, "Download");
   const show = () => {
+    download.download = name();
     download.href = api.languages.exportUrl(language.id, format);
     code.textContent = command();
   };

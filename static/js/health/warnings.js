@@ -1,6 +1,7 @@
 // What was found, the worst first, each with what would help and where to do it.
 
 import { h } from "../dom.js";
+import { go } from "../views.js";
 import { compare, editLink } from "./links.js";
 import { told } from "./report.js";
 
@@ -12,7 +13,7 @@ function remedy({ gesture, text, before, after }) {
     editLink(gesture));
 }
 
-function warning({ gestures, message, below_bar: below, remedies }) {
+function warning({ code, gestures, message, below_bar: below, remedies }) {
   const mended = new Set(remedies.map((each) => each.gesture));
   return h("li", { className: `finding ${below ? "below" : "note"}` },
     h("span", { className: "mark", "aria-hidden": "true" }, below ? "!" : "i"),
@@ -21,6 +22,7 @@ function warning({ gestures, message, below_bar: below, remedies }) {
       remedies.length ? h("p", { className: "dim remedies-title" }, "What would help, and how often the two would be confused then") : null,
       remedies.length ? h("ul", { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` }, remedies.map(remedy)) : null,
       h("div", { className: "finding-links" },
+        code?.startsWith("phrases_") ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases") : null,
         gestures.length === 2 ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two") : null,
         gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)))));
 }

@@ -1,0 +1,70 @@
+// One phrase as a card: at a glance, or open with its form.
+
+import { h, icon } from "../dom.js";
+import { read, written } from "../editor/command.js";
+import { plural } from "../format.js";
+import { state, update } from "../state.js";
+import { toast } from "../toasts.js";
+import { tellDone } from "../undo.js";
+import { sequence } from "./chips.js";
+import { textField, tool } from "./fields.js";
+import { inPhrase, rememberName, save, slotsOf } from "./grammar.js";
+import { addButtons, partList } from "./parts.js";
+import { found, showExample } from "./trial.js";
+
+const put = (phrase, title, change) => save(title, inPhrase(phrase.name, (whole) => ({ ...whole, ...change })));
+
+async function rename(phrase, text) {
+  const name = text.trim();
+  const kept = await put(phrase, `Rename to ${name}`, { name });
+  if (kept) {
+    rememberName(phrase.name, name);
+    update({ phrase: name });
+  }
+  return kept;
+}
+
+async function remove(phrase) {
+  const title = `Deletion of ${phrase.name}`;
+  if (!await save(title, (base) => ({ ...base, phrases: base.phrases.filter(({ name }) => name !== phrase.name) }))) return;
+  if (state.phrase === phrase.name) update({ phrase: null });
+  tellDone("Phrase deleted", phrase.name);
+}
+
+function command(phrase, text) {
+  const { command: value, problem } = read(text);
+  if (!problem) return put(phrase, "Command", { command: value });
+  toast("The command is not saved", problem, { kind: "error" });
+  return false;
+}
+
+function form(phrase, place) {
+  const slots = slotsOf(phrase).map((slot) => `{${slot.slot}}`);
+  const hint = slots.length
+    ? `${slots.join(" and ")} ${slots.length > 1 ? "stand for the values" : "stands for the value"} shown. In the spoken text, put what is left out with a slot in [ ].`
+    : "Add a slot to tell the robot how often, how deep or which way.";
+  const id = `phrase-${place}`;
+  return h("div", { className: "phrase-form" },
+    textField({ id: `${id}-name`, label: "Name", value: phrase.name, maxLength: 80, commit: (text) => rename(phrase, text) }),
+    h("div", { className: "phrase-parts" }, h("h3", {}, "What is shown"), partList(phrase, [], phrase.parts), addButtons(phrase)),
+    textField({ id: `${id}-says`, label: "Spoken back", value: phrase.says, placeholder: "the name and the values", maxLength: 2000, commit: (text) => put(phrase, "Spoken text", { says: text.trim() }) }),
+    textField({ id: `${id}-command`, label: "Command for the robot", value: written(phrase.command), placeholder: "words, or a JSON object", multiline: true, commit: (text) => command(phrase, text) }),
+    h("p", { className: "dim" }, hint));
+}
+
+/** Draw a phrase. */
+export function phraseCard(phrase, place) {
+  const open = state.phrase === phrase.name;
+  const doubts = found()?.ambiguities.filter(({ phrases }) => phrases.includes(phrase.name)) ?? [];
+  const id = `phrase-${place}`;
+  return h("li", { className: `phrase${open ? " open" : ""}` },
+    h("div", { className: "phrase-head" },
+      h("button", { type: "button", className: "phrase-open", id: `${id}-open`, "aria-expanded": String(open), onclick: () => update({ phrase: open ? null : phrase.name }) },
+        icon("chevron"), h("b", {}, phrase.name)),
+      sequence(phrase),
+      doubts.length ? h("span", { className: "doubt" }, h("span", { className: "mark", "aria-hidden": "true" }, "!"), plural(doubts.length, "ambiguity").replace("ambiguitys", "ambiguities")) : null,
+      h("button", { type: "button", id: `${id}-try`, "aria-label": `Try ${phrase.name}`, onclick: () => showExample(phrase.name) }, "Try"),
+      tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase))),
+    open ? form(phrase, place) : null);
+}
+

@@ -1,0 +1,100 @@
+// The phrases of the language: made in a form, checked as they change, and tried by clicking gestures.
+
+import { h, icon } from "../dom.js";
+import { plural } from "../format.js";
+import { follow, state, update } from "../state.js";
+import { tellDone } from "../undo.js";
+import { go } from "../views.js";
+import { redraw } from "./fields.js";
+import { framePanel } from "./frame.js";
+import { followRefusals, free, grammar, save, withPhrase } from "./grammar.js";
+import { phraseCard } from "./phrase.js";
+import { slotTypesPanel } from "./slot-types.js";
+import { followFound, found, show, trialPanel } from "./trial.js";
+
+async function addPhrase() {
+  const name = free("phrase", grammar().phrases.map((each) => each.name));
+  if (await save(`New ${name}`, (base) => withPhrase(base, name))) {
+    update({ phrase: name });
+    document.getElementById(`phrase-${grammar().phrases.length - 1}-name`)?.select();
+  }
+}
+
+async function takeOut() {
+  if (!await save("Phrases taken out", () => null)) return;
+  update({ phrase: null, shown: null, paused: null });
+  tellDone("Phrases taken out", "Every gesture stands for itself.");
+}
+
+/** What is ambiguous, each with the message that shows it. */
+function ambiguities() {
+  const told = found()?.ambiguities ?? [];
+  if (!told.length) return null;
+  return h("ul", { className: "findings", "aria-label": "Ambiguities" }, told.map(({ message, gestures }, index) => h("li", { className: "finding below" },
+    h("span", { className: "mark", "aria-hidden": "true" }, "!"),
+    h("div", { className: "finding-text" }, h("p", {}, message)),
+    h("button", { type: "button", id: `ambiguity-${index}-try`, "aria-label": `Try: ${gestures.join(", ")}`, onclick: () => show(gestures) }, "Try"))));
+}
+
+function verdict() {
+  const view = found();
+  if (!view || !grammar().phrases.length) return null;
+  const count = view.ambiguities.length;
+  return h("p", { className: `verdict ${count ? "unwell" : "well"}`, role: "status" },
+    h("span", { className: "mark", "aria-hidden": "true" }, count ? "!" : "\u2713"),
+    h("b", {}, count ? `${count} ${count === 1 ? "ambiguity" : "ambiguities"}` : "Nothing ambiguous"));
+}
+
+function beginning() {
+  return h("div", { className: "phrases-empty" },
+    h("p", {}, h("b", {}, "No phrases yet")),
+    h("p", { className: "dim" }, "Without phrases every gesture stands for itself. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. It is opened and closed by a gesture of your choice, so that the robot obeys nothing by accident."),
+    h("button", { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase }, icon("plus"), "Add the first phrase"));
+}
+
+function noGestures() {
+  return h("div", { className: "phrases-empty" },
+    h("p", {}, h("b", {}, state.gestures ? "No gestures to make phrases of" : "No language yet")),
+    h("p", { className: "dim" }, "Save a gesture from a clip first."),
+    h("button", { type: "button", className: "primary", onclick: () => go("studio") }, "To the clips"));
+}
+
+function list() {
+  const { phrases } = grammar();
+  return h("section", { className: "phrase-section", "aria-labelledby": "phrases-title" },
+    h("div", { className: "panel-head" }, h("h2", { id: "phrases-title" }, "Phrases"), h("small", { className: "dim" }, plural(phrases.length, "phrase")),
+      h("span", { className: "spacer" }), h("button", { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase }, icon("plus"), "New phrase")),
+    h("ul", { className: "phrase-list", "aria-label": "Phrases" }, phrases.map(phraseCard)));
+}
+
+/** Build the view. */
+export function open(section) {
+  const title = h("h1");
+  const says = h("div", { className: "verdict-place" });
+  const form = h("div", { className: "phrase-editor" });
+  const trial = trialPanel();
+  const columns = h("div", { className: "phrase-columns" }, form, trial);
+  const none = h("div");
+  const draw = () => {
+    const { gestures, loaded, view } = state;
+    if (view !== "phrases" || (!gestures && !loaded)) return;
+    title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
+    const able = Boolean(gestures?.gestures.length);
+    columns.hidden = !able;
+    none.hidden = able;
+    none.replaceChildren(...(able ? [] : [noGestures()]));
+    says.replaceChildren(...[able ? verdict() : null].filter(Boolean));
+    if (!able) return;
+    trial.hidden = !grammar().phrases.length;
+    columns.classList.toggle("alone", trial.hidden);
+    if (trial.hidden) redraw(form, beginning(), state.gestures.grammar ? slotTypesPanel() : null);
+    else {
+      redraw(form, ambiguities(), list(), framePanel(), slotTypesPanel(),
+        h("div", {}, h("button", { type: "button", className: "quiet", id: "take-out", onclick: takeOut }, "Take all phrases out")));
+    }
+  };
+  section.append(h("div", { className: "phrases-page" }, h("div", { className: "page-head" }, title, h("span", { className: "spacer" }), says), none, columns));
+  followFound(draw);
+  followRefusals(draw);
+  follow(["view", "gestures", "phrase", "loaded"], draw);
+}
