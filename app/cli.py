@@ -47,6 +47,7 @@ from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.spotting import Spotter
 from app.robot_command import robot
+from app.session_file import named_recognitions, save_session
 from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
 DEFAULT_PROFILE = "full"
@@ -184,6 +185,10 @@ def recognize(
         str | None,
         typer.Option(help="Of a dive recording with several, the topic to look at."),
     ] = None,
+    mcap: Annotated[
+        Path | None,
+        typer.Option(help="Write the session to this MCAP file, which opens in Foxglove."),
+    ] = None,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -205,6 +210,9 @@ def recognize(
         results = spotted_takes(spotter, recording, span)
     else:
         results = [(take, recognizer.recognize(take.poses)) for take in read.takes(span)]
+    if mcap is not None:
+        told = named_recognitions(spoken, expected, results)
+        save_session(mcap, path, topic, recording, told)
     takes = [take for take, _ in results]
     explanations = [
         explain(Situation.of_take(recognizer, take), expected)

@@ -10,6 +10,7 @@ import pytest
 from app.recognition import Language
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import Row, file_of, our_rows, published_rows, write_bag, zipped
+from tests.bags.sessions import checked
 from tests.command_line import OsgStudio
 
 
@@ -59,6 +60,21 @@ def test_the_topic_is_named_where_there_are_several(
         arguments = (bag, "--language", language, "--topic", f"/{diver}/pose_keypoints", "--json")
         ended = osg_studio("recognize", *arguments)
         assert [take["label"] for take in json.loads(ended.out)["takes"]] == [label]
+
+
+def test_the_session_is_written_as_mcap(
+    tmp_path: Path, osg_studio: OsgStudio, language: Path
+) -> None:
+    bag = write_bag(tmp_path / "dive", published_rows(recording_of("line", "circle")))
+    session = tmp_path / "session.mcap"
+    ended = osg_studio("recognize", bag, "--language", language, "--mcap", session)
+    assert ended.code == 0, ended.error
+    assert "opens in Foxglove" in ended.error
+    found = checked(session)
+    assert [content["label"] for _, content in found["/recognitions"]] == ["line", "circle"]
+    assert len(found["/video"]) == len(found["/pose"]) > 0
+    left = {each.name for each in tmp_path.iterdir()}
+    assert left == {"circle", "dive", "line", "session.mcap", "shapes.json"}
 
 
 def test_what_is_no_bag_is_told_in_one_line(

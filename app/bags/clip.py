@@ -65,6 +65,22 @@ def record_bag(
         return _watched(bag, chosen, video, estimator, progress, observer, limits, water)
 
 
+def write_video(path: str | Path, topic: str | None, video: Path) -> None:
+    """Write the copy that players show of a topic, without looking for landmarks in it.
+
+    See `record_bag`, also for what it raises.
+    """
+    with opened_bag(path) as bag:
+        chosen = bag.topic(topic)
+        if chosen.use == "keypoints":
+            _shown(keypoint_recording(bag, chosen), video, None, None)
+            return
+        frames = BagFrames(bag, chosen)
+        with VideoFile(video, frames.info.width, frames.info.height) as file:
+            for frame in frames:
+                file.add(frame.image, frame.time)
+
+
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
     """Tell whether the topic that `record_bag` would take holds keypoints; raises as it does."""
     with opened_bag(path) as bag:

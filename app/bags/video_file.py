@@ -1,16 +1,21 @@
-"""A clip's video as the studio keeps it: H.264 in MP4, every frame at its own time."""
+"""Video written by us: H.264, every frame at its own time."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 import av
+import numpy as np
+from av.codec.context import CodecContext
+from av.video.codeccontext import VideoCodecContext
 from av.video.stream import VideoStream
 
 from app.recognition.estimation.base import Image
+from app.recognition.video import VideoFrame
 
 TICK = Fraction(1, 1_000_000)
 """Seconds: MP4 counts the time between frames in 32 bits, which in microseconds is an hour."""
@@ -18,6 +23,13 @@ TICK = Fraction(1, 1_000_000)
 QUALITY = {"crf": "18", "preset": "veryfast", "bf": "0"}
 """Of x264: 18 is where its losses stop being seen; no frames out of order, so that players that
 step do it exactly. The landmarks come from the recording's own pictures, not from this copy."""
+
+STREAM_QUALITY = "23"
+"""x264's own default: the copy in a session is to be looked at, not to be measured in."""
+
+KEY_FRAMES = "50"
+"""Frames from one that stands alone to the next: a player that jumps decodes two seconds at most,
+at the usual 25 a second."""
 
 
 class VideoFile:
@@ -60,3 +72,39 @@ class VideoFile:
         if error is None:
             self._container.mux(self._stream.encode())
         self._container.close()
+
+
+def packets(frames: Iterable[VideoFrame]) -> Iterator[tuple[float, bytes]]:
+    """Encode frames so that each can be sent alone, as Foxglove's ``CompressedVideo`` wants it.
+
+    An odd last row or column is left out, since H.264 stores even sizes.
+
+    Yields
+    ------
+    Seconds of a frame, and its packet: H.264 in Annex B, in order, with the parameter sets before
+    every key frame.
+
+    """
+    codec: VideoCodecContext | None = None
+    times: list[float] = []
+    for frame in frames:
+        height, width = (side // 2 * 2 for side in frame.image.shape[:2])
+        codec = codec or _stream_encoder(width, height)
+        image = np.ascontiguousarray(frame.image[:height, :width])
+        picture = av.VideoFrame.from_ndarray(image, format="rgb24")
+        picture.pts, picture.time_base = round(frame.time / TICK), TICK
+        times.append(frame.time)
+        for packet in codec.encode(picture):
+            yield times.pop(0), bytes(packet)
+    if codec is not None:
+        for packet in codec.encode(None):
+            yield times.pop(0), bytes(packet)
+
+
+def _stream_encoder(width: int, height: int) -> VideoCodecContext:
+    codec = CodecContext.create("libx264", "w")
+    assert isinstance(codec, VideoCodecContext)
+    codec.width, codec.height, codec.pix_fmt = width, height, "yuv420p"
+    codec.time_base = TICK
+    codec.options = {**QUALITY, "crf": STREAM_QUALITY, "tune": "zerolatency", "g": KEY_FRAMES}
+    return codec

@@ -60,6 +60,7 @@ export const clips = {
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
   chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
+  session: (clip) => `${BASE}/clips/${id(clip)}/session.mcap`,
   video: (clip) => `${BASE}/clips/${id(clip)}/video`,
 };
 

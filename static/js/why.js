@@ -120,6 +120,13 @@ function trialBar(trial, result) {
       h("button", { type: "button", onclick: () => discard(trial) }, lasting ? "Discard" : "Back to as it was")));
 }
 
+const shared = (href, title, note) => h("span", {}, h("a", { href, download: "" }, title), h("small", { className: "dim" }, ` ${note}`));
+
+/** The take for people without a studio, and the whole clip for the tools of a robot's team. */
+const shares = (result, why) => h("p", { className: "share" },
+  why ? shared(api.recognitions.analysisUrl(result.id), "Share as one file", "plays without a server") : null,
+  shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"));
+
 /** Draw why, under the take. */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
@@ -127,14 +134,15 @@ export function drawWhy({ why, result, trial }) {
   const asks = result && result.expected === null;
   box.hidden = !result || (!why && !asks && !trying);
   if (box.hidden) return box.replaceChildren();
-  if (asks && !trying) return box.replaceChildren(h("p", { className: "dim" }, "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help."));
+  if (asks && !trying) return box.replaceChildren(h("div", { className: "why-words" },
+    h("p", { className: "dim" }, "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help."), shares(result, null)));
   const remedies = why && !why.right ? why.counterfactuals : [];
   const words = [
     trying,
     why ? h("p", { className: "why-sentence" }, why.sentence) : null,
     remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
     why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
-    why ? h("p", { className: "share" }, h("a", { href: api.recognitions.analysisUrl(result.id), download: "" }, "Share as one file"), h("small", { className: "dim" }, " plays without a server")) : null,
+    result ? shares(result, why) : null,
   ];
   return box.replaceChildren(...[h("div", { className: "why-words" }, words), alignmentsOf(why)].filter(Boolean));
 }

@@ -24,6 +24,7 @@ from tests.bags.bag_files import (
     write_bag,
     zipped,
 )
+from tests.bags.sessions import checked
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
@@ -128,6 +129,21 @@ def test_the_topic_is_chosen_in_a_dialogue(
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_be_visible()
     expect(dialog).to_have_count(0)
     assert labels_of(library, clip_shown(page)) == ["circle"]
+
+    # What was seen and recognised leaves as a file that Foxglove opens.
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    why = page.get_by_role("region", name="Why")
+    with page.expect_download() as download:
+        why.get_by_role("link", name="Session as MCAP").click()
+    assert download.value.suggested_filename == "two-divers.mcap"
+    download.value.save_as(tmp_path / "session.mcap")
+    found = checked(tmp_path / "session.mcap")
+    assert [content["label"] for _, content in found["/recognitions"]] == ["circle", "circle"]
+    assert len(found["/video"]) == len(recording_of("circle").poses)
+    page.get_by_label("Expected").select_option("line")
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(why.get_by_role("link", name="Share as one file")).to_be_visible()
+    picture(page, "session-shared")
 
 
 def test_a_broken_bag_says_why_at_its_upload(open_page: OpenPage, tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ async def probe(clip: Path, settings: Settings) -> Probed | Failed:
 async def probe_bag(bag: Path, settings: Settings) -> BagProbed | Failed:
     """Look into a dive recording, in a process of its own."""
     with _scratch(bag.parent) as scratch:
-        command = [*scratch, "probe-bag", str(bag)]
+        command = [_place(scratch), "probe-bag", str(bag)]
         async with aclosing(_messages(command, settings, PROBE_BAG_SECONDS)) as messages:
             async for message in messages:
                 if isinstance(message, BagProbed | Failed):
@@ -86,11 +86,26 @@ async def extract_bag(
     """Extract a topic of a dive recording as `extract` does, and write its video."""
     chosen = [] if topic is None else [f"--topic={topic}"]
     with _scratch(bag.parent) as scratch:
-        command = [*scratch, "extract-bag", f"--water={settings.water}", *chosen]
+        command = [_place(scratch), "extract-bag", f"--water={settings.water}", *chosen]
         command += [str(bag), *files.arguments]
         async with aclosing(_extraction(command, settings)) as messages:
             async for message in messages:
                 yield message
+
+
+async def write_session(
+    wishes: bytes, session: Path, files: ClipFiles, settings: Settings
+) -> Finished | Failed:
+    """Write a clip's session as MCAP to `session`, in a process of its own."""
+    with _scratch(session.parent) as scratch:
+        wanted = scratch / "wishes.json"
+        await asyncio.to_thread(wanted.write_bytes, wishes)
+        command = [_place(scratch), "session", str(wanted), str(session), *files.arguments]
+        async with aclosing(_extraction(command, settings)) as messages:
+            async for message in messages:
+                if isinstance(message, Finished | Failed):
+                    return message
+    return _DECODER_FAILED
 
 
 async def _extraction(
@@ -107,11 +122,15 @@ async def _extraction(
 
 
 @contextlib.contextmanager
-def _scratch(folder: Path) -> Iterator[list[str]]:
-    """Give a worker the argument for a folder that goes even when the worker is killed."""
+def _scratch(folder: Path) -> Iterator[Path]:
+    """Give a worker a folder of its own, which goes even when the worker is killed."""
     # Beside the recording: on the same disk, and swept at the next start if this process dies.
     with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=folder) as made:
-        yield [f"--scratch={made}"]
+        yield Path(made)
+
+
+def _place(scratch: Path) -> str:
+    return f"--scratch={scratch}"
 
 
 async def _messages(

@@ -27,7 +27,8 @@ from app.settings import Settings
 from app.store import ClipStore, Job, JobStatus, JobStore, NotFound, StoreError
 
 MOST_PROBES = 2
-"""Received files looked into at the same time: a hundred uploads must not be as many processes."""
+"""Received files looked into, and sessions written, at the same time: a hundred uploads must not be
+as many processes."""
 
 logger = logging.getLogger(__name__)
 
@@ -117,6 +118,13 @@ class ExtractionRunner:
         async with self._probing:
             return await process.probe_bag(bag, self._settings)
 
+    async def write_session(self, clip_id: str, wishes: bytes, session: Path) -> Finished | Failed:
+        """Write a clip's session as MCAP, in a process of its own."""
+        async with self._probing:
+            return await process.write_session(
+                wishes, session, self._files(clip_id), self._settings
+            )
+
     async def cancel(self, job: Job) -> bool:
         """End a job that waits or runs; return whether it did."""
         cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
@@ -173,12 +181,7 @@ class ExtractionRunner:
             clip = (await run_in_threadpool(self._clips.get, job.clip_id)).clip
         except NotFound:
             return  # Deleted meanwhile; its job is about to be cancelled.
-        files = ClipFiles(
-            self._clips.video(clip.id),
-            self._clips.recording(clip.id),
-            self._clips.poster(clip.id),
-            self._clips.filmstrip(clip.id),
-        )
+        files = self._files(clip.id)
         if clip.from_bag:
             bag = self._clips.bag(clip.id)
             messages = process.extract_bag(bag, clip.topic, files, self._settings)
@@ -199,6 +202,15 @@ class ExtractionRunner:
                         await run_in_threadpool(
                             self._jobs.finish, job.id, failed, code=code, error=detail
                         )
+
+    def _files(self, clip_id: str) -> ClipFiles:
+        clips = self._clips
+        return ClipFiles(
+            clips.video(clip_id),
+            clips.recording(clip_id),
+            clips.poster(clip_id),
+            clips.filmstrip(clip_id),
+        )
 
     def _show(self, job: Job, progress: Progress) -> None:
         self._progress[job.id] = progress

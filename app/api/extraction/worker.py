@@ -94,6 +94,33 @@ def extract_bag(
     steps.save(recorded)
 
 
+def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report) -> None:
+    """Write a clip's session as MCAP, with the recognitions that the file `wanted` tells."""
+    from app.api.extraction.session_wishes import SessionWishes
+    from app.bags.session import write_session as write
+    from app.recognition.errors import VideoError
+    from app.recognition.recording import Recording
+    from app.recognition.video import probe as probe_video
+
+    video: Path | None = None
+    wishes = SessionWishes.model_validate_json(wanted.read_bytes())
+    reported = 0.0
+
+    def progress(done: int, total: int) -> None:
+        nonlocal reported
+        if (now := time.monotonic()) - reported >= PROGRESS_SECONDS:
+            reported = now
+            report(Progressed(stage="saving", done=done, total=total))
+
+    recording = Recording.load(files.recording)
+    with contextlib.suppress(VideoError):
+        probe_video(files.video)
+        video = files.video
+    named = [wish.named() for wish in wishes.recognitions]
+    write(session, recording, named, video=video, name=wishes.clip, progress=progress)
+    report(Finished(frames=len(recording.poses), warnings=()))
+
+
 class _Steps:
     """Takes the frames of a clip one by one, and reports how far the work is."""
 
@@ -212,18 +239,19 @@ def _arguments() -> argparse.Namespace:
         parser.add_argument(f"--{name}", type=int, default=0)
     parser.add_argument("--scratch", help="folder for what is unpacked")
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in ("probe", "probe-bag", "extract", "extract-bag"):
+    clip = ("clip", "recording", "poster", "filmstrip")
+    for command, paths in {
+        "probe": ("clip",),
+        "probe-bag": ("bag",),
+        "extract": clip,
+        "extract-bag": ("bag", *clip),
+        "session": ("wanted", "session", *clip),
+    }.items():
         taking = commands.add_parser(command)
-        if command.endswith("bag"):
-            taking.add_argument("bag", type=Path)
-        if command != "probe-bag":
-            taking.add_argument("clip", type=Path)
-        if command.startswith("extract"):
-            for name in ("recording", "poster", "filmstrip"):
-                taking.add_argument(name, type=Path)
-            taking.add_argument("--water", default="auto")
-        if command == "extract-bag":
-            taking.add_argument("--topic")
+        for name in paths:
+            taking.add_argument(name, type=Path)
+        taking.add_argument("--water", default="auto")
+        taking.add_argument("--topic")
     return parser.parse_args()
 
 
@@ -237,6 +265,8 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
             extract(_files(chosen), chosen.water, report)
         case "extract-bag":
             extract_bag(chosen.bag, chosen.topic, _files(chosen), chosen.water, report)
+        case "session":
+            write_session(chosen.wanted, chosen.session, _files(chosen), report)
 
 
 def _files(chosen: argparse.Namespace) -> ClipFiles:

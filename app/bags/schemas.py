@@ -1,0 +1,169 @@
+"""JSON Schemas of the messages in a session's MCAP.
+
+Foxglove knows its own messages by their names (https://docs.foxglove.dev/docs/sdk/schemas); of its
+fields those are given here that are written. The others are ours. All are written out in full,
+without references and without alternatives, since that is what readers of MCAP understand.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+Schema = dict[str, Any]
+
+TEXT: Schema = {"type": "string"}
+NUMBER: Schema = {"type": "number"}
+FLAG: Schema = {"type": "boolean"}
+BYTES: Schema = {"type": "string", "contentEncoding": "base64"}
+
+
+def told(schema: Schema, description: str) -> Schema:
+    """Return `schema` with a description."""
+    return {**schema, "description": description}
+
+
+def record(title: str, **fields: Schema) -> Schema:
+    """Return the schema of an object with these fields, all of them required."""
+    return {
+        "title": title,
+        "type": "object",
+        "properties": fields,
+        "required": list(fields),
+    }
+
+
+def many(items: Schema) -> Schema:
+    """Return the schema of an array."""
+    return {"type": "array", "items": items}
+
+
+def one_of(**values: int) -> Schema:
+    """Return the schema of a named number."""
+    return {"oneOf": [{"title": name, "const": value} for name, value in values.items()]}
+
+
+TIME = record(
+    "time",
+    sec={"type": "integer", "minimum": 0},
+    nsec={"type": "integer", "minimum": 0, "maximum": 999_999_999},
+)
+COLOUR = record("foxglove.Color", r=NUMBER, g=NUMBER, b=NUMBER, a=NUMBER)
+POINT = record("foxglove.Point2", x=NUMBER, y=NUMBER)
+PAIRS = many(record("foxglove.KeyValuePair", key=TEXT, value=TEXT))
+
+VIDEO = record("foxglove.CompressedVideo", timestamp=TIME, frame_id=TEXT, data=BYTES, format=TEXT)
+
+ANNOTATIONS = record(
+    "foxglove.ImageAnnotations",
+    circles=many(
+        record(
+            "foxglove.CircleAnnotation",
+            timestamp=TIME,
+            position=POINT,
+            diameter=NUMBER,
+            thickness=NUMBER,
+            fill_color=COLOUR,
+            outline_color=COLOUR,
+            metadata=PAIRS,
+        )
+    ),
+    points=many(
+        record(
+            "foxglove.PointsAnnotation",
+            timestamp=TIME,
+            type=one_of(UNKNOWN=0, POINTS=1, LINE_LOOP=2, LINE_STRIP=3, LINE_LIST=4),
+            points=many(POINT),
+            outline_color=COLOUR,
+            outline_colors=many(COLOUR),
+            fill_color=COLOUR,
+            thickness=NUMBER,
+            metadata=PAIRS,
+        )
+    ),
+    texts=many(
+        record(
+            "foxglove.TextAnnotation",
+            timestamp=TIME,
+            position=POINT,
+            text=TEXT,
+            font_size=NUMBER,
+            text_color=COLOUR,
+            background_color=COLOUR,
+            metadata=PAIRS,
+        )
+    ),
+)
+
+LOG = record(
+    "foxglove.Log",
+    timestamp=TIME,
+    level=one_of(UNKNOWN=0, DEBUG=1, INFO=2, WARNING=3, ERROR=4, FATAL=5),
+    message=TEXT,
+    name=TEXT,
+    file=TEXT,
+    line={"type": "integer", "minimum": 0},
+)
+
+KEYPOINTS = record(
+    "osg_studio.Keypoints",
+    timestamp=TIME,
+    image_width=told(NUMBER, "Pixels"),
+    image_height=told(NUMBER, "Pixels"),
+    body=told(
+        many(
+            record(
+                "osg_studio.Keypoint",
+                name=told(TEXT, "MediaPipe's, in snake_case"),
+                x=told(NUMBER, "Pixels to the right of the picture's left edge"),
+                y=told(NUMBER, "Pixels below the picture's top edge"),
+                confidence=told(NUMBER, "0 to 1; 1 where the source gives none"),
+            )
+        ),
+        "Landmarks seen; empty where nobody is",
+    ),
+    hands=many(
+        record(
+            "osg_studio.Hand",
+            side=told(TEXT, "The person's own: left or right"),
+            score=told(NUMBER, "0 to 1, the belief that there is a hand at all"),
+            keypoints=told(many(POINT), "Pixels, MediaPipe's 21 in their order"),
+        )
+    ),
+)
+
+SALUTE = record(
+    "osg_studio.Salute",
+    timestamp=TIME,
+    score=told(NUMBER, "0 to 1, how much the best hand salutes"),
+    held=told(FLAG, "Whether the salute counts now"),
+    state=told(TEXT, "Of the recogniser: idle, recording, done"),
+)
+
+TAKE = record(
+    "osg_studio.Take",
+    start=told(NUMBER, "Seconds: the start salute is released"),
+    end=told(NUMBER, "Seconds: the stop salute begins"),
+    closed=told(FLAG, "Whether a stop salute ended it"),
+    stroke_start=told(NUMBER, "Seconds: the gesture itself begins"),
+    stroke_end=told(NUMBER, "Seconds: the gesture itself ends"),
+)
+
+RECOGNITION = record(
+    "osg_studio.Recognition",
+    start=told(NUMBER, "Seconds: what was recognised begins"),
+    end=told(NUMBER, "Seconds: what was recognised ends"),
+    language=TEXT,
+    revision={"type": "integer", "minimum": 0},
+    profile=told(TEXT, "Of the recogniser: full or paper"),
+    label=told(TEXT, "The gesture; empty when rejected"),
+    nearest=told(TEXT, "The best gesture, also when rejected"),
+    rejected=FLAG,
+    reason=told(TEXT, "Why the take is too poor to judge; else empty"),
+    confidence=told(NUMBER, "0 to 1"),
+    expected=told(TEXT, "The gesture meant, where somebody told; else empty"),
+    votes=many(record("osg_studio.Vote", voter=TEXT, label=TEXT, weight=NUMBER)),
+    distances=told(
+        many(record("osg_studio.Distance", voter=TEXT, gesture=TEXT, distance=NUMBER)),
+        "Smaller is more alike, each voter in its own unit; without those not comparable",
+    ),
+)

@@ -1,0 +1,128 @@
+"""A session's MCAP, read back by the plain reader: every message keeps to the schema beside it."""
+
+from __future__ import annotations
+
+import base64
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+
+from app.bags.session import CHANNELS, NamedRecognition, write_session
+from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
+from app.recognition.errors import BagError
+from tests.api.recordings import recording_of
+from tests.bags.sessions import checked
+from tests.recognition.damaged_clips import write_clip
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return recording_of("circle", "line")
+
+
+@pytest.fixture(scope="module")
+def recognitions(recording: Recording) -> list[NamedRecognition]:
+    """Return what was recognised in both takes by a language of a circle."""
+    takes = takes_in(recording)
+    language = Language(name="one", gestures=[Gesture.from_demonstration("circle", takes[0].poses)])
+    recognizer = Recognizer(language)
+    return [
+        NamedRecognition(
+            take.start, take.end, "one", 3, recognizer.recognize(take.poses), expected="circle"
+        )
+        for take in takes
+    ]
+
+
+def test_everything_of_the_session_is_in_it_at_its_time(
+    tmp_path: Path, recording: Recording, recognitions: list[NamedRecognition]
+) -> None:
+    video = write_clip(
+        tmp_path / "clip.mp4",
+        frames=len(recording.poses),
+        size=(640, 480),
+        times=recording.poses.time.tolist(),
+    )
+    path = tmp_path / "session.mcap"
+    write_session(path, recording, recognitions, video=video, name="dive.mp4")
+    found = checked(path)
+    assert set(found) == set(CHANNELS) - {"/log"}
+    nanoseconds = [round(time * 1e9) for time in recording.poses.time]
+    for topic in ("/video", "/pose", "/keypoints", "/salute"):
+        assert [time for time, _ in found[topic]] == nanoseconds
+
+    body = {point["name"]: point for point in found["/keypoints"][30][1]["body"]}
+    wrist = recording.poses.column("right_wrist")[30]
+    assert (body["right_wrist"]["x"], body["right_wrist"]["y"]) == pytest.approx(wrist, abs=0.01)
+    assert "left_thumb" not in body
+    assert [content["score"] for _, content in found["/salute"]] == recording.salute.tolist()
+    states = [content["state"] for _, content in found["/salute"]]
+    assert set(states) == {"idle", "recording", "done"}
+
+    takes = takes_in(recording)
+    told = [(content["start"], content["end"]) for _, content in found["/takes"]]
+    assert told == [(take.start, take.end) for take in takes]
+    results = [content for _, content in found["/recognitions"]]
+    assert [(each["nearest"], each["expected"]) for each in results] == [("circle", "circle")] * 2
+    assert [each["rejected"] for each in results] == [
+        one.result.label is None for one in recognitions
+    ]
+    assert results[0]["label"] == "circle"
+    assert len(results[0]["votes"]) == len(recognitions[0].result.votes)
+    # The label is shown from the end of its take to the beginning of the next one.
+    texts = [[text["text"] for text in content["texts"]] for _, content in found["/label"]]
+    assert [bool(shown) for shown in texts] == [False, True, False, True]
+    assert texts[1][0].startswith("circle  ")
+
+
+def test_the_video_is_a_stream_of_single_frames_that_any_decoder_reads(
+    tmp_path: Path, recording: Recording
+) -> None:
+    video = write_clip(tmp_path / "clip.mp4", frames=60, size=(66, 50), codec="mpeg4")
+    path = tmp_path / "session.mcap"
+    write_session(path, recording, video=video)
+    messages = checked(path)["/video"]
+    codec = av.CodecContext.create("h264", "r")
+    assert isinstance(codec, av.VideoCodecContext)
+    decoded = 0
+    for _, content in messages:
+        assert content["format"] == "h264"
+        data = base64.b64decode(content["data"])
+        assert data.startswith((b"\0\0\0\1", b"\0\0\1"))
+        decoded += len(codec.decode(av.Packet(data)))
+    decoded += len(codec.decode(None))
+    assert decoded == len(messages) == 60
+    # A player that jumps to the second key frame can begin there.
+    second = base64.b64decode(messages[50][1]["data"])
+    units = {unit[0] & 31 for unit in second.split(b"\0\0\1")[1:]}
+    assert {7, 8} <= units
+
+
+def test_warnings_are_logged_and_nobody_in_view_is_told(tmp_path: Path) -> None:
+    recording = recording_of("line")
+    xy = np.full_like(recording.poses.xy, np.nan)
+    empty = replace(
+        recording, poses=replace(recording.poses, xy=xy), warnings=("no person in any frame",)
+    )
+    path = tmp_path / "session.mcap"
+    done: list[tuple[int, int]] = []
+    write_session(path, empty, progress=lambda *steps: done.append(steps))
+    found = checked(path)
+    ((time, log),) = found["/log"]
+    assert (time, log["message"], log["level"]) == (0, "no person in any frame", 3)
+    assert all(content["body"] == [] for _, content in found["/keypoints"])
+    assert all(drawn["points"] == [] for _, each in found["/pose"] for drawn in each["points"])
+    assert done[-1] == (len(xy), len(xy))
+
+
+def test_without_what_writes_mcap_the_command_to_install_it_is_told(
+    tmp_path: Path, recording: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "mcap.writer", None)
+    with pytest.raises(BagError, match="pip install"):
+        write_session(tmp_path / "session.mcap", recording)
+    assert not (tmp_path / "session.mcap").exists()
