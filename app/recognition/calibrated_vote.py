@@ -39,7 +39,8 @@ VOTERS = (
     *(voter.name for voter in MOTION_VOTERS),
 )
 _SHAPES = len(PAPER_VOTERS)
-
+_TEMPO = VOTERS.index("tempo")
+_NOVELTY_WEIGHTS = novelty_weights(VOTERS)
 
 TEMPO_SAY = 0.3
 """What a doubling of the duration adds to the score of a gesture whose tempo counts: more than the
@@ -138,7 +139,7 @@ class CalibratedVote:
         """Each voter's share in the decision, summing to 1."""
         say = self._say.copy()
         if self._tempo.any():
-            say[VOTERS.index("tempo")] += TEMPO_SAY
+            say[_TEMPO] += TEMPO_SAY
         return dict(zip(VOTERS, (say / say.sum()).tolist(), strict=True))
 
     @property
@@ -169,27 +170,30 @@ class CalibratedVote:
         """
         distances, rows = self._compared(trajectory, drawn)
         shares = contributions(distances, self._say, self._between)
-        readings = [self._motions.readings[row] if row >= 0 else None for row in rows]
-        factors = np.array([reading.penalty if reading else 1.0 for reading in readings])
+        factors, scores = np.ones(len(rows)), shares.sum(axis=0)
+        factors[rows >= 0] = self._motions.penalties[rows[rows >= 0]]
         turned = np.zeros(len(rows))
-        backward = np.flatnonzero(factors > 1)
-        turned[backward] = (factors[backward] - 1) * shares[:, backward].sum(axis=0)
-        tempo = VOTERS.index("tempo")
-        slower = self._tempo & np.isfinite(distances[tempo])
-        shares[tempo, slower] += TEMPO_SAY * distances[tempo, slower]
-        chosen = self._sides_nearest(shares.sum(axis=0) + turned)
+        backward = factors > 1
+        turned[backward] = (factors[backward] - 1) * scores[backward]
+        if self._tempo.any():
+            slower = self._tempo & np.isfinite(distances[_TEMPO])
+            shares[_TEMPO, slower] += TEMPO_SAY * distances[_TEMPO, slower]
+            scores = shares.sum(axis=0)
+        chosen = self._sides_nearest(scores + turned)
         return Comparison(
             voters=VOTERS,
             distances=distances[:, chosen],
             contributions=shares[:, chosen],
             turned=turned[chosen],
-            readings=tuple(readings[side] for side in chosen),
+            readings=tuple(
+                self._motions.readings[row] if row >= 0 else None for row in rows[chosen].tolist()
+            ),
             mirrored=chosen >= len(self._labels),
             novelty=(factors * self._novelty(distances))[chosen],
         )
 
     def _novelty(self, distances: FloatArray) -> FloatArray:
-        return novelty(distances, self._thresholds, self._weights * novelty_weights(VOTERS))
+        return novelty(distances, self._thresholds, self._weights * _NOVELTY_WEIGHTS)
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
@@ -239,9 +243,8 @@ class CalibratedVote:
         rows = np.full(len(self._owners), -1, dtype=np.intp)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
-            measured = self._motions.distances(query)
-            rows = self._motions.nearest(measured, *self._of_motion, len(self._owners))
-            motion[:, rows >= 0] = measured[:, rows[rows >= 0]]
+            nearest = self._motions.nearest(query, *self._of_motion, len(self._owners))
+            rows, motion = nearest.rows, nearest.distances
         motion[:, ~comparable] = np.inf
         return np.concatenate([shape, motion]), rows
 

@@ -20,8 +20,8 @@ def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]
     Parameters
     ----------
     image
-        ``(height, width)``, 0 for background, with a border of at least `diameter` empty pixels on
-        all sides: what is shifted out of a row at one end comes in at the other.
+        ``(height, width)``, 0 for background, with a border of more than half of `diameter` empty
+        pixels on all sides: what is moved out of a row at one end comes in at the other.
     diameter
         Of OpenCV's ellipse, pixels; even, so that the disc has a pixel in its middle.
 
@@ -31,7 +31,7 @@ def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]
 
     """
     height, width = image.shape
-    packed = np.packbits(image != 0, axis=1)
+    packed = np.packbits(image, axis=1)
     row = 8 * packed.shape[1]
     everything = (1 << (height * row)) - 1
     bits = _dilated(int.from_bytes(packed.tobytes(), "big"), row, diameter)
@@ -41,19 +41,33 @@ def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]
 
 
 def _dilated(bits: int, row: int, diameter: int) -> int:
-    """Unite an image with itself moved by every pixel of the disc; `row`: bits in a row."""
-    reaches = _reaches(diameter)
-    wider = [bits]
-    for _ in range(max(reaches)):
-        wider.append(wider[-1] | wider[-1] << 1 | wider[-1] >> 1)
-    united = wider[reaches[0]]
-    for down, reach in enumerate(reaches[1:], start=1):
-        united |= wider[reach] << down * row | wider[reach] >> down * row
-    return united
+    """Unite an image with itself moved by every pixel of the disc; `row`: bits in a row.
+
+    The disc is a union of rectangles, from high and narrow to low and wide. All moves go one way,
+    from the disc's first corner on, and are taken back at the end.
+    """
+    radius, reached, united = diameter // 2, 0, 0
+    wide, height = bits, radius
+    for reach, down in _rectangles(diameter):
+        wide = _moved(wide, 2 * reached, 2 * reach, 1)
+        united = _moved(united, 0, 2 * (height - down), row)
+        united |= wide << (radius - down) * row + radius - reach
+        reached, height = reach, down
+    return _moved(united, 0, 2 * height, row) >> radius * row + radius
+
+
+def _moved(bits: int, done: int, wanted: int, step: int) -> int:
+    """Unite what was moved by 0 to `done` steps to what is moved by 0 to `wanted`."""
+    while done < wanted:
+        more = min(done + 1, wanted - done)
+        bits |= bits << more * step
+        done += more
+    return bits
 
 
 @lru_cache(maxsize=8)
-def _reaches(diameter: int) -> tuple[int, ...]:
-    """How far the disc reaches to either side, in its middle row and in those below."""
+def _rectangles(diameter: int) -> tuple[tuple[int, int], ...]:
+    """How far the disc's rectangles reach to either side, and up and down, the highest first."""
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (diameter + 1, diameter + 1))
-    return tuple(int(pixels) // 2 for pixels in disc.sum(axis=1)[diameter // 2 :])
+    reaches = disc.sum(axis=1)[diameter // 2 :].astype(int) // 2
+    return tuple(sorted({reach: down for down, reach in enumerate(reaches.tolist())}.items()))

@@ -1,20 +1,21 @@
 """Elastic matching: how far sequences lie apart when each may run ahead of the other for a while.
 
 Dynamic time warping (Sakoe and Chiba 1978) between one query and many references at once. The
-recurrence goes along anti-diagonals, on which no cell depends on another one: each of the 2N - 1
-diagonals is one array operation over all references.
+recurrence goes along anti-diagonals, on which no cell depends on another one, and from both ends of
+the sequences at once until the two halves meet: N steps of one array operation over all references.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import prod
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
+from app.recognition.step_distances import ROUNDING, for_query, for_references, squared_distances
 
 
 def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
@@ -36,35 +37,154 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     grow with the number of steps; infinite where nothing can be compared.
 
     """
-    return alignment_costs(squared_distances(query, references), band)
+    count = half_of(len(query), band)
+    costs = squared_distances(_from_both_ends(query, count), _from_both_ends(references, count))
+    return alignment_costs(costs, len(query), band)
 
 
-def alignment_costs(costs: FloatArray, band: int) -> FloatArray:
+@dataclass(frozen=True, eq=False)
+class ElasticReferences:
+    """Sequences that many queries are compared with, prepared once.
+
+    As `elastic_distances`, but components that the query does not know at any step, or none of the
+    references, are left out before: what is known of two vectors stands for the others.
+
+    Attributes
+    ----------
+    sequences
+        ``(R, N, D)``, with NaN as for `elastic_distances`.
+    band
+        As for `elastic_distances`.
+
+    """
+
+    sequences: FloatArray
+    band: int
+
+    def distances(self, query: FloatArray) -> FloatArray:
+        """Return the elastic distances of ``(N, D)`` to all references, ``(R,)``."""
+        return alignment_costs(self.step_costs(query), len(query), self.band)
+
+    def step_costs(
+        self,
+        query: FloatArray,
+        rows: npt.NDArray[np.intp] | None = None,
+        out: FloatArray | None = None,
+    ) -> FloatArray:
+        """Compare the steps of a query with those of some references, from both ends.
+
+        Parameters
+        ----------
+        query
+            ``(N, D)``.
+        rows
+            Indices of M of the references; all when not given.
+        out
+            Where to write the answer: asking the system for fresh memory for each would take
+            longer than the arithmetic.
+
+        Returns
+        -------
+        ``(2, H, H, M)``: squared distances of the first H steps, and of the last H from the last
+        one backwards, as `alignment_costs` takes them; infinite where nothing can be compared.
+
+        """
+        count = half_of(len(query), self.band)
+        if self._complete and np.isfinite(query[:, self._known]).all():
+            left = for_query(_from_both_ends(query[:, self._known], count))
+            right = self._sides_of(rows)
+            pairs = right.shape[-1]
+            out = np.empty((2, count, count, pairs)) if out is None else out
+            columns = count * pairs
+            np.matmul(left, right.reshape(2, -1, columns), out=out.reshape(2, count, columns))
+            return out
+        references = self.sequences if rows is None else self.sequences[rows]
+        known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
+        return squared_distances(
+            _from_both_ends(query[:, known], count),
+            _from_both_ends(references[..., known], count),
+            out,
+        )
+
+    @cached_property
+    def _known(self) -> npt.NDArray[np.intp]:
+        """Indices of the components that any reference knows at any step."""
+        return np.flatnonzero(np.isfinite(self.sequences).any(axis=(0, 1)))
+
+    @cached_property
+    def _complete(self) -> bool:
+        """Whether all references know these components throughout."""
+        return bool(len(self._known) and np.isfinite(self.sequences[..., self._known]).all())
+
+    def _sides_of(self, rows: npt.NDArray[np.intp] | None) -> FloatArray:
+        """Return one side of the matrix products that give the costs, ``(2, D' + 2, H, M)``."""
+        if rows is None:
+            return self._sides
+        return np.ascontiguousarray(np.moveaxis(self._sides_by_row[rows], 0, -1))
+
+    @cached_property
+    def _sides(self) -> FloatArray:
+        count = half_of(self.sequences.shape[1], self.band)
+        return for_references(_from_both_ends(self.sequences[..., self._known], count))
+
+    @cached_property
+    def _sides_by_row(self) -> FloatArray:
+        """The same with the references first: a few of them are then gathered from few places."""
+        return np.ascontiguousarray(np.moveaxis(self._sides, -1, 0))
+
+
+def half_of(steps: int, band: int) -> int:
+    """Return H: how many steps from either end an alignment may reach until the halves meet."""
+    return (steps - 1 + min(band, steps - 1)) // 2 + 1
+
+
+def _from_both_ends(sequences: FloatArray, count: int) -> FloatArray:
+    """Take the first steps of ``(..., N, D)``, and the last ones backwards: ``(2, ..., H, D)``."""
+    return np.stack([sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]])
+
+
+def alignment_costs(costs: FloatArray, steps: int, band: int) -> FloatArray:
     """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
 
     Parameters
     ----------
     costs
-        ``(..., N, N, M)``: of each step of the one sequence against each of the other, for M pairs.
-    band
-        As for `elastic_distances`.
+        ``(2, ..., H, H, M)``: of each step of the one sequence against each of the other, for M
+        pairs, from the first steps on and from the last ones back; H as `half_of` returns it.
+    steps, band
+        N and the band, as for `elastic_distances`.
 
     Returns
     -------
     ``(..., M)``: costs summed along the alignment over N.
 
     """
-    *points_of_view, steps, _, pairs = costs.shape
-    cells = costs.reshape(prod(points_of_view), steps * steps, pairs)
-    # Row `offset + band + 1` is the cell with `i - j = offset`; the outer two rows stay infinite.
-    total = np.full((len(cells), 2 * band + 3, pairs), np.inf)
-    total[:, band + 1] = cells[:, 0]
+    _, *points_of_view, count, _, pairs = costs.shape
+    views = prod(points_of_view)
+    cells = costs.reshape(2 * views, count * count, pairs).transpose(1, 0, 2)
+    # Cells of one diagonal do not depend on each other, but on those of the diagonal before, whose
+    # offsets i - j are odd where these are even: kept apart, either lie side by side in memory.
+    totals = [np.full((outer + 1, 2 * views, pairs), np.inf) for outer in _outer_offsets(band)]
+    totals[0][len(totals[0]) // 2] = 0.0  # before the first steps
+    best = np.empty((band + 1, 2 * views, pairs))
     for diagonal in _diagonals(steps, band):
-        # A row was last written two diagonals ago (both ran on), its neighbours one ago.
-        best = np.minimum(total[:, diagonal.one], total[:, diagonal.other])
-        np.minimum(best, total[:, diagonal.both], out=best)
-        np.add(best, cells[:, diagonal.cells], out=total[:, diagonal.both])
-    return np.asarray((total[:, band + 1] / steps).reshape(*points_of_view, pairs))
+        parity = diagonal.number % 2
+        own, others = totals[parity][diagonal.own], totals[1 - parity]
+        before = best[: len(own)]
+        np.minimum(others[diagonal.one], others[diagonal.other], out=before)
+        np.minimum(before, own, out=before)
+        np.add(before, cells[diagonal.cells], out=own)
+        if diagonal.number == steps - 1:
+            own[:, :views] = before[:, :views]  # where the halves meet, a cell counts once
+    met = [(each[:, :views] + each[::-1, views:]).min(axis=0) for each in totals]
+    found = np.minimum(*met).reshape(*points_of_view, pairs) / steps
+    found[found < ROUNDING] = 0.0
+    return np.asarray(found)
+
+
+def _outer_offsets(band: int) -> tuple[int, int]:
+    """Return the least even and odd offsets beyond the band, where totals stay infinite."""
+    return band + 1 + (band + 1) % 2, band + 1 + band % 2
 
 
 @dataclass(frozen=True)
@@ -73,14 +193,19 @@ class _Diagonal:
 
     Attributes
     ----------
-    both, one, other
-        Rows of the totals: its own, and those of the neighbours on the diagonal before.
+    number
+        i + j.
+    own
+        Of the totals with its parity.
+    one, other
+        Of the totals with the other parity: the neighbours on the diagonal before.
     cells
         Of the costs, one row a pair of steps.
 
     """
 
-    both: slice
+    number: int
+    own: slice
     one: slice
     other: slice
     cells: slice
@@ -88,23 +213,25 @@ class _Diagonal:
 
 @lru_cache(maxsize=64)
 def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
-    """Return the anti-diagonals after the first that have a cell within the band."""
-    found = []
-    for diagonal in range(1, 2 * steps - 1):
-        reach = min(band, diagonal, 2 * steps - 2 - diagonal)
-        reach -= (reach + diagonal) % 2  # offset and diagonal are both even or both odd
+    """Return the anti-diagonals, up to the one where the halves meet, with a cell in the band."""
+    found, count, outer = [], half_of(steps, band), _outer_offsets(band)
+    for number in range(steps):
+        reach = min(band, number)
+        reach -= (reach + number) % 2  # offset and number are both even or both odd
         if reach < 0:
             continue
-        first, last = band + 1 - reach, band + 2 + reach
-        start = (diagonal - reach) // 2 * steps + (diagonal + reach) // 2
+        first = (outer[number % 2] - reach) // 2
+        one = (outer[1 - number % 2] - reach - 1) // 2
+        start = (number - reach) // 2 * count + (number + reach) // 2
         # Along an anti-diagonal i grows and j falls by one.
-        stop = start + reach * (steps - 1) + 1
+        stop = start + reach * (count - 1) + 1
         found.append(
             _Diagonal(
-                both=slice(first, last, 2),
-                one=slice(first - 1, last - 1, 2),
-                other=slice(first + 1, last + 1, 2),
-                cells=slice(start, stop, max(steps - 1, 1)),
+                number=number,
+                own=slice(first, first + reach + 1),
+                one=slice(one, one + reach + 1),
+                other=slice(one + 1, one + reach + 2),
+                cells=slice(start, stop, max(count - 1, 1)),
             )
         )
     return tuple(found)
@@ -127,7 +254,7 @@ def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.ND
     equally good alignments the one in which both run on is taken.
 
     """
-    costs = squared_distances(query, reference[None])[:, :, 0]
+    costs = squared_distances(query, reference[None])[..., 0]
     steps = len(query)
     # Row and column 0 stand before the first steps.
     total = np.full((steps + 1, steps + 1), np.inf)
@@ -142,64 +269,3 @@ def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.ND
         before = [cell for cell in ((i - 1, j - 1), (i - 1, j), (i, j - 1)) if min(cell) > 0]
         pairs.append(min(before, key=lambda cell: total[cell]))
     return np.array(pairs[::-1], dtype=np.intp) - 1
-
-
-def squared_distances(
-    query: FloatArray, references: FloatArray, out: FloatArray | None = None
-) -> FloatArray:
-    """Measure the squared distance of every step of the query to every step of the references.
-
-    Parameters
-    ----------
-    query, references
-        ``(N, D)`` and ``(M, N, D)``, with NaN as for `elastic_distances`.
-    out
-        Where to write the answer, contiguous: asking the system for fresh memory for each would
-        take longer than the arithmetic.
-
-    Returns
-    -------
-    ``(N, N, M)``, infinite where nothing can be compared.
-
-    """
-    if out is None:
-        out = np.empty((len(query), len(query), len(references)))
-    if np.isfinite(query).all() and np.isfinite(references).all():
-        return _without_rounding(_complete(query, references, out))
-    known, others_known = np.isfinite(query), np.isfinite(references)
-    left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
-    mask, others_mask = known.astype(np.float64), others_known.astype(np.float64)
-    squares = (
-        _products(left**2, others_mask) + _products(mask, right**2) - 2.0 * _products(left, right)
-    )
-    compared = _products(mask, others_mask)
-    scale = np.divide(
-        query.shape[1], compared, out=np.full_like(compared, np.inf), where=compared > 0
-    )
-    np.multiply(np.where(compared > 0, squares, 1.0), scale, out=out)
-    return _without_rounding(out)
-
-
-def _complete(query: FloatArray, references: FloatArray, out: FloatArray) -> FloatArray:
-    """|q - r|^2 = (-2q, |q|^2, 1) . (r, 1, |r|^2): a single matrix product."""
-    count, steps, size = references.shape
-    left = np.concatenate([-2 * query, (query**2).sum(1)[:, None], np.ones((len(query), 1))], 1)
-    right = np.ones((size + 2, steps, count))
-    right[:size] = references.transpose(2, 1, 0)
-    np.einsum("dnm,dnm->nm", right[:size], right[:size], out=right[-1])
-    columns = steps * count
-    np.matmul(left, right.reshape(size + 2, columns), out=out.reshape(len(query), columns))
-    return out
-
-
-def _products(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Inner products ``(N, N, M)`` of the vectors of ``(N, D)`` and ``(M, N, D)``."""
-    count, steps, size = right.shape
-    columns = np.ascontiguousarray(right.transpose(2, 1, 0)).reshape(size, steps * count)
-    return (left @ columns).reshape(len(left), steps, count)
-
-
-def _without_rounding(squares: FloatArray) -> FloatArray:
-    """Undo, in place, what rounding leaves of differences of nearly equal sums."""
-    squares[squares < 1e-12] = 0.0
-    return squares

@@ -7,6 +7,8 @@ acceleration allows; what strays farther was misplaced.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -55,17 +57,22 @@ def jumps(trajectory: Trajectory) -> Mask:
 
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
-    paths = trajectory.xy / body_unit(trajectory)
+    followed = _followed(trajectory.landmarks)
+    paths = trajectory.xy[:, followed] / body_unit(trajectory)
     known = np.asarray(np.isfinite(paths).all(axis=2))
     with_gaps: Mask = ~np.asarray(known.all(axis=0))
     for index in np.flatnonzero(with_gaps | _has_kink(paths)).tolist():
-        if trajectory.landmarks[index] in UNFOLLOWED:
-            continue
         seen = np.flatnonzero(known[:, index])
         if with_gaps[index] and not _has_kink(paths[seen, index, None]).any():
             continue
-        off[seen, index] = _strays(paths[seen, index], trajectory.time[seen])
+        off[seen, followed[index]] = _strays(paths[seen, index], trajectory.time[seen])
     return off
+
+
+@lru_cache(maxsize=64)
+def _followed(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
+    """Return the places of the landmarks that a gesture may follow."""
+    return np.flatnonzero([name not in UNFOLLOWED for name in landmarks])
 
 
 def _has_kink(paths: FloatArray) -> Mask:
@@ -74,8 +81,10 @@ def _has_kink(paths: FloatArray) -> Mask:
     By more than `NOTICED`, as every jump's does. At thirty frames a second no movement's do; then
     nothing else need be looked at.
     """
-    bends = np.diff(paths, 2, axis=0)
-    return np.asarray(np.hypot(bends[..., 0], bends[..., 1]).max(axis=0, initial=0) > NOTICED)
+    steps = paths[1:] - paths[:-1]
+    bends = steps[1:] - steps[:-1]
+    squares = bends[..., 0] ** 2 + bends[..., 1] ** 2
+    return np.asarray(squares.max(axis=0, initial=0) > NOTICED**2)
 
 
 def body_unit(trajectory: Trajectory) -> float:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.elastic import alignment_costs
+from app.recognition.elastic import ElasticReferences, alignment_costs, half_of
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
 from app.recognition.movement import (
@@ -22,7 +22,7 @@ from app.recognition.movement import (
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading, readings
 from app.recognition.trajectory import Trajectory
-from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter
+from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as
@@ -54,9 +54,26 @@ MOST_COMPARED = 1
 ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
-_ELASTIC = tuple(voter for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter))
+_ELASTIC = tuple(voter.name for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter))
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
+
+
+@dataclass(frozen=True, eq=False)
+class NearestReadings:
+    """The readings of G gestures that fit a query best.
+
+    Attributes
+    ----------
+    rows
+        ``(G,)``: which row of the references; -1 for a gesture without demonstration.
+    distances
+        ``(V, G)`` to these readings, infinite for a gesture without demonstration.
+
+    """
+
+    rows: npt.NDArray[np.intp]
+    distances: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +133,7 @@ class MotionReferences:
     @cached_property
     def as_shown(self) -> npt.NDArray[np.intp]:
         """Rows of the gestures as they were demonstrated."""
-        return np.flatnonzero([self._is_first(row) for row in range(len(self))])
-
-    def _is_first(self, row: int) -> bool:
-        return row == 0 or bool(self.gestures[row - 1] != self.gestures[row])
+        return np.flatnonzero(self._shown)
 
     def kept(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
         """Keep some of the rows."""
@@ -140,7 +154,7 @@ class MotionReferences:
         """
         rows = self.promising(query["path"])
         distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
-        distances[:, rows] = _distances(query, self._described(rows))
+        distances[:, rows] = self._measured(query, rows)
         return distances
 
     def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
@@ -160,10 +174,14 @@ class MotionReferences:
 
         """
         apart = ((self.descriptors["path"] - path) ** 2).sum(axis=(1, 2))
-        order = np.lexsort((apart, self._kinds))
-        kinds = self._kinds[order]
-        rank = np.arange(len(kinds)) - np.searchsorted(kinds, kinds)
-        return np.union1d(order[rank < MOST_COMPARED], self.as_shown)
+        chosen = self._shown.copy()
+        chosen[np.lexsort((apart, self._kinds))[self._first_of_kind]] = True
+        return np.flatnonzero(chosen)
+
+    @cached_property
+    def _shown(self) -> npt.NDArray[np.bool_]:
+        """``(R,)``: whether a row is a gesture as it was demonstrated."""
+        return np.asarray(np.diff(self.gestures, prepend=-1) != 0)
 
     @cached_property
     def _kinds(self) -> npt.NDArray[np.intp]:
@@ -172,65 +190,90 @@ class MotionReferences:
         return 4 * self.gestures + np.array(kinds, dtype=np.intp)
 
     @cached_property
-    def _penalties(self) -> FloatArray:
+    def _first_of_kind(self) -> npt.NDArray[np.intp]:
+        """Where the first `MOST_COMPARED` of each kind stand once the rows are sorted by kind."""
+        kinds = np.sort(self._kinds)
+        rank = np.arange(len(kinds)) - np.searchsorted(kinds, kinds)
+        return np.flatnonzero(rank < MOST_COMPARED)
+
+    @cached_property
+    def _elastic(self) -> dict[str, ElasticReferences]:
+        """What the elastic voters compare with."""
+        return {name: ElasticReferences(self.descriptors[name], BAND) for name in _ELASTIC}
+
+    @cached_property
+    def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Rows that differ by more than the order of their steps; and of each row which it is."""
+        exchanged = np.array([reading.exchanged for reading in self.readings], dtype=np.intp)
+        _, rows, which = np.unique(
+            2 * self.gestures + exchanged, return_index=True, return_inverse=True
+        )
+        return rows, which
+
+    @cached_property
+    def penalties(self) -> FloatArray:
         """``(R,)``: the factor on each row's distances."""
         return np.array([reading.penalty for reading in self.readings])
-
-    def _described(self, rows: npt.NDArray[np.intp] | slice | int) -> dict[str, FloatArray]:
-        return {name: values[rows] for name, values in self.descriptors.items()}
 
     def own_distances(self, rows: npt.NDArray[np.intp]) -> FloatArray:
         """Compare some of the rows with all: ``(V, len(rows), R)``."""
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
-            block = slice(start, start + ROWS_AT_ONCE)
-            references = self._described(block)
+            block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
             for index, row in enumerate(rows):
-                own[:, index, block] = _distances(self._described(int(row)), references)
+                query = {name: values[row] for name, values in self.descriptors.items()}
+                own[:, index, start : start + len(block)] = block._measured(query)
         return own
 
+    def _measured(
+        self, query: dict[str, FloatArray], rows: npt.NDArray[np.intp] | None = None
+    ) -> FloatArray:
+        """Compare a query with M of the rows, all when not given: ``(V, M)``.
+
+        The elastic voters' alignments are found together, which costs hardly more than one.
+        """
+        chosen = slice(None) if rows is None else rows
+        count, steps = len(self.gestures[chosen]), len(query["path"])
+        reached = half_of(steps, BAND)
+        costs = np.empty((2, len(self._elastic), reached, reached, count))
+        for index, (name, references) in enumerate(self._elastic.items()):
+            references.step_costs(query[name], rows, costs[:, index])
+        found = dict(zip(self._elastic, alignment_costs(costs, steps, BAND), strict=True))
+        distinct, which = self._distinct
+        for voter in MOTION_VOTERS:
+            asked, others = query[voter.name], self.descriptors[voter.name]
+            if isinstance(voter, UnorderedVoter):
+                found[voter.name] = voter.distances(asked, others[distinct])[which[chosen]]
+            elif voter.name not in found:
+                found[voter.name] = voter.distances(asked, others[chosen])
+        return np.stack([found[voter.name] for voter in MOTION_VOTERS])
+
     def nearest(
-        self, distances: FloatArray, say: FloatArray, between: FloatArray, count: int
-    ) -> npt.NDArray[np.intp]:
-        """Choose for each gesture the reading that fits best.
+        self, query: dict[str, FloatArray], say: FloatArray, between: FloatArray, count: int
+    ) -> NearestReadings:
+        """Choose for each gesture the reading that fits a query best.
 
         Parameters
         ----------
-        distances
-            ``(V, R)``.
+        query
+            Described per voter.
         say, between
             Of the voters, see `fusion.says`.
         count
             G, the number of gestures in the language.
 
-        Returns
-        -------
-        ``(G,)`` the row of that reading; -1 for a gesture without demonstration.
-
         """
-        scores = fused(distances, say, between) * self._penalties
-        chosen = np.full(count, -1, dtype=np.intp)
+        compared = self.promising(query["path"])
+        measured = self._measured(query, compared)
+        scores = fused(measured, say, between) * self.penalties[compared]
         # Writing the best last lets it stay, and of equals the first: as shown.
         order = np.argsort(scores, kind="stable")[::-1]
-        chosen[self.gestures[order]] = order
-        return chosen
-
-
-def _distances(query: dict[str, FloatArray], references: dict[str, FloatArray]) -> FloatArray:
-    """Compare a query with M references, each described per voter: ``(V, M)``.
-
-    The elastic voters' alignments are found together, which costs hardly more than one of them.
-    """
-    steps, rows = len(query["path"]), len(references["path"])
-    costs = np.empty((len(_ELASTIC), steps, steps, rows))
-    for elastic, out in zip(_ELASTIC, costs, strict=True):
-        elastic.step_costs(query[elastic.name], references[elastic.name], out)
-    aligned = alignment_costs(costs, BAND)
-    found = {elastic.name: row for elastic, row in zip(_ELASTIC, aligned, strict=True)}
-    for voter in MOTION_VOTERS:
-        if voter.name not in found:
-            found[voter.name] = voter.distances(query[voter.name], references[voter.name])
-    return np.stack([found[voter.name] for voter in MOTION_VOTERS])
+        chosen = np.full(count, -1, dtype=np.intp)
+        chosen[self.gestures[compared[order]]] = order
+        found = chosen >= 0
+        distances = np.full((len(MOTION_VOTERS), count), np.inf)
+        distances[:, found] = measured[:, chosen[found]]
+        return NearestReadings(np.where(found, compared[chosen], -1), distances)
 
 
 def tempo_counts(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -70,6 +70,20 @@ class Movement:
     limbs: FloatArray
     reached: FloatArray
 
+    @cached_property
+    def figure(self) -> FloatArray:
+        """`paths` about their mean places, in sizes: divided by the root of the mean square.
+
+        The mean over the steps of the summed squares of all landmarks; what does not move stays.
+        """
+        return sized(self.paths - self.paths.mean(axis=0))
+
+    @cached_property
+    def under_way(self) -> FloatArray:
+        """``(N,)``: each step's distance from the first, as a share of the largest."""
+        away = np.sqrt(((self.paths - self.paths[0]) ** 2).sum(axis=(1, 2)))
+        return np.asarray(away / max(away.max(), 1e-9))
+
     @property
     def duration(self) -> float:
         """Seconds from the first to the last step."""
@@ -98,6 +112,15 @@ class Movement:
                 self.limbs.shape
             ),
         )
+
+
+def sized(vectors: FloatArray) -> FloatArray:
+    """Divide ``(N, K, 2)`` by the root of the mean over the steps of the summed squares.
+
+    NaN adds nothing; what has no size stays as it is.
+    """
+    size = np.sqrt(np.fmax(vectors**2, 0.0).sum() / len(vectors))
+    return vectors / size if size > 0 else vectors
 
 
 def followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
@@ -153,37 +176,84 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
         To follow, see `followed_landmarks`; those that were never seen stay still.
 
     """
-    bones = limbs_of(landmarks)
-    joints = {joint for bone in bones for joint in bone}
-    needed = [name for name in trajectory.landmarks if name in landmarks or part_of(name) in joints]
-    smooth = _smoothed(trajectory.select(needed))
-    seen = [name for name in landmarks if _is_seen(smooth, name)]
-    even = smooth.select(seen).resampled_in_arc_length(STEPS) if seen else None
-    reached = smooth.time[[0] * STEPS] if even is None else even.time
+    places = _places(trajectory.landmarks, tuple(landmarks))
+    smooth = _smoothed(
+        replace(trajectory, landmarks=places.needed, xy=trajectory.xy[:, places.columns])
+    )
+    seen = np.isfinite(smooth.xy[0, places.followed]).all(axis=1)
+    followed = places.followed[seen]
+    reached = smooth.time[[0] * STEPS]
+    if len(followed):
+        reached = replace(smooth, xy=smooth.xy[:, followed]).moments_in_arc_length(STEPS)
+    even = smooth.at(reached).xy
     paths = np.zeros((STEPS, len(landmarks), 2))
-    if even is not None:
-        paths[:, [landmarks.index(name) for name in seen]] = even.xy - even.xy.mean(axis=0)
-    limbs = np.full((STEPS, len(bones), 2), np.nan)
-    places = smooth.at(reached).xy
-    column = {part_of(name): index for index, name in enumerate(smooth.landmarks)}
-    shown = [index for index, bone in enumerate(bones) if column.keys() >= {*bone}]
-    inner, outer = ([column[bones[index][end]] for index in shown] for end in (0, 1))
-    limbs[:, shown] = places[:, outer] - places[:, inner]
+    paths[:, places.paths[seen]] = even[:, followed] - even[:, followed].mean(axis=0)
+    limbs = np.full((STEPS, places.bones, 2), np.nan)
+    limbs[:, places.shown] = even[:, places.outer] - even[:, places.inner]
     return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
 
 
-def _is_seen(trajectory: Trajectory, name: str) -> bool:
-    if name not in trajectory.landmarks:
-        return False
-    return bool(np.isfinite(trajectory.xy[0, trajectory.landmarks.index(name)]).all())
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where the landmarks of a trajectory belong in a movement.
+
+    Attributes
+    ----------
+    needed, columns
+        The landmarks that are followed or at an end of a bone, and where the trajectory has them.
+    followed, paths
+        Of the landmarks followed that the trajectory has, the places in `needed` and in the paths.
+    shown, inner, outer
+        Of the bones that it has both ends of, the places in the limbs, and of the ends in `needed`.
+    bones
+        How many there are in all.
+
+    """
+
+    needed: tuple[str, ...]
+    columns: npt.NDArray[np.intp]
+    followed: npt.NDArray[np.intp]
+    paths: npt.NDArray[np.intp]
+    shown: npt.NDArray[np.intp]
+    inner: npt.NDArray[np.intp]
+    outer: npt.NDArray[np.intp]
+    bones: int
+
+
+@lru_cache(maxsize=256)
+def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
+    bones = limbs_of(landmarks)
+    joints = {joint for bone in bones for joint in bone}
+    needed = tuple(name for name in names if name in landmarks or part_of(name) in joints)
+    at = {part_of(name): index for index, name in enumerate(needed)}
+    here = [(needed.index(name), path) for path, name in enumerate(landmarks) if name in needed]
+    shown = [
+        (index, at[inner], at[outer])
+        for index, (inner, outer) in enumerate(bones)
+        if inner in at and outer in at
+    ]
+    followed, paths = np.array(here, dtype=np.intp).reshape(-1, 2).T
+    limbs, inner_ends, outer_ends = np.array(shown, dtype=np.intp).reshape(-1, 3).T
+    return _Places(
+        needed=needed,
+        columns=np.array([names.index(name) for name in needed], dtype=np.intp),
+        followed=followed,
+        paths=paths,
+        shown=limbs,
+        inner=inner_ends,
+        outer=outer_ends,
+        bones=len(bones),
+    )
 
 
 def _smoothed(trajectory: Trajectory) -> Trajectory:
     """Average over neighbouring moments; a gap is bridged by what lies on either side."""
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
-    weights = np.exp(-0.5 * ((time[:, None] - time[None]) / max(width, 1e-9)) ** 2)
-    weights /= weights.sum(axis=1, keepdims=True)
+    scaled = time / (np.sqrt(2.0) * max(width, 1e-9))
+    weights = scaled[:, None] - scaled
+    np.exp(-np.square(weights, out=weights), out=weights)
+    total = weights.sum(axis=1)
     bridged = trajectory.xy.copy()
     known = np.asarray(np.isfinite(bridged).all(axis=2))
     for index in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
@@ -191,4 +261,5 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
         for axis in range(2):
             bridged[:, index, axis] = np.interp(time, time[seen], bridged[seen, index, axis])
     xy = (weights @ bridged.reshape(len(time), -1)).reshape(bridged.shape)
+    xy /= total[:, None, None]
     return replace(trajectory, xy=xy)

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.closing import closed
-from app.recognition.poses import FloatArray
 
 CLOSING_DIAMETER = 28
 """Diameter in pixels of the disc that closes gaps between strokes before the outline is taken.
@@ -27,6 +26,10 @@ BinaryImage = npt.NDArray[np.uint8]
 """``(height, width)``, 255 on a stroke, 0 elsewhere; x to the right, y down."""
 
 
+Contour = npt.NDArray[np.int32]
+"""``(N, 2)`` pixels, x right, y down."""
+
+
 @dataclass(frozen=True, eq=False)
 class Outline:
     """The outer contours of an image's strokes.
@@ -34,50 +37,54 @@ class Outline:
     Attributes
     ----------
     contours
-        Each ``(N, 2)`` pixels, x right, y down, a closed polygon of neighbouring pixels, from
-        the leftmost figure to the rightmost (by mean x, then mean y).
+        Each a closed polygon of neighbouring pixels, from the leftmost figure to the rightmost
+        (by mean x, then mean y).
 
     """
 
-    contours: tuple[FloatArray, ...]
+    contours: tuple[Contour, ...]
 
     @classmethod
     def of(cls, image: BinaryImage) -> Outline:
         """Close gaps and follow the outer contours (Suzuki and Abe 1985)."""
         left, top, width, height = cv2.boundingRect(image)
         strokes = image[top : top + height, left : left + width]
-        padded = np.pad(strokes, CLOSING_DIAMETER)
+        border = CLOSING_DIAMETER // 2 + 1
+        padded = np.zeros((height + 2 * border, width + 2 * border), dtype=np.uint8)
+        padded[border:-border, border:-border] = strokes
         found, _ = cv2.findContours(
-            closed(padded, CLOSING_DIAMETER), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
+            closed(padded, CLOSING_DIAMETER),
+            cv2.RETR_EXTERNAL,
+            cv2.CHAIN_APPROX_NONE,
+            offset=(left - border, top - border),
         )
-        corner = np.array([left, top]) - CLOSING_DIAMETER
-        contours = [contour[:, 0].astype(np.float64) + corner for contour in found]
-        return cls(tuple(sorted(contours, key=lambda contour: tuple(contour.mean(axis=0)))))
+        contours = [np.asarray(contour[:, 0], dtype=np.int32) for contour in found]
+        if len(contours) > 1:
+            contours.sort(key=lambda contour: tuple(contour.mean(axis=0)))
+        return cls(tuple(contours))
 
     @cached_property
     def area(self) -> float:
         """Square pixels enclosed by the contours, at least one."""
-        return max(1.0, float(sum(cv2.contourArea(c.astype(np.float32)) for c in self.contours)))
+        return max(1.0, float(sum(map(cv2.contourArea, self.contours))))
 
     @cached_property
     def perimeter(self) -> float:
         """Total length of the contours in pixels, at least one."""
-        return max(
-            1.0, float(sum(cv2.arcLength(c.astype(np.float32), True) for c in self.contours))
-        )
+        return max(1.0, float(sum(cv2.arcLength(each, True) for each in self.contours)))
 
     @cached_property
-    def points(self) -> FloatArray:
+    def points(self) -> Contour:
         """``(N, 2)`` points of all contours, one contour after the other."""
         return np.concatenate(self.contours)
 
     @cached_property
     def hull_area(self) -> float:
         """Square pixels of the convex hull of all contours together, at least one."""
-        return max(1.0, float(cv2.contourArea(cv2.convexHull(self.points.astype(np.float32)))))
+        return max(1.0, float(cv2.contourArea(cv2.convexHull(self.points))))
 
     @cached_property
     def box(self) -> tuple[float, float]:
         """Width and height in pixels of the upright bounding box, stroke included."""
-        width, height = self.points.max(axis=0) - self.points.min(axis=0) + 1
+        _, _, width, height = cv2.boundingRect(self.points)
         return float(width), float(height)

@@ -35,7 +35,9 @@ MOST_LEAPS = 0.2
 landmark's places were misplaced."""
 
 
-def fault(poses: PoseSequence, landmarks: Sequence[str]) -> str | None:
+def fault(
+    poses: PoseSequence, landmarks: Sequence[str], trajectory: Trajectory | None = None
+) -> str | None:
     """Tell what makes a recording too poor to judge.
 
     Parameters
@@ -44,6 +46,8 @@ def fault(poses: PoseSequence, landmarks: Sequence[str]) -> str | None:
         The recording, repaired.
     landmarks
         What the gesture in question is shown with; those that the recording lacks are passed over.
+    trajectory
+        What the recording shows, where that is known already.
 
     Returns
     -------
@@ -54,13 +58,14 @@ def fault(poses: PoseSequence, landmarks: Sequence[str]) -> str | None:
         return f"it has {len(poses)} frames, and at least {FEWEST_FRAMES} are needed"
     if not poses.seen.any():
         return f"none of its {len(poses)} frames shows a landmark"
-    trajectory = Trajectory.from_poses(poses)
+    if trajectory is None:
+        trajectory = Trajectory.from_poses(poses)
     unit = body_unit(trajectory)
     for name in landmarks:
         if name not in poses.landmarks:
             continue
         spoken = name.replace("_", " ")
-        path = trajectory.select([name]).xy[:, 0] / unit
+        path = trajectory.xy[:, trajectory.landmarks.index(name)] / unit
         seen = np.flatnonzero(np.isfinite(path).all(axis=1))
         lasts = np.diff(trajectory.time[seen])
         followed = lasts[(lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)].sum() / poses.duration

@@ -17,7 +17,7 @@ from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.quality import fault
 from app.recognition.recognition_result import Recognition
-from app.recognition.repair import repaired
+from app.recognition.repair import Repair, repaired
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.switches import Counting
 from app.recognition.trajectory import Trajectory
@@ -108,17 +108,18 @@ class Recognizer:
         comparison = self.compare(query)
         result = self.decided(comparison)
         if repair:
-            poor = self._fault(repair.poses, result.nearest)
+            poor = self._fault(repair, result.nearest)
             label = None if poor else result.label
             result = replace(result, label=label, findings=repair.findings, fault=poor)
         return Examination(query=query, comparison=comparison, result=result)
 
-    def _fault(self, poses: PoseSequence, nearest: str) -> str | None:
+    def _fault(self, repair: Repair, nearest: str) -> str | None:
         """Tell why a recording is too poor to be the nearest gesture, whichever hand shows it."""
         gesture = self.language.gesture(nearest)
-        poor = fault(poses, gesture.salient)
+        poor = fault(repair.poses, gesture.salient, repair.trajectory)
         if poor and gesture.switches.mirror == "on":
-            poor = fault(poses, [other_side(name) for name in gesture.salient])
+            others = [other_side(name) for name in gesture.salient]
+            poor = fault(repair.poses, others, repair.trajectory)
         return poor
 
     def query(self, poses: PoseSequence) -> Trajectory:

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from app.recognition.jumps import body_unit
 from app.recognition.landmarks import SHOULDERS, other_side
+from app.recognition.middle import median
 from app.recognition.movement import part_of
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory import Trajectory
@@ -89,22 +90,22 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     """
     frames = len(trajectory)
     none = Sides(np.zeros(frames, dtype=bool), np.zeros(frames, dtype=bool))
-    left, right = sides_of(trajectory.landmarks)
-    seen = np.isfinite(trajectory.xy[:, [*left, *right]]).any(axis=(1, 2))
-    blended = _blended(trajectory)
-    clear = np.flatnonzero(seen & ~blended)
-    if not left or len(clear) < 3:
+    sides = np.array(sides_of(trajectory.landmarks), dtype=np.intp)
+    if not sides.size:
         return none
-    xy = trajectory.xy[clear] / body_unit(trajectory)
-    here, there = xy[:, left], xy[:, right]
-    apart = np.nansum(np.linalg.norm(here - there, axis=2), axis=1)
-    toll = TOLL * float(np.median(apart))
+    xy = trajectory.xy[:, sides]
+    blended = _blended(trajectory)
+    known = np.isfinite(xy)
+    clear = np.flatnonzero(~blended if known.all() else known.any(axis=(1, 2, 3)) & ~blended)
+    if len(clear) < 3:
+        return none
+    xy = (xy if len(clear) == frames else xy[clear]) / body_unit(trajectory)
+    toll = TOLL * median(_lengths(xy[:, 0] - xy[:, 1]).sum(axis=1))
     # A body in view tells its sides apart by the trunk, wherever the hands went meanwhile.
     speed = 0.0 if set(SHOULDERS) <= set(trajectory.landmarks) else UNSEEN_SPEED
-    both = np.stack([np.stack([here, there], 1), np.stack([there, here], 1)])
-    accelerations = _Accelerations.between(both, trajectory.time[clear], speed)
+    accelerations = _Accelerations.between(xy, trajectory.time[clear], speed)
     kept = accelerations.of(0, 0, 0)
-    toll = max(toll, TREMBLES * float(np.median(kept)))
+    toll = max(toll, TREMBLES * median(kept))
     # A change of sides spares at most the two accelerations around it.
     if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
         return none
@@ -143,10 +144,10 @@ def _blended(trajectory: Trajectory) -> Mask:
     """Tell ``(T,)`` in which frames the shoulders are too close to each other."""
     if not set(SHOULDERS) <= set(trajectory.landmarks):
         return np.zeros(len(trajectory), dtype=bool)
-    shoulders = trajectory.select(SHOULDERS).xy
-    width = np.linalg.norm(shoulders[:, 0] - shoulders[:, 1], axis=1)
+    first, second = (trajectory.landmarks.index(name) for name in SHOULDERS)
+    width = np.hypot(*(trajectory.xy[:, first] - trajectory.xy[:, second]).T)
     known = width[np.isfinite(width)]
-    usual = float(np.median(known)) if len(known) else 0.0
+    usual = median(known) if len(known) else 0.0
     return np.asarray((width < BLENDED * usual) & (usual > FRONTAL))
 
 
@@ -157,7 +158,7 @@ class _Accelerations:
     Attributes
     ----------
     both
-        ``(2, T, 2, K, 2)``: the landmarks of both sides, kept (0) or exchanged (1), in torso
+        ``(T, 2, K, 2)`` each: the landmarks of both sides, kept (0) or exchanged (1), in torso
         lengths.
     carried
         ``(T - 2, 1, 1, 1)``: share of the last step by which the next one carries on.
@@ -166,35 +167,40 @@ class _Accelerations:
 
     """
 
-    both: FloatArray
+    both: tuple[FloatArray, FloatArray]
     carried: FloatArray
     elsewhere: FloatArray
 
     @classmethod
-    def between(cls, both: FloatArray, time: FloatArray, unseen_speed: float) -> _Accelerations:
-        """Prepare for frames at times ``(T,)`` and a speed in gaps, torso lengths a second."""
+    def between(cls, xy: FloatArray, time: FloatArray, unseen_speed: float) -> _Accelerations:
+        """Prepare for ``(T, 2, K, 2)`` at ``(T,)`` and a speed in gaps, torso lengths a second."""
         steps = np.diff(time)
         # After a gap a hand may have stopped, so it is carried no farther than between the frames
         # before, and it may have gone elsewhere.
         carried = np.minimum(steps[1:] / steps[:-1], 1.0)[:, None, None, None]
-        gaps = np.maximum(steps[1:], steps[:-1]) - float(np.median(steps))
+        gaps = np.maximum(steps[1:], steps[:-1]) - median(steps)
         elsewhere = unseen_speed * np.maximum(gaps, 0.0)[:, None, None]
-        return cls(both, carried, elsewhere)
+        return cls((xy, xy[:, ::-1]), carried, elsewhere)
 
     def of(self, first: int, second: int, third: int) -> FloatArray:
         """Sum them, ``(T - 2,)``, for frames of which each is kept (0) or exchanged (1).
 
         A landmark that is not seen in all three counts nothing.
         """
-        before, last = self.both[first, :-2], self.both[second, 1:-1]
-        off = self.both[third, 2:] - last - self.carried * (last - before)
-        missed = np.maximum(np.hypot(off[..., 0], off[..., 1]) - self.elsewhere, 0.0)
-        return np.asarray(np.nansum(missed, axis=(1, 2)))
+        before, last = self.both[first][:-2], self.both[second][1:-1]
+        off = self.both[third][2:] - last - self.carried * (last - before)
+        return np.asarray(_lengths(off, self.elsewhere).sum(axis=(1, 2)))
 
     def of_all(self) -> FloatArray:
         """Sum them for every choice: ``(T - 2, 2, 2, 2)``."""
         choices = [self.of(*choice) for choice in np.ndindex(2, 2, 2)]
         return np.stack(choices, axis=1).reshape(-1, 2, 2, 2)
+
+
+def _lengths(vectors: FloatArray, less: FloatArray | float = 0.0) -> FloatArray:
+    """Return how much longer than `less` vectors ``(..., 2)`` are; 0 where not, or not known."""
+    squares = np.square(vectors)
+    return np.asarray(np.fmax(np.sqrt(squares[..., 0] + squares[..., 1]) - less, 0.0))
 
 
 def _steadiest(missed: FloatArray, toll: float) -> Mask:

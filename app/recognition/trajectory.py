@@ -122,6 +122,8 @@ class Trajectory:
         A gap lasts from the last moment a landmark is seen to the next one. Before the first
         and after the last of them there is nothing to bridge to.
         """
+        if np.isfinite(self.xy).all():
+            return self
         xy = self.xy.copy()
         seen = np.asarray(np.isfinite(xy).all(axis=2))
         for index in np.flatnonzero(~seen.all(axis=0)):
@@ -162,14 +164,26 @@ class Trajectory:
             When `count` is below 2 or the trajectory has fewer than two moments.
 
         """
+        return self.at(self.moments_in_arc_length(count))
+
+    def moments_in_arc_length(self, count: int) -> FloatArray:
+        """Return the `count` moments to which `resampled_in_arc_length` resamples.
+
+        Raises
+        ------
+        PoseError
+            As there.
+
+        """
         self._require_two(count)
-        steps = np.sqrt(np.nansum(np.diff(self.xy, axis=0) ** 2, axis=(1, 2)))
-        travelled = np.concatenate([[0.0], np.cumsum(steps)])
+        squares = np.fmax((self.xy[1:] - self.xy[:-1]) ** 2, 0.0)  # NaN: no length
+        travelled = np.zeros(len(self))
+        np.cumsum(np.sqrt(squares.sum(axis=(1, 2))), out=travelled[1:])
         if travelled[-1] == 0:
-            return self.resampled_in_time(count)
+            return np.linspace(self.time[0], self.time[-1], count)
         # A rest makes `travelled` flat; the tiny share of time keeps it strictly increasing.
         travelled += 1e-9 * travelled[-1] * (self.time / self.time[-1])
-        return self.at(np.interp(np.linspace(0, travelled[-1], count), travelled, self.time))
+        return np.interp(np.linspace(0, travelled[-1], count), travelled, self.time)
 
     def _require_two(self, count: int) -> None:
         if count < 2 or len(self) < 2:

@@ -11,6 +11,7 @@ import numpy as np
 
 from app.recognition.outline import BinaryImage, Outline
 from app.recognition.poses import FloatArray
+from app.recognition.stroke_moments import StrokeMoments
 from app.recognition.trajectory import Trajectory
 
 SIZE = 224
@@ -59,6 +60,11 @@ class Drawing:
         """The outer contours of the strokes, followed once for all voters that measure them."""
         return Outline.of(self.image)
 
+    @cached_property
+    def moments(self) -> StrokeMoments:
+        """The moments of the strokes, measured once for all voters that are made of them."""
+        return StrokeMoments.of(self.image)
+
     @property
     def empty(self) -> bool:
         """Tell whether there is no stroke in the image."""
@@ -87,7 +93,8 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
 
     """
     image: BinaryImage = np.zeros((SIZE, SIZE), dtype=np.uint8)
-    seen = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
+    known = np.isfinite(trajectory.xy).all(axis=2)
+    seen = trajectory.xy.reshape(-1, 2) if known.all() else trajectory.xy[known]
     if not len(seen):
         return Drawing(image, trajectory)
     low, high = seen.min(axis=0), seen.max(axis=0)
@@ -105,6 +112,8 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
 def _strokes(path: FloatArray) -> list[FloatArray]:
     """Split ``(T, 2)`` at its NaN rows into unbroken stretches."""
     known = np.isfinite(path).all(axis=1)
+    if known.all():
+        return [path]
     ends = np.flatnonzero(np.diff(known, prepend=False, append=False))
     return [path[start:end] for start, end in ends.reshape(-1, 2)]
 

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.elastic import elastic_distances, elastic_pairs, squared_distances
+from app.recognition.elastic import elastic_distances, elastic_pairs
 from app.recognition.poses import FloatArray
+from app.recognition.step_distances import squared_distances
 
 
 def plain_loop(query: FloatArray, reference: FloatArray, band: int) -> float:

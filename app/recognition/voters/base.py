@@ -82,8 +82,11 @@ def describe(drawing: Drawing, voters: Sequence[Voter]) -> dict[str, FloatArray]
     """
     if drawing.empty:
         return {}
+    described = [voter.describe(drawing) for voter in voters]
+    # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
+    rounded = np.round(np.concatenate([*described, []]), DESCRIPTOR_DIGITS) + 0.0
+    ends = np.cumsum([len(each) for each in described]).tolist()
     return {
-        # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
-        voter.name: np.round(voter.describe(drawing), DESCRIPTOR_DIGITS) + 0.0
-        for voter in voters
+        voter.name: rounded[end - len(each) : end]
+        for voter, each, end in zip(voters, described, ends, strict=True)
     }

@@ -3,6 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.outline import Contour
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import Drawing
 
@@ -23,6 +24,10 @@ START_POINTS = 128
 by less than a twelfth of its period."""
 
 _KEPT = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
+
+
+_BEGUN = np.exp(-2j * np.pi / START_POINTS * np.outer(_KEPT, np.arange(START_POINTS)))
+"""``(20, START_POINTS)``: what beginning elsewhere does to each harmonic."""
 
 
 class FourierDescriptors:
@@ -50,26 +55,22 @@ class FourierDescriptors:
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the distances at the best start points, ``(G,)`` between 0 and 2."""
-        spectrum, others = _complex(query), _complex(references)
-        products = np.zeros((len(references), START_POINTS), dtype=np.complex128)
-        products[:, _KEPT] = others.conj() * spectrum
-        correlation = np.fft.fft(products, axis=1).real.max(axis=1)
-        energy = (np.abs(spectrum) ** 2).sum() + (np.abs(others) ** 2).sum(axis=1)
+        half = len(query) // 2
+        begun = (query[:half] + 1j * query[half:])[:, None] * _BEGUN
+        correlation = (references @ np.concatenate([begun.real, begun.imag])).max(axis=1)
+        energy = query @ query + np.einsum("gd,gd->g", references, references)
         # The difference of nearly equal sums: what is below rounding error is 0.
         squares = energy - 2 * correlation
         squares[squares < 1e-12 * energy] = 0.0
         return np.asarray(np.sqrt(squares), dtype=np.float64)
 
 
-def _equal_steps(points: FloatArray) -> ComplexArray:
+def _equal_steps(points: Contour) -> ComplexArray:
     """Resample a closed polygon ``(N, 2)`` to `SAMPLES` complex numbers x + jy."""
-    closed = np.concatenate([points, points[:1]])
-    travelled = np.concatenate([[0.0], np.linalg.norm(np.diff(closed, axis=0), axis=1).cumsum()])
-    steps = np.linspace(0.0, travelled[-1], SAMPLES, endpoint=False)
-    x, y = (np.interp(steps, travelled, closed[:, axis]) for axis in range(2))
-    return np.asarray(x + 1j * y, dtype=np.complex128)
-
-
-def _complex(descriptor: FloatArray) -> ComplexArray:
-    half = descriptor.shape[-1] // 2
-    return np.asarray(descriptor[..., :half] + 1j * descriptor[..., half:])
+    closed = np.empty(len(points) + 1, dtype=np.complex128)
+    closed.real[:-1], closed.imag[:-1] = points.T
+    closed[-1] = closed[0]
+    travelled = np.zeros(len(closed))
+    np.cumsum(np.abs(closed[1:] - closed[:-1]), out=travelled[1:])
+    steps = travelled[-1] / SAMPLES * np.arange(SAMPLES)
+    return np.asarray(np.interp(steps, travelled, closed), dtype=np.complex128)

@@ -16,6 +16,10 @@ noise would outweigh the invariants that mean something.
 """
 
 
+ORDERS = ((2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+"""Powers of x and y in the moments that the invariants are made of."""
+
+
 class HuMoments:
     """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
 
@@ -33,7 +37,7 @@ class HuMoments:
 
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return the seven invariants, ``(7,)``."""
-        moments = cv2.moments(drawing.image, binaryImage=True)
+        moments = {f"nu{p}{q}": drawing.moments.central(p, q) for p, q in ORDERS}
         invariants = np.asarray(cv2.HuMoments(moments), dtype=np.float64).ravel()
         return np.asarray(np.sign(invariants) * np.log10(1 + np.abs(invariants) / FLOOR))
 

@@ -7,9 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from app.recognition.elastic import alignment_costs, squared_distances
-from app.recognition.movement import LIMBS, Movement
+from app.recognition.elastic import ElasticReferences
+from app.recognition.movement import LIMBS, Movement, sized
 from app.recognition.poses import FloatArray
+from app.recognition.step_distances import squared_distances
 from app.recognition.voters.base import euclidean_distances
 from app.recognition.voters.wrist_bend import WristBend
 
@@ -52,34 +53,23 @@ class MotionVoter(Protocol):
         ...
 
 
-class ElasticVoter(ABC):
+class ElasticVoter:
     """A voter that aligns two movements step by step, and so can be asked together with others."""
-
-    @abstractmethod
-    def step_costs(
-        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
-    ) -> FloatArray:
-        """Compare each step of the query with each of every reference: ``(N, N, M)``.
-
-        `out`: where to write them, contiguous.
-        """
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the elastic distances, ``(M,)``; infinite where nothing can be compared."""
-        return alignment_costs(self.step_costs(query, references), BAND)
+        return ElasticReferences(references, BAND).distances(query)
 
 
-class _Vectors(ElasticVoter):
-    """A voter whose every step is one vector, known throughout."""
+class UnorderedVoter(ABC):
+    """A voter to whom a movement is the same in whatever order its steps are taken."""
 
-    def step_costs(
-        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
-    ) -> FloatArray:
-        """Return squared distances."""
-        return squared_distances(query, references, out)
+    @abstractmethod
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """As of every `MotionVoter`."""
 
 
-class Path(_Vectors):
+class Path(ElasticVoter):
     """Elastic distance between the paths, free of place and size (Sakoe and Chiba 1978).
 
     Each landmark's path is relative to its own mean; all are divided by one size, the root of the
@@ -91,10 +81,10 @@ class Path(_Vectors):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` coordinates in sizes."""
-        return _sized(movement.paths - movement.paths.mean(axis=0)).reshape(len(movement.paths), -1)
+        return movement.figure.reshape(len(movement.paths), -1)
 
 
-class Direction(_Vectors):
+class Direction(ElasticVoter):
     """Elastic distance between the directions of travel (Taranta et al. 2017, Jackknife).
 
     The joint unit vector of all landmarks' velocities at equal steps: of no size, so that small
@@ -106,31 +96,15 @@ class Direction(_Vectors):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` joint unit vectors."""
-        steps = np.gradient(movement.paths, axis=0)
+        paths = movement.paths
+        steps = np.empty_like(paths)
+        steps[1:-1] = (paths[2:] - paths[:-2]) / 2
+        steps[0], steps[-1] = paths[1] - paths[0], paths[-1] - paths[-2]
         length = np.sqrt((steps**2).sum(axis=(1, 2), keepdims=True))
         return np.asarray((steps / (length + 1e-9)).reshape(len(steps), -1))
 
 
-class _Limbs(ElasticVoter):
-    """A voter that compares vectors along bones, each step weighted by how far it is under way."""
-
-    def step_costs(
-        self, query: FloatArray, references: FloatArray, out: FloatArray | None = None
-    ) -> FloatArray:
-        """Return squared distances; infinite where no limb is seen in both."""
-        if out is None:
-            out = np.empty((len(query), len(query), len(references)))
-        found, others_found = np.isfinite(query), np.isfinite(references)
-        if not (found.all() and others_found.all()):
-            known = found.any(axis=0) & others_found.any(axis=(0, 1))
-            query, references = query[:, known], references[..., known]
-        if query.shape[1]:
-            return squared_distances(query, references, out)
-        out.fill(np.inf)
-        return out
-
-
-class Posture(_Limbs):
+class Posture(ElasticVoter):
     """Elastic distance between the arms' postures: where the bones point, step by step.
 
     Vectors along upper arm, forearm, hand and thumb, divided by one size. Unlike a path they tell
@@ -144,11 +118,11 @@ class Posture(_Limbs):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 B)`` vectors in sizes, NaN where not seen; ``(N, 0)`` without limbs."""
-        weight = RESTING_WEIGHT + _under_way(movement)
-        return (_sized(movement.limbs) * weight[:, None, None]).reshape(len(weight), -1)
+        weight = RESTING_WEIGHT + movement.under_way
+        return (sized(movement.limbs) * weight[:, None, None]).reshape(len(weight), -1)
 
 
-class HandAttitude(_Limbs):
+class HandAttitude(ElasticVoter):
     """Elastic distance between the hands' attitudes: where fingers and thumb point (as `Posture`).
 
     Only the bones beyond the wrist, divided by their own size, and only under way: a thumb up
@@ -163,10 +137,10 @@ class HandAttitude(_Limbs):
         steps = len(movement.limbs)
         arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
         hands = arms[:, :, [inner == "wrist" for inner, _ in LIMBS]].reshape(steps, -1, 2)
-        return (_sized(hands) * _under_way(movement)[:, None, None]).reshape(steps, -1)
+        return (sized(hands) * movement.under_way[:, None, None]).reshape(steps, -1)
 
 
-class Cloud:
+class Cloud(UnorderedVoter):
     """Distance between the figures as clouds of points, whatever the order ($P, Vatavu 2012).
 
     The mean distance of each step of either figure to the nearest step of the other one
@@ -178,14 +152,13 @@ class Cloud:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` coordinates in sizes."""
-        return _sized(movement.paths - movement.paths.mean(axis=0)).reshape(len(movement.paths), -1)
+        return movement.figure.reshape(len(movement.paths), -1)
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the chamfer distances, ``(M,)``."""
         squares = squared_distances(query, references)
-        there = np.sqrt(squares.min(axis=1)).mean(axis=0)
-        back = np.sqrt(squares.min(axis=0)).mean(axis=0)
-        return np.asarray((there + back) / 2, dtype=np.float64)
+        nearest = np.stack([squares.min(axis=1), squares.min(axis=0)])
+        return np.asarray(np.sqrt(nearest).mean(axis=(0, 1)), dtype=np.float64)
 
 
 class StrokeDirection:
@@ -200,7 +173,7 @@ class StrokeDirection:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(3 L,)``: per landmark the signed area, then x and y of the way."""
-        paths = _sized(movement.paths)
+        paths = sized(movement.paths)
         before, after = paths[:-1], paths[1:]
         cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
         way = paths[-1] - paths[0]
@@ -238,7 +211,7 @@ class PathLength:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return the logarithm to base 2 of the length, ``(1,)``."""
-        steps = np.diff(_sized(movement.paths - movement.paths.mean(axis=0)), axis=0)
+        steps = movement.figure[1:] - movement.figure[:-1]
         length = float(np.sqrt((steps**2).sum(axis=(1, 2))).sum())
         return np.log2([max(length, SHORTEST_LENGTH)])
 
@@ -260,18 +233,6 @@ class Tempo:
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(M,)``."""
         return euclidean_distances(query, references)
-
-
-def _under_way(movement: Movement) -> FloatArray:
-    """Return ``(N,)``: each step's distance from the first, as a share of the largest."""
-    away = np.sqrt(((movement.paths - movement.paths[0]) ** 2).sum(axis=(1, 2)))
-    return np.asarray(away / max(away.max(), 1e-9))
-
-
-def _sized(vectors: FloatArray) -> FloatArray:
-    """Divide ``(N, K, 2)`` by the root of the mean over the steps of the summed squares."""
-    size = np.sqrt(np.nansum(vectors**2) / len(vectors))
-    return vectors / size if size > 0 else vectors
 
 
 MOTION_VOTERS: tuple[MotionVoter, ...] = (

@@ -2,7 +2,6 @@
 
 from math import comb, factorial
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -35,46 +34,26 @@ class ZernikeMoments:
 
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return the magnitudes, ``(25,)`` in the order of `ORDERS`."""
-        strokes = (drawing.image > 0).astype(np.float64)
-        y, x = np.arange(strokes.shape[0]), np.arange(strokes.shape[1])
-        centre = np.array([strokes.sum(axis=0) @ x, strokes.sum(axis=1) @ y]) / strokes.sum()
-        # The pixel that lies farthest away is one of an outer contour.
-        edges, _ = cv2.findContours(drawing.image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-        away = np.concatenate(edges)[:, 0] - centre
-        radius = max(1.0, float(np.hypot(away[:, 0], away[:, 1]).max()))
-        return zernike_magnitudes(strokes, (x - centre[0]) / radius, (y - centre[1]) / radius)
+        return zernike_magnitudes(drawing.moments.means)
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return Euclidean distances, ``(G,)``."""
         return euclidean_distances(query, references)
 
 
-def zernike_magnitudes(weights: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return ``|Z|``, ``(25,)``, of an image in the unit disc.
+def zernike_magnitudes(means: FloatArray) -> FloatArray:
+    """Return ``|Z|``, ``(25,)``, of what lies in the unit disc.
 
     Zernike's polynomials are sums of products of powers of x and y, and their means are the same
-    sums of the means of those: two matrix products over the image.
+    sums of the means of those.
 
     Parameters
     ----------
-    weights
-        ``(H, W)``, not all of them 0.
-    x, y
-        ``(W,)`` and ``(H,)``: where the columns and rows lie.
+    means
+        ``(DEGREE + 1, DEGREE + 1)``: the mean of ``x^p y^q``.
 
     """
-    means = _powers(x) @ weights.T @ _powers(y).T / weights.sum()
-    degrees = np.array([n for n, _ in ORDERS])
-    moments = _OF_POWERS @ means.ravel()
-    return np.asarray((degrees + 1) / np.pi * np.abs(moments), dtype=np.float64)
-
-
-def _powers(values: FloatArray) -> FloatArray:
-    """Return the powers 0 to `DEGREE` of ``(N,)`` values, ``(DEGREE + 1, N)``."""
-    powers = np.ones((DEGREE + 1, len(values)))
-    for exponent in range(1, DEGREE + 1):
-        powers[exponent] = powers[exponent - 1] * values
-    return powers
+    return np.asarray(_FACTORS * np.abs(_OF_POWERS @ means.ravel()), dtype=np.float64)
 
 
 def _coefficients_of_powers() -> npt.NDArray[np.complex128]:
@@ -99,3 +78,4 @@ def _coefficients_of_powers() -> npt.NDArray[np.complex128]:
 
 
 _OF_POWERS = _coefficients_of_powers()
+_FACTORS = (np.array([n for n, _ in ORDERS]) + 1) / np.pi

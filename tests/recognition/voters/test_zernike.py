@@ -26,8 +26,9 @@ def by_mahotas(drawing: Drawing) -> np.ndarray[tuple[int], np.dtype[np.float64]]
 
 
 def of_points(points: FloatArray) -> FloatArray:
-    """Return the magnitudes of equally weighted points ``(N, 2)``, each a column and a row."""
-    return zernike_magnitudes(np.eye(len(points)), *points.T)
+    """Return the magnitudes of equally weighted points ``(N, 2)`` of the unit disc."""
+    x, y = (points[:, axis, None] ** np.arange(DEGREE + 1) for axis in range(2))
+    return zernike_magnitudes(x.T @ y / len(points))
 
 
 @pytest.mark.parametrize("name", FIGURES)

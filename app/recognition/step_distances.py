@@ -1,0 +1,89 @@
+"""Distances between the steps of sequences: squared, all steps with all, as matrix products.
+
+``|q - r|^2 = |q|^2 - 2 q . r + |r|^2`` is the product of ``(-2 q, |q|^2, 1)`` and
+``(r, 1, |r|^2)``, so that one multiplication of matrices compares a query with many references.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.poses import FloatArray
+
+ROUNDING = 1e-12
+"""Squared distances below it are what rounding leaves of differences of nearly equal sums: 0."""
+
+
+def squared_distances(
+    query: FloatArray, references: FloatArray, out: FloatArray | None = None
+) -> FloatArray:
+    """Measure the squared distance of every step of the query to every step of the references.
+
+    Parameters
+    ----------
+    query, references
+        ``(..., N, D)`` and ``(..., M, N, D)``. NaN: this component is not known; it is left out,
+        and what is known of two vectors stands for the whole.
+    out
+        Where to write the answer; the last three axes contiguous.
+
+    Returns
+    -------
+    ``(..., N, N, M)``, infinite where nothing can be compared.
+
+    """
+    *leading, count, steps, _ = references.shape
+    flat = (*leading, query.shape[-2], steps * count)
+    if out is None:
+        out = np.empty((*leading, query.shape[-2], steps, count))
+    squares = out.reshape(flat)
+    if query.shape[-1] and np.isfinite(query).all() and np.isfinite(references).all():
+        np.matmul(for_query(query), _flat(for_references(references)), out=squares)
+    else:
+        _of_what_is_known(query, references, squares)
+    squares[squares < ROUNDING] = 0.0
+    return out
+
+
+def for_query(query: FloatArray) -> FloatArray:
+    """Return the left side of the product, ``(..., N, D + 2)``, of ``(..., N, D)``."""
+    *leading, size = query.shape
+    left = np.ones((*leading, size + 2))
+    np.multiply(query, -2.0, out=left[..., :size])
+    np.einsum("...d,...d->...", query, query, out=left[..., size])
+    return left
+
+
+def for_references(references: FloatArray) -> FloatArray:
+    """Return its right side, ``(..., D + 2, N, M)``, of ``(..., M, N, D)``."""
+    *leading, count, steps, size = references.shape
+    right = np.ones((*leading, size + 2, steps, count))
+    right[..., :size, :, :] = np.moveaxis(references, (-1, -2, -3), (-3, -2, -1))
+    np.einsum("...mnd,...mnd->...nm", references, references, out=right[..., size + 1, :, :])
+    return right
+
+
+def _of_what_is_known(query: FloatArray, references: FloatArray, out: FloatArray) -> None:
+    """Write the squares, ``(..., N, N M)``, for vectors with components that are not known."""
+    known, others_known = np.isfinite(query), np.isfinite(references)
+    left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
+    mask, others_mask = known.astype(np.float64), _turned(others_known.astype(np.float64))
+    turned = _turned(right)
+    squares = left**2 @ others_mask + mask @ turned**2 - 2.0 * (left @ turned)
+    compared = mask @ others_mask
+    scale = np.divide(
+        query.shape[-1], compared, out=np.full_like(compared, np.inf), where=compared > 0
+    )
+    np.multiply(np.where(compared > 0, squares, 1.0), scale, out=out)
+
+
+def _turned(references: FloatArray) -> FloatArray:
+    """Turn ``(..., M, N, D)`` into ``(..., D, N M)``."""
+    turned = np.ascontiguousarray(np.moveaxis(references, (-1, -2, -3), (-3, -2, -1)))
+    return _flat(turned)
+
+
+def _flat(sides: FloatArray) -> FloatArray:
+    """Put the steps of all references side by side: ``(..., D, N, M)`` to ``(..., D, N M)``."""
+    *leading, steps, count = sides.shape
+    return sides.reshape(*leading, steps * count)
