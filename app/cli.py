@@ -22,18 +22,16 @@ from app.check_command import check
 from app.clip_argument import (
     ClipReading,
     Demonstration,
-    EstimatorOption,
     FrameRateOption,
     FrameSizeOption,
-    HandsOption,
     LandmarkOption,
-    WaterOption,
     clip_and_span,
     demonstration_poses,
     keypoint_options,
     read_clip,
     spotted_takes,
 )
+from app.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.evaluate_command import evaluate
 from app.phrase_command import phrase
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take

@@ -23,28 +23,6 @@ from app.recognition.spotting import Spotter
 from app.recognition.takes import LONGEST_TAKE
 from app.terminal import people, progress_bar
 
-WaterOption = Annotated[
-    WaterCorrection,
-    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
-]
-
-EstimatorOption = Annotated[
-    str,
-    typer.Option(
-        metavar="NAME",
-        help="Finds the body: onnx, mediapipe, or yolo-pose:FILE.onnx, an Ultralytics export.",
-    ),
-]
-
-HandsOption = Annotated[
-    str,
-    typer.Option(
-        metavar="NAME",
-        help="Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
-    ),
-]
-
-
 FrameRateOption = Annotated[
     float | None,
     typer.Option(

@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from app.clip_argument import EstimatorOption, HandsOption, WaterOption
+from app.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS

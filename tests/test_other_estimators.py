@@ -84,6 +84,42 @@ def test_a_language_that_follows_a_finger_is_refused_before_the_clip_is_read(
     assert "gives no landmark 'right_index', which 'pointed' of 'fingers' follows" in ended.error
 
 
+@pytest.mark.slow
+def test_the_robot_says_by_yolo_pose_what_recognize_says(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle, line=line).save(file)
+    clip = marker_clip(tmp_path / "line.mkv", line)
+    options: tuple[str | Path, ...] = (
+        "--language",
+        file,
+        "--without-salutes",
+        *arguments(model),
+    )
+    ended = osg_studio("recognize", clip, "--json", *options)
+    takes = json.loads(ended.out)["takes"]
+    assert [take["label"] for take in takes] == ["line"]
+    told = osg_studio("robot", "--source", clip, *options)
+    assert told.code == 0, told.error
+    events = [json.loads(line) for line in told.out.splitlines()]
+    recognised = [event for event in events if event["event"] == "take_recognized"]
+    for event, take in zip(recognised, takes, strict=True):
+        for key in ("label", "start", "end", "confidence"):
+            assert event[key] == pytest.approx(take[key], abs=1e-6), key
+
+
+def test_a_robot_without_hands_waits_for_no_salute(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle).save(file)
+    clip = marker_clip(tmp_path / "circle.mkv", circle, frames=2)
+    ended = osg_studio("robot", "--language", file, "--source", clip, *arguments(model))
+    assert ended.code == 2
+    assert "finds no hand and so no salute" in ended.error
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -103,7 +103,10 @@ def numbered_landmark(name: str, first: int = 0) -> str:
 
 
 def _numbered(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:
-    numbers = sorted(int(name) for name in points if name.isdigit())
-    if len(numbers) != len(points) or len(numbers) != len(POSE_LANDMARKS):
-        return points
-    return {numbered_landmark(name, numbers[0]): places for name, places in points.items()}
+    numbers = {int(name) for name in points if name.isdigit()}
+    for first in (0, 1):
+        if numbers == set(range(first, first + len(POSE_LANDMARKS))) and len(points) == len(
+            numbers
+        ):
+            return {numbered_landmark(name, first): places for name, places in points.items()}
+    return points

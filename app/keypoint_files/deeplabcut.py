@@ -6,15 +6,23 @@ them when read. CSV holds numbers: ``deeplabcut.analyze_videos_converth5_to_csv`
 
 from __future__ import annotations
 
+import codecs
 import csv
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from app.keypoint_files.people import most_prominent
-from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.keypoint_files.people import prominence_over
+from app.keypoint_files.table import (
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    seen_only,
+    visibility_of,
+)
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses import FloatArray
 from app.recognition.video_limits import VideoLimits
@@ -26,6 +34,8 @@ often somewhere else altogether."""
 MOST_HEADINGS: Final = 4
 """Rows: scorer, individuals, bodyparts, coords."""
 
+COORDINATES: Final = ("x", "y", "likelihood")
+
 ONLY: Final = "single"
 """What the one individual of a file without individuals is called."""
 
@@ -33,7 +43,7 @@ ONLY: Final = "single"
 def is_deeplabcut(path: Path) -> bool:
     """Tell whether a CSV file begins as DeepLabCut's do."""
     with path.open("rb") as file:
-        return file.read(6).lower() == b"scorer"
+        return file.read(9).removeprefix(codecs.BOM_UTF8).lower().startswith(b"scorer")
 
 
 def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
@@ -54,26 +64,30 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
         raise KeypointFileError(f"{path} has headings and no frame")
     table = np.array(rows)
     who = list(dict.fromkeys(headings["individuals"]))
-    names = tuple(dict.fromkeys(headings["bodyparts"]))
-    xy = np.full((len(who), len(rows), len(names), 2), np.nan)
-    confidence = np.zeros(xy.shape[:3])
-    for column, (individual, part, axis) in enumerate(
-        zip(headings["individuals"], headings["bodyparts"], headings["coords"], strict=True), 1
-    ):
-        place = who.index(individual), slice(None), names.index(part)
-        if axis == "likelihood":
-            confidence[place] = np.nan_to_num(table[:, column])
-        else:
-            xy[(*place, "xy".index(axis))] = table[:, column]
-    confidence = np.clip(confidence, 0, 1)
-    xy = seen_only(xy, confidence, LEAST_LIKELIHOOD)
-    chosen = most_prominent(xy, confidence)
+    everybody = [_individual(table, headings, each) for each in who]
+    chosen = int(np.argmax([prominence_over(one.xy, one.confidence) for one in everybody]))
+    return replace(everybody[chosen], notes=_notes(who, chosen))
+
+
+def _individual(table: FloatArray, headings: dict[str, list[str]], who: str) -> KeypointTable:
+    """Take one individual's columns out of the rows ``(T, 1 + columns)``."""
+    columns = [
+        (part, axis, column)
+        for column, (individual, part, axis) in enumerate(
+            zip(headings["individuals"], headings["bodyparts"], headings["coords"], strict=True), 1
+        )
+        if individual == who
+    ]
+    names = tuple(dict.fromkeys(part for part, _, _ in columns))
+    points = np.full((len(table), len(names), len(COORDINATES)), np.nan)
+    for part, axis, column in columns:
+        points[:, names.index(part), COORDINATES.index(axis)] = table[:, column]
+    confidence = visibility_of(points)
     return KeypointTable(
         names=names,
-        xy=xy[chosen],
-        confidence=confidence[chosen],
+        xy=seen_only(points[..., :2], confidence, LEAST_LIKELIHOOD),
+        confidence=confidence,
         times=Times(table[:, 0], counted=True),
-        notes=_notes(who, chosen),
     )
 
 
@@ -86,18 +100,14 @@ def _headings(lines: Iterator[list[str]], path: Path) -> dict[str, list[str]]:
         if "coords" in rows or len(rows) > MOST_HEADINGS:
             break
     coords = rows.get("coords", [])
-    known = {"x", "y", "likelihood"}
-    if (
-        "bodyparts" not in rows
-        or not coords
-        or set(coords) - known
-        or not {"x", "y"} <= set(coords)
-    ):
+    told = {"x", "y"} <= set(coords) <= set(COORDINATES)
+    if not told or len(rows.get("bodyparts", ())) != len(coords):
         raise KeypointFileError(
             f"{path} lacks DeepLabCut's headings scorer, bodyparts, coords (x, y, likelihood); "
             f"write it with deeplabcut.analyze_videos_converth5_to_csv"
         )
-    rows.setdefault("individuals", [ONLY] * len(coords))
+    if len(rows.setdefault("individuals", [ONLY] * len(coords))) != len(coords):
+        raise KeypointFileError(f"{path} has headings of different lengths; export it again")
     return rows
 
 

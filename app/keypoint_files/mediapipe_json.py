@@ -16,8 +16,15 @@ import numpy as np
 
 from app.keypoint_files.columns import AXES, MOST_LANDMARKS, numbered_landmark, plain, time_column
 from app.keypoint_files.mediapipe_table import times_of
-from app.keypoint_files.table import KeypointOptions, KeypointTable, seen_only, visibility_of
-from app.recognition.errors import KeypointFileError
+from app.keypoint_files.table import (
+    MALFORMED,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    seen_only,
+    visibility_of,
+)
+from app.recognition.errors import KeypointFileError, RecognitionError
 from app.recognition.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
@@ -41,9 +48,10 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         frames = _frames(content)
         limits.require_frames(len(frames))
         rows = [_landmarks(frame) for frame in frames]
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
-        if isinstance(error, KeypointFileError):
-            raise
+        about, times = _about(content), _times(frames)
+    except RecognitionError:
+        raise
+    except MALFORMED as error:
         raise KeypointFileError(
             f"{path} holds no frames of landmarks ({type(error).__name__}: {error}); expected a "
             f"list of frames, each a list of landmarks with x and y"
@@ -58,14 +66,13 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
     points = np.array([[row.get(name, unseen) for name in names] for row in rows])
     told = bool(np.isfinite(points[..., 2]).any())
     confidence = visibility_of(points) if told else None
-    times, unit = _times(frames)
     return KeypointTable(
         names=names,
         xy=seen_only(points[..., :2], confidence, 0.0),
         confidence=confidence,
-        times=times_of(np.array(times), unit),
-        frame_size=_size(content),
-        frame_rate=_rate(content),
+        times=times,
+        frame_size=about.frame_size,
+        frame_rate=about.frame_rate,
     )
 
 
@@ -78,17 +85,15 @@ def _frames(content: Any) -> list[Any]:
     return frames
 
 
-def _size(content: Any) -> tuple[int, int] | None:
-    """Return the video's width and height, where the file tells them beside the frames."""
-    if isinstance(content, Mapping) and content.get("width") and content.get("height"):
-        return int(content["width"]), int(content["height"])
-    return None
-
-
-def _rate(content: Any) -> float | None:
-    if isinstance(content, Mapping) and content.get("fps"):
-        return float(content["fps"])
-    return None
+def _about(content: Any) -> KeypointOptions:
+    """Return size and rate of the video, where the file tells them beside the frames."""
+    if not isinstance(content, Mapping):
+        return KeypointOptions()
+    rate, width, height = (content.get(key) for key in ("fps", "width", "height"))
+    return KeypointOptions(
+        frame_rate=None if rate is None else float(rate),
+        frame_size=None if width is None or height is None else (int(width), int(height)),
+    )
 
 
 def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
@@ -119,13 +124,13 @@ def _point(point: Any) -> tuple[float, float, float]:
     return float(x), float(y), np.nan if visibility is None else float(visibility)
 
 
-def _times(frames: list[Any]) -> tuple[list[float], str]:
-    """Return when the frames are, and in what unit; without any time they are counted."""
-    counted = [float(index) for index in range(len(frames))]
-    if not frames or not all(isinstance(frame, Mapping) for frame in frames):
-        return counted, "frames"
-    keys = [str(key) for key in frames[0]]
-    place, unit = time_column(keys)
+def _times(frames: list[Any]) -> Times:
+    """Return when the frames are; without any time they are counted."""
+    place, unit = None, "frames"
+    keys: list[str] = []
+    if frames and all(isinstance(frame, Mapping) for frame in frames):
+        keys = [str(key) for key in frames[0]]
+        place, unit = time_column(keys)
     if place is None:
-        return counted, "frames"
-    return [float(frame[keys[place]]) for frame in frames], unit
+        return Times(np.arange(len(frames), dtype=np.float64), counted=True)
+    return times_of(np.array([float(frame[keys[place]]) for frame in frames]), unit)

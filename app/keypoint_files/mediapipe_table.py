@@ -98,9 +98,9 @@ def _long(
     frames: dict[float, dict[str, list[float]]] = {}
     for number, line in enumerate(_lines(lines)):
         at = _number(line, when, number, path)
-        limits.require_frames(len(frames))
         landmarks = frames.setdefault(at, {})
-        name = numbered_landmark(line[named].strip())
+        limits.require_frames(len(frames))
+        name = numbered_landmark(line[named].strip()) if named < len(line) else ""
         if name in landmarks or len(landmarks) >= MOST_LANDMARKS:
             raise KeypointFileError(
                 f"{path}: row {number} is the second for {name} at {at:g}; keep one person's rows"
@@ -126,8 +126,9 @@ def _table(
     )
 
 
-def _lines(lines: Iterator[list[str]]) -> list[list[str]]:
-    return [line for line in lines if any(cell.strip() for cell in line)]
+def _lines(lines: Iterator[list[str]]) -> Iterator[list[str]]:
+    """Pass over empty lines."""
+    return (line for line in lines if any(cell.strip() for cell in line))
 
 
 def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> float:

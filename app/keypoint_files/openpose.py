@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
 from app.recognition.estimation.base import SIDES, Hand
 from app.recognition.landmark_sets import BODY_25, COCO_18, LandmarkSet
@@ -118,7 +118,7 @@ def _people(file: Path) -> list[_Person]:
         found = [_person(entry, file) for entry in people]
     except KeypointFileError:
         raise
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except MALFORMED as error:
         raise KeypointFileError(
             f"{file} is no frame of OpenPose ({type(error).__name__}: {error}); expected an object "
             f'with "people"'

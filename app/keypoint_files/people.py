@@ -1,4 +1,4 @@
-"""One person out of a file of several."""
+"""How much a person stands out in a file of several."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from app.recognition.poses import FloatArray
 from app.recognition.subject import boxes_around, prominence
 
 
-def most_prominent(xy: FloatArray, confidence: FloatArray | None) -> int:
-    """Return which of N tracked people stands out most over the whole recording.
+def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> float:
+    """Return how much one tracked person stands out over T frames.
 
     Area of the box around what is seen, times the mean confidence, summed over the frames: who is
     near, well seen and long in view.
@@ -17,19 +17,11 @@ def most_prominent(xy: FloatArray, confidence: FloatArray | None) -> int:
     Parameters
     ----------
     xy
-        ``(N, T, K, 2)``; NaN: not seen.
+        ``(T, K, 2)``; NaN: not seen.
     confidence
-        ``(N, T, K)`` in [0, 1], or None.
+        ``(T, K)`` in [0, 1], or None.
 
     """
-    totals = [
-        _prominence(one, None if confidence is None else confidence[index])
-        for index, one in enumerate(xy)
-    ]
-    return int(np.argmax(totals))
-
-
-def _prominence(xy: FloatArray, confidence: FloatArray | None) -> float:
     seen = np.asarray(np.isfinite(xy).all(axis=2))
     frames = seen.any(axis=1)
     if not frames.any():

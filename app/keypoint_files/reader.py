@@ -123,6 +123,12 @@ def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> Keypoin
             f"{path}: no keypoint is seen in any of {len(table.xy)} frames; is somebody in the "
             f"picture?"
         )
+    if table.around_zero:
+        raise KeypointFileError(
+            f"{path} has coordinates around 0, which are in no picture; give landmarks in pixels "
+            f"or fractions of the picture, not MediaPipe's world landmarks nor OpenPose's "
+            f"--keypoint_scale 4"
+        )
     return table
 
 

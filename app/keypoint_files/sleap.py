@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.keypoint_files.people import most_prominent
+from app.keypoint_files.people import prominence_over
 from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses import FloatArray
@@ -41,14 +41,11 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
     frames = np.array([int(frame.frame_idx) for frame in labelled], dtype=np.float64)
     tracks = list(labels.tracks)
     if tracks:
-        points = _by_track(labelled, tracks, len(names))
-        chosen = most_prominent(points[..., :2], points[..., 2])
-        followed = points[chosen]
-        who = tracks[chosen].name
-        notes = _notes(len(tracks), f"track {who!r} stands out most and is followed")
+        track = _most_prominent(labelled, tracks)
+        followed = _of_track(labelled, track, len(names))
+        notes = _notes(len(tracks), f"track {track.name!r} stands out most and is followed")
     else:
-        rate = options.nominal_rate
-        followed, most = _by_place(labelled, frames / rate, len(names))
+        followed, most = _by_place(labelled, frames / options.nominal_rate, len(names))
         notes = _notes(most, "the largest is followed")
     if len(labels.videos) > 1:
         notes += (f"{path.name} holds {len(labels.videos)} videos; the first is read",)
@@ -95,13 +92,24 @@ def _points(instance: Any) -> FloatArray:
     return np.column_stack([points, score])
 
 
-def _by_track(labelled: list[Any], tracks: list[Any], nodes: int) -> FloatArray:
-    """``(N, T, K, 3)`` x, y, score."""
-    points = np.full((len(tracks), len(labelled), nodes, 3), np.nan)
+def _most_prominent(labelled: list[Any], tracks: list[Any]) -> Any:
+    """Return the track that stands out most; there may be thousands of short ones."""
+    total = dict.fromkeys(map(id, tracks), 0.0)
+    for frame in labelled:
+        for instance in frame.instances:
+            if id(instance.track) in total:
+                points = _points(instance)[None]
+                total[id(instance.track)] += prominence_over(points[..., :2], points[..., 2])
+    return max(tracks, key=lambda track: total[id(track)])
+
+
+def _of_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
+    """``(T, K, 3)`` x, y, score of one track."""
+    points = np.full((len(labelled), nodes, 3), np.nan)
     for row, frame in enumerate(labelled):
         for instance in frame.instances:
-            if instance.track in tracks:
-                points[tracks.index(instance.track), row] = _points(instance)
+            if instance.track is track:
+                points[row] = _points(instance)
     return points
 
 

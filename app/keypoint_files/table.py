@@ -16,8 +16,23 @@ LARGEST_FRACTION = 3.0
 """Coordinates of which nearly all are below this are fractions of the picture: landmarks beyond its
 edge lie one or two pictures away, and a body of three pixels shows no gesture."""
 
+MOST_NEGATIVE = 0.25
+"""Share of the coordinates that may lie left of or above the picture: of a body in it an arm or the
+legs are outside. MediaPipe's world landmarks, metres from the hips, are negative by half."""
+
 FALLBACK_RATE = 30.0
 """Frames per second of most cameras."""
+
+MALFORMED = (
+    ValueError,
+    TypeError,
+    KeyError,
+    IndexError,
+    AttributeError,
+    OverflowError,
+    RecursionError,
+)
+"""What reading raises where something else stands than expected, or numbers beyond all bounds."""
 
 NEARLY_ALL = 95.0
 """Per cent; a few landmarks are always lost far outside."""
@@ -131,6 +146,12 @@ class KeypointTable:
     frame_rate: float | None = None
     hands: tuple[tuple[Hand, ...], ...] | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def around_zero(self) -> bool:
+        """Whether coordinates lie around 0, and so neither in a picture nor beside it."""
+        known = self.xy[np.isfinite(self.xy)]
+        return bool((known < 0).mean() > MOST_NEGATIVE) if len(known) else False
 
     @property
     def in_fractions(self) -> bool:

@@ -140,7 +140,7 @@ class Runtime:
         if self._observer is not None:
             self._observer(frame, found)
         height, width = frame.image.shape[:2]
-        moment = moment_of(found, frame.time, (width, height))
+        moment = moment_of(found, frame.time, (width, height), landmarks_of(self._estimator))
         yield from self._listener.feed(moment, best_salute(found.hands))
         yield from self._drops.count(frame)
 

@@ -59,6 +59,11 @@ def test_of_several_individuals_the_most_prominent_is_followed(tmp_path: Path) -
     [
         ("scorer,a\nbodyparts,nose\n", "lacks DeepLabCut's headings"),
         ("scorer,a,a\nbodyparts,nose,nose\ncoords,x,z\n0,1,2\n", "lacks DeepLabCut's headings"),
+        ("scorer,a,a\nbodyparts,nose\ncoords,x,y\n0,1,2\n", "lacks DeepLabCut's headings"),
+        (
+            "scorer,a,a\nindividuals,b\nbodyparts,nose,nose\ncoords,x,y\n0,1,2\n",
+            "headings of different lengths",
+        ),
         ("scorer,a,a\nbodyparts,nose,nose\ncoords,x,y\n", "no frame"),
         ("scorer,a,a\nbodyparts,nose,nose\ncoords,x,y\n0,1\n", "row 0 has 2 cells, expected 3"),
         (
@@ -75,3 +80,11 @@ def test_what_is_no_file_of_predictions_is_refused(
     with pytest.raises(KeypointFileError) as refused:
         read_keypoints(tmp_path / "dive.csv", AT_25)
     assert message in str(refused.value)
+
+
+def test_without_likelihoods_what_has_a_place_is_seen(tmp_path: Path) -> None:
+    (tmp_path / "dive.csv").write_text(
+        "\ufeffscorer,a,a\nbodyparts,nose,nose\ncoords,x,y\n0,10,20\n1,,\n", encoding="utf-8"
+    )
+    poses = read_keypoints(tmp_path / "dive.csv", AT_25).recording.poses
+    assert poses.seen.tolist() == [[True], [False]]

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from app.keypoint_files import KeypointOptions, read_keypoints
-from app.recognition.errors import KeypointFileError
+from app.recognition.errors import KeypointFileError, VideoError
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import PoseSequence
+from app.recognition.video_limits import VideoLimits
 from tests.keypoint_files.files import (
     fractions,
     unseen_frames,
@@ -163,6 +164,11 @@ def test_a_table_that_cannot_be_read_is_told_where(
 @pytest.mark.parametrize(
     "content",
     [
+        '{"frames": [{"time": 0, "landmarks": [[1, 2]]}, {"landmarks": [[1, 2]]}]}',
+        '{"frames": [[[1, 2]]], "fps": "fast"}',
+        '{"frames": [[[1, 2]]], "fps": -30}',
+        '{"frames": [[[1, 2]]], "width": 0, "height": 9}',
+        "[[[1" + "0" * 400 + ", 2]]]",
         "",
         "7",
         "{}",
@@ -219,3 +225,22 @@ def test_a_real_file_of_mediapipe_is_read(shared_data: Path) -> None:
     assert poses.seen.all()
     assert poses.column("nose")[:, 1].mean() < poses.column("left_hip")[:, 1].mean()
     assert replace(poses).torso_length() is not None
+
+
+def test_landmarks_around_zero_are_in_no_picture(tmp_path: Path) -> None:
+    world = replace(POSES, xy=(POSES.xy - POSES.xy.mean(axis=(0, 1))) / 240)
+    path = write_long(tmp_path / "world.csv", world)
+    with pytest.raises(KeypointFileError, match="not MediaPipe's world landmarks"):
+        read_keypoints(path, OPTIONS)
+
+
+def test_too_long_a_recording_is_refused_by_its_limit(tmp_path: Path) -> None:
+    few = VideoLimits(frames=5)
+    (tmp_path / "pose.json").write_text(json.dumps(OBJECTS))
+    for path in (
+        tmp_path / "pose.json",
+        write_long(tmp_path / "long.csv", POSES),
+        write_numbered(tmp_path / "numbered.csv", POSES),
+    ):
+        with pytest.raises(VideoError, match="more than the limit of 5"):
+            read_keypoints(path, OPTIONS, few)

@@ -144,9 +144,9 @@ def save_yolo_pose(path: Path, *, side: int = 640, suppressed: bool = False) -> 
     people = graph.add("Concat", middle, extent, score, keypoints, axis=0)
     anchors = sum((side // stride) ** 2 for stride in (8, 16, 32))
     spread = np.zeros((2, anchors))
-    spread[0, 100:104] = spread[1, 200:204] = 1
+    spread[0, :4] = spread[1, -4:] = 1
     scale, error = np.ones((56, anchors)), np.zeros((56, anchors))
-    for place in (100, 200):
+    for place in (0, anchors - 4):
         scale[4, place : place + 4] = (0.7, 0.8, 0.95, 0.6)
         error[0, place : place + 4] = (2, -2, 0, 1)
         error[5::3, place : place + 4] = (30, -30, 0, 30)

@@ -1,0 +1,30 @@
+"""Options of the commands that look at pictures: what finds body and hands in them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from app.recognition.estimation.water import WaterCorrection
+
+WaterOption = Annotated[
+    WaterCorrection,
+    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
+]
+
+EstimatorOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the body: onnx, mediapipe, or yolo-pose:FILE.onnx, an Ultralytics export.",
+    ),
+]
+
+HandsOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
+    ),
+]
