@@ -1,7 +1,7 @@
 """What each voter of profile ``full`` contributes: alone, and left out.
 
 One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
-distances are measured once and fused anew for every choice of voters, in the reading that all of
+distances are measured once and fused anew for every choice of voters, in the readings that all of
 them together chose.
 
     python -m benchmarks.ablation ../shared/data
@@ -16,6 +16,7 @@ from app.recognition.calibrated_vote import VOTERS, CalibratedVote
 from app.recognition.fusion import fused
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
+from app.recognition.repair import repaired
 from app.recognition.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
@@ -48,14 +49,14 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
         for query in random.choice(pool, min(queries, len(pool)), replace=False):
             asked += 1
             try:
-                seen = condensed(Trajectory.from_poses(recorded.recordings[query]))
+                seen = condensed(Trajectory.from_poses(repaired(recorded.recordings[query]).poses))
             except PoseError:
                 continue
-            if (result := vote.recognize(seen)) is None:
-                continue
+            compared = vote.compare(seen)
+            penalties = np.array([each.penalty if each else 1.0 for each in compared.readings])
             for name, factor in choices().items():
-                scores = fused(result.distances, say * factor, between)
-                nearest = result.gestures[int(scores.argmin())]
+                scores = fused(compared.distances, say * factor, between) * penalties
+                nearest = recorded.labels[templates[int(scores.argmin())]]
                 correct[name] += bool(
                     np.isfinite(scores.min()) and nearest == recorded.labels[query]
                 )
