@@ -59,8 +59,11 @@ const renamed = new Map();
 /** Remember a new name: what was pressed before the form showed it still means the same entry. */
 export const rememberName = (before, after) => renamed.set(before, after);
 
-/** The entry that has that name, or the one it was given since. */
-function called(list, name) {
+/** Resolves when everything is saved, or refused. */
+export const saved = () => working;
+
+/** The name of the entry that has that name, or was given another one since. */
+export function called(list, name) {
   let now = name;
   while (!list.some((each) => each.name === now) && renamed.has(now)) now = renamed.get(now);
   return now;

@@ -1,11 +1,10 @@
 // Trying phrases: gestures are shown by clicking them, and the robot's parser answers.
 
 import * as api from "../api.js";
-import { h } from "../dom.js";
+import { h, reconcile } from "../dom.js";
 import { follow, state, update } from "../state.js";
 import { attempt } from "../toasts.js";
-import { redraw } from "./fields.js";
-import { grammar, labels } from "./grammar.js";
+import { ROLES, called, grammar, saved } from "./grammar.js";
 
 /** After these a message is over, and the next gesture begins another one. */
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
@@ -25,8 +24,14 @@ const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
 export const show = (gestures) => update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
 
-/** Show a phrase with all its parts. */
-export const showExample = (name) => show(found()?.examples[name] ?? []);
+let loading = Promise.resolve(); // what is asked of the server now
+
+/** Show a phrase with all its parts, as it is once what was pressed before is saved. */
+export async function showExample(name) {
+  await saved();
+  await loading;
+  show(found()?.examples[called(grammar().phrases, name)] ?? []);
+}
 
 const last = () => found()?.events.at(-1) ?? null;
 
@@ -61,7 +66,7 @@ function said(event) {
   const words = event ? event.text : "Show a gesture: click it below.";
   return h("div", { className: `said ${kind === "complete" ? "well" : over ? "unwell" : ""}` },
     h("span", { className: "mark", "aria-hidden": "true" }, MARKS[kind] ?? (event ? "!" : "\u2026")),
-    h("p", { role: "status", id: "said" }, words),
+    h("p", { id: "said" }, words),
     canSpeak() && event ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak") : null);
 }
 
@@ -71,37 +76,49 @@ function commands(event) {
     h("ol", {}, event.mission.map(({ phrase, command }) => h("li", {}, h("b", {}, phrase), command === null ? h("span", { className: "dim" }, "no command") : h("code", {}, typeof command === "string" ? command : JSON.stringify(command))))));
 }
 
-function gestureButton({ label, thumbnail }, next) {
-  const role = ["start", "end", "cancel"].filter((each) => grammar()[each] === label).join(", ");
-  return h("li", {}, h("button", { type: "button", className: `try-gesture${next ? " next" : ""}`, id: `try-${label}`, "aria-label": `Show ${label}${next ? ", may come next" : ""}`, onclick: () => add(label) },
-    h("img", { src: thumbnail, alt: "", width: 56, height: 56 }), h("span", {}, label), h("small", {}, next ? "next" : role)));
+/** A gesture to click; one that is drawn stays the same button, so that no click on it gets lost. */
+function gestureButton({ label, thumbnail }, next, item) {
+  if (!item) {
+    item = h("li", {}, h("button", { type: "button", className: "try-gesture", onclick: () => add(label) },
+      h("img", { alt: "", width: 56, height: 56 }), h("span", {}, label), h("small")));
+  }
+  const [button, picture] = [item.firstChild, item.querySelector("img")];
+  button.classList.toggle("next", next);
+  button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
+  if (picture.getAttribute("src") !== thumbnail) picture.src = thumbnail;
+  item.querySelector("small").textContent = next ? "next" : ROLES.filter((role) => grammar()[role] === label).join(", ");
+  return item;
 }
 
-function content() {
-  const view = found();
-  const event = state.shown === null ? null : last();
-  const expected = new Set(view?.expected ?? []);
-  const sequence = shown();
-  const begun = event && !OVER.has(event.kind);
-  return [
-    h("h2", { id: "trial-title" }, "Try it"),
-    h("ol", { className: "shown", "aria-label": "Gestures shown" }, sequence.map((label) => h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised")), state.paused === null ? null : h("li", { className: "chip rejected" }, "pause")),
-    said(event),
-    commands(event),
-    h("ul", { className: "try-gestures", "aria-label": "Gestures to show" }, state.gestures.gestures.map((gesture) => gestureButton(gesture, expected.has(gesture.label)))),
-    h("div", { className: "trial-actions" },
-      h("button", { type: "button", id: "try-rejected", onclick: () => add("") }, "Not recognised"),
-      h("button", { type: "button", id: "try-pause", onclick: () => update({ paused: "yes" }), disabled: !begun || state.paused !== null }, "Pause too long"),
-      h("button", { type: "button", id: "try-clear", onclick: () => show([]), disabled: !sequence.length }, "Clear")),
-    h("p", { className: "dim" }, view?.may_end ? `The message may be over: after ${grammar().timeout} s without a gesture it is obeyed.` : `${labels().length ? "Framed and marked \u201cnext\u201d: what may come next." : ""}`),
-  ];
+const chip = (label) => h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+
+function hint() {
+  const { timeout } = grammar();
+  return found()?.may_end ? `The message may be over: after ${timeout} s without a gesture it is obeyed.` : "Framed and marked \u201cnext\u201d: what may come next.";
 }
 
 /** Build the panel; it follows what is shown. */
 export function trialPanel() {
-  const panel = h("section", { className: "panel trial", "aria-labelledby": "trial-title" });
-  const draw = () => { if (state.view === "phrases" && state.gestures?.gestures.length) redraw(panel, ...content()); };
+  const sequence = h("ol", { className: "shown", "aria-label": "Gestures shown" });
+  const result = h("div", { className: "trial-result", role: "status" });
+  const gestures = h("ul", { className: "try-gestures", "aria-label": "Gestures to show" });
+  const pause = h("button", { type: "button", onclick: () => update({ paused: "yes" }) }, "Pause too long");
+  const clear = h("button", { type: "button", onclick: () => show([]) }, "Clear");
+  const note = h("p", { className: "dim" });
+  const draw = () => {
+    if (state.view !== "phrases" || !state.gestures) return;
+    const event = state.shown === null ? null : last();
+    const expected = new Set(found()?.expected ?? []);
+    sequence.replaceChildren(...shown().map(chip), ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]));
+    result.replaceChildren(...[said(event), commands(event)].filter(Boolean));
+    reconcile(gestures, state.gestures.gestures, ({ label }) => label, (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item));
+    pause.disabled = !event || OVER.has(event.kind) || state.paused !== null;
+    clear.disabled = state.shown === null;
+    note.textContent = hint();
+  };
   followFound(draw);
-  follow(["view", "gestures", "shown", "paused"], () => { load(); draw(); });
-  return panel;
+  follow(["view", "gestures", "shown", "paused"], () => { loading = load(); draw(); });
+  return h("section", { className: "panel trial", "aria-labelledby": "trial-title" },
+    h("h2", { id: "trial-title" }, "Try it"), sequence, result, gestures,
+    h("div", { className: "trial-actions" }, h("button", { type: "button", onclick: () => add("") }, "Not recognised"), pause, clear), note);
 }

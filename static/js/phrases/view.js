@@ -7,7 +7,7 @@ import { tellDone } from "../undo.js";
 import { go } from "../views.js";
 import { redraw } from "./fields.js";
 import { framePanel } from "./frame.js";
-import { followRefusals, free, grammar, save, withPhrase } from "./grammar.js";
+import { followRefusals, free, grammar, labels, save, withPhrase } from "./grammar.js";
 import { phraseCard } from "./phrase.js";
 import { slotTypesPanel } from "./slot-types.js";
 import { followFound, found, show, trialPanel } from "./trial.js";
@@ -75,9 +75,13 @@ export function open(section) {
   const trial = trialPanel();
   const columns = h("div", { className: "phrase-columns" }, form, trial);
   const none = h("div");
+  let drawn = "";
   const draw = () => {
-    const { gestures, loaded, view } = state;
+    const { gestures, loaded, view, phrase } = state;
     if (view !== "phrases" || (!gestures && !loaded)) return;
+    const now = JSON.stringify([gestures?.id, gestures?.name, labels(), gestures?.grammar, phrase, found()?.ambiguities]);
+    if (now === drawn) return; // a button that is just being pressed stays where it is
+    drawn = now;
     title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
     const able = Boolean(gestures?.gestures.length);
     columns.hidden = !able;
@@ -95,6 +99,6 @@ export function open(section) {
   };
   section.append(h("div", { className: "phrases-page" }, h("div", { className: "page-head" }, title, h("span", { className: "spacer" }), says), none, columns));
   followFound(draw);
-  followRefusals(draw);
+  followRefusals(() => { drawn = ""; draw(); });
   follow(["view", "gestures", "phrase", "loaded"], draw);
 }
