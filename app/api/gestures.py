@@ -18,6 +18,7 @@ from app.api.language_drafts import editing
 from app.api.languages import ExpectedRevision, Revision, announced
 from app.api.problems import ProblemError, documented
 from app.api.schemas import GestureChange, GestureDraft, LanguageView
+from app.api.sources import remember
 from app.api.studio import CurrentStudio
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.png import encode_png
@@ -50,7 +51,9 @@ def add_gesture(
         return language.with_gesture(gesture)
 
     edit = editing(f"Add {gesture.label}", edited)
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+    state = studio.languages.edit(language_id, edit, expected)
+    remember(studio, state, gesture.label, draft, demonstration)
+    return announced(studio, state, response)
 
 
 @router.patch("/{label:path}", responses=documented(404, 409, 412))
@@ -68,7 +71,11 @@ def change_gesture(
         demonstration = demonstration_at(studio, change.demonstration)
     changed = partial(with_change, label=label, change=change, demonstration=demonstration)
     edit = editing(f"Change {label}", changed)
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+    state = studio.languages.edit(language_id, edit, expected)
+    if change.demonstration is not None and demonstration is not None:
+        now = label if change.label is None else change.label.strip()
+        remember(studio, state, now, change.demonstration, demonstration)
+    return announced(studio, state, response)
 
 
 @router.delete("/{label:path}", responses=documented(404, 409, 412))

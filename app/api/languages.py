@@ -20,7 +20,9 @@ from app.api.schemas import (
     LanguageDraft,
     LanguageSummary,
     LanguageView,
+    SourceView,
 )
+from app.api.sources import sources_in
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
@@ -139,9 +141,13 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
     """Answer with a language, its ETag in the head."""
     response.headers["ETag"] = tag_of(state)
     language = studio.language(state)
+    sources = sources_in(studio, language)
     return LanguageView(
         **_summary_of(state).model_dump(),
-        gestures=[gesture_view(state, gesture) for gesture in language.gestures],
+        gestures=[
+            gesture_view(state, gesture, sources.get(gesture.label))
+            for gesture in language.gestures
+        ],
         grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
     )
 
@@ -173,8 +179,10 @@ def _summary_of(state: LanguageState) -> LanguageSummary:
     )
 
 
-def gesture_view(state: LanguageState, gesture: Gesture) -> GestureView:
-    """Return what to tell about a gesture of a revision."""
+def gesture_view(
+    state: LanguageState, gesture: Gesture, source: SourceView | None = None
+) -> GestureView:
+    """Return what to tell about a gesture of a revision, and of its demonstration's source."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
     place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
     switches = gesture.switches
@@ -188,4 +196,5 @@ def gesture_view(state: LanguageState, gesture: Gesture) -> GestureView:
         salient=list(gesture.salient),
         thumbnail=f"{place}?revision={state.revision.revision}",
         has_trajectory=gesture.trajectory is not None,
+        source=source,
     )

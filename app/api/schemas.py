@@ -184,6 +184,15 @@ class GestureChange(Body):
     command: Command = None
 
 
+class SourceView(BaseModel):
+    """Where a demonstration comes from."""
+
+    clip_id: str
+    start: float = Field(description="Seconds in the clip")
+    end: float
+    keep_transit: bool
+
+
 class GestureView(BaseModel):
     """A gesture of a language."""
 
@@ -196,6 +205,9 @@ class GestureView(BaseModel):
     mirror: SwitchPosition
     thumbnail: str = Field(description="Path of its trajectory image, a PNG")
     has_trajectory: bool = Field(description="False when imported from a file that has none")
+    source: SourceView | None = Field(
+        default=None, description="The clip of its demonstration; null: not known, or deleted"
+    )
 
 
 class LanguageSummary(BaseModel):

@@ -31,6 +31,7 @@ from app.store import (
     LanguageState,
     LanguageStore,
     RecognitionStore,
+    SourceStore,
     UploadStore,
 )
 from app.store.models import now
@@ -52,7 +53,7 @@ class Studio:
     ----------
     settings
         How it was started.
-    clips, uploads, jobs, languages, recognitions
+    clips, uploads, jobs, languages, sources, recognitions
         The store.
     runner
         Extracts poses from clips.
@@ -70,6 +71,7 @@ class Studio:
     uploads: UploadStore
     jobs: JobStore
     languages: LanguageStore
+    sources: SourceStore
     recognitions: RecognitionStore
     runner: ExtractionRunner
     broadcast: Broadcast
@@ -172,6 +174,7 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
         uploads=UploadStore(settings.data_dir / "uploads"),
         jobs=jobs,
         languages=languages,
+        sources=SourceStore(database),
         recognitions=RecognitionStore(database),
         runner=ExtractionRunner(settings, clips, jobs, broadcast),
         broadcast=broadcast,

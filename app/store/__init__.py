@@ -8,6 +8,7 @@ from app.store.jobs import JobStore
 from app.store.languages import Draft, LanguageState, LanguageStore
 from app.store.models import (
     Clip,
+    DemonstrationSource,
     Job,
     JobStatus,
     LanguageRecord,
@@ -15,6 +16,7 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.recognitions import RecognitionStore
+from app.store.sources import SourceStore
 from app.store.uploads import Upload, UploadStore
 
 __all__ = [
@@ -23,6 +25,7 @@ __all__ = [
     "ClipWithJob",
     "Conflict",
     "Database",
+    "DemonstrationSource",
     "Draft",
     "FolderLock",
     "Job",
@@ -35,6 +38,7 @@ __all__ = [
     "NotFound",
     "RecognitionRecord",
     "RecognitionStore",
+    "SourceStore",
     "StoreError",
     "StoreUnavailable",
     "Upload",

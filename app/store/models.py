@@ -177,6 +177,21 @@ class RecognitionRecord(SQLModel, table=True):
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 
+class DemonstrationSource(SQLModel, table=True):
+    """The clip that a demonstration was taken from; gone with the clip."""
+
+    __tablename__ = "demonstration_source"
+
+    trajectory: str = Field(primary_key=True, max_length=64)
+    """Digest of the demonstration's trajectory, which is the same in every file and revision."""
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    start: float
+    """Seconds in the clip, as they were asked for."""
+    end: float
+    keep_transit: bool
+    """Whether the hand's way from and to the salute was kept."""
+
+
 class SeededSample(SQLModel, table=True):
     """A sample language that was offered once; deleting it does not bring it back."""
 

@@ -143,12 +143,6 @@ class Playback:
                 self._pending = True
                 self._changed.notify()
 
-    def toggle(self) -> bool:
-        """Play or pause; from the end it starts over. Returns whether it plays now."""
-        with self._changed:
-            self._play(not self._playing)
-            return self._playing
-
     def play(self, speed: float) -> None:
         """Play `speed` times as fast as the camera saw it; backwards if negative, 0 pauses."""
         with self._changed:
@@ -157,12 +151,6 @@ class Playback:
                 size = min(max(abs(speed), slowest), fastest)
                 self._speed = size if speed > 0 else -size
             self._play(speed != 0)
-
-    def set_speed(self, speed: float) -> None:
-        """Play that fast from now on, if playing; else when somebody plays."""
-        with self._changed:
-            self._speed = speed
-            self._set(self._frame)
 
     def set_loop(self, loop: bool) -> None:
         """Repeat the range on display, or play on to the end of the clip."""

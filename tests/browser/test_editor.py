@@ -153,7 +153,10 @@ def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
     open_page: OpenPage, library: Library
 ) -> None:
     page = editing(open_page, library)
-    page.get_by_label("Clip", exact=True).select_option(library.clip)
+    clip = page.get_by_label("Clip", exact=True)
+    expect(clip).to_have_value(library.clip)
+    expect(clip.locator("option:checked")).to_contain_text("as saved")
+    expect(page.get_by_role("button", name="Save", exact=True)).to_be_disabled()
     transit = page.get_by_role("checkbox", name="Leave out the hand")
     expect(transit).to_be_checked()
     start = page.get_by_label("Start frame")
@@ -168,6 +171,27 @@ def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
     expect(start).to_have_value(str(frame))
     transit.uncheck()
     expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    source = gesture(library, "circle")["source"]
+    assert isinstance(source, dict)
+    assert (source["clip_id"], source["keep_transit"]) == (library.clip, True)
+
+
+def test_a_gesture_whose_clip_is_deleted_is_shown_as_the_language_keeps_it(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Start frame").fill("20")
+    page.get_by_label("Start frame").blur()
+    expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+    library.client.delete(f"/api/v1/clips/{library.clip}")
+    page.reload()
+    expect(page.get_by_text("its clip is not here, or no longer")).to_be_visible()
+    expect(page.get_by_label("Clip", exact=True).locator("option:checked")).to_have_text(
+        "As it is saved"
+    )
+    expect(page.get_by_text("As saved", exact=True)).to_be_visible()
 
 
 def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(

@@ -71,8 +71,8 @@ def test_of_many_seeks_only_the_newest_is_drawn_next(playback: Playback, screen:
 
 def test_playing_reaches_the_end_and_starts_over(playback: Playback, screen: Screen) -> None:
     playback.load([0.0, 0.01, 0.02, 0.03])
-    playback.set_speed(4)
-    assert playback.toggle() is True
+    playback.play(4)
+    assert playback.playing
     until(lambda: 3 in screen.drawn and screen.drawn[-1] < 3)
 
 
@@ -82,31 +82,33 @@ def test_playing_begins_at_the_start_until_someone_has_chosen_a_frame(
     hour = [0.0, 3600.0, 7200.0]
     playback.load(hour, frame=1)
     until(shows(screen, 1))
-    playback.toggle()
+    playback.play(1)
     until(shows(screen, 0))
     playback.load(hour, frame=0)
     playback.seek(1)
-    playback.toggle()
+    playback.play(1)
     until(shows(screen, 1))
     assert playback.playing
 
 
 def test_pausing_keeps_the_frame(playback: Playback, screen: Screen) -> None:
     playback.load([0.0, 3600.0])
-    assert playback.toggle() is True
-    assert playback.toggle() is False
+    playback.play(1)
+    assert playback.playing
+    playback.play(0)
     until(shows(screen, 0))
     assert not playback.playing
 
 
 def test_one_frame_cannot_be_played(playback: Playback) -> None:
     playback.load([0.0])
-    assert playback.toggle() is False
+    playback.play(1)
+    assert not playback.playing
 
 
 def test_another_recording_stops_the_last_one(playback: Playback) -> None:
     playback.load([0.0, 3600.0])
-    playback.toggle()
+    playback.play(1)
     playback.load([0.0, 1.0, 2.0], frame=1)
     assert not playback.playing
     assert playback.frame == 1

@@ -142,15 +142,15 @@ def test_a_range_of_one_frame_is_a_picture(workspace: Workspace, tmp_path: Path)
     moment = float(view.recording.poses.time[14])
     workspace.show(replace(view, start=moment, end=moment))
     assert workspace.playback.frame == 14
-    assert workspace.playback.toggle() is False
+    workspace.playback.play(1)
+    assert not workspace.playback.playing
 
 
 def test_views_in_quick_succession_end_with_the_last(workspace: Workspace, tmp_path: Path) -> None:
     view = view_in(tmp_path)
-    workspace.playback.set_speed(4)
     for end in (1.0, 2.4, 1.2, 2.0):
         workspace.show(replace(view, end=end))
-        workspace.playback.toggle()
+        workspace.playback.play(4)
     assert workspace.view is not None
     assert workspace.view.end == 2.0
     workspace.playback.seek(1)

@@ -6,27 +6,32 @@ import { read } from "./command.js";
 
 const SWITCHES = ["direction", "tempo", "mirror"];
 
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+
+/** Whether a draft shows the gesture by another demonstration than the one that is saved. */
+const isAnew = (gesture, { clip }, saved) => Boolean(clip) && (gesture === null || !same(clip, saved.clip));
+
 /** What of a draft changes what is recognised. */
-function content({ clip, salient, ...values }) {
+function content({ clip, salient, ...values }, anew) {
   return {
-    ...(clip ? { demonstration: clip } : {}),
+    ...(anew ? { demonstration: clip } : {}),
     ...(salient ? { salient } : {}),
     ...Object.fromEntries(SWITCHES.map((name) => [name, values[name]])),
   };
 }
 
 /** What is asked of the preview. A drawing without its demonstration keeps its keypoints. */
-export const requestOf = (gesture, values, fixed = false) => ({ label: gesture, change: content(fixed ? { ...values, salient: null } : values) });
+export const requestOf = (gesture, values, saved, fixed = false) => ({ label: gesture, change: content(fixed ? { ...values, salient: null } : values, isAnew(gesture, values, saved)) });
 
 /** Only what was changed: the rest may meanwhile be another's. */
-function changeOf(values, saved) {
+function changeOf(gesture, values, saved) {
   const change = {};
+  const anew = isAnew(gesture, values, saved);
   for (const name of ["label", "description"]) if (values[name].trim() !== saved[name]) change[name] = values[name].trim();
   if (values.command !== saved.command) change.command = read(values.command).command;
   for (const name of SWITCHES) if (values[name] !== saved[name]) change[name] = values[name];
-  if (values.clip) change.demonstration = values.clip;
-  const chosen = JSON.stringify(values.salient) !== JSON.stringify(saved.salient) || values.clip;
-  if (values.salient && chosen) change.salient = values.salient;
+  if (anew) change.demonstration = values.clip;
+  if (values.salient && (anew || !same(values.salient, saved.salient))) change.salient = values.salient;
   return change;
 }
 
@@ -37,7 +42,7 @@ export function save(language, gesture, values, saved) {
     const body = { ...rest, ...clip, label: label.trim(), description: description.trim(), command: read(command).command };
     return edit("Saving the gesture", `New gesture ${body.label}`, (base) => api.languages.addGesture(base, body), { from: language });
   }
-  const change = changeOf(values, saved);
+  const change = changeOf(gesture, values, saved);
   const mine = { ...language, gestures: language.gestures.map((each) => (each.label === gesture ? { ...each, ...change } : each)) };
   return edit("Changing the gesture", `Change of ${gesture}`, (base) => api.languages.changeGesture(base, gesture, change), { from: language, mine });
 }

@@ -7,7 +7,7 @@ import { moment } from "../format.js";
 import { nearestFrame } from "../frames.js";
 import { state } from "../state.js";
 import { attempt } from "../toasts.js";
-import { change, draft } from "./draft.js";
+import { change, draft, saved } from "./draft.js";
 import { figure } from "./figure.js";
 import { chosenIn } from "./keypoints.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./range.js";
@@ -59,6 +59,7 @@ export function take({ language, gesture, drawn, pick }) {
 
   async function choose(id) {
     if (!id) return change({ clip: null });
+    if (id === saved().clip?.clip_id) return change({ clip: saved().clip });
     const loaded = await load(id);
     if (loaded) change({ clip: wholeOf(id, loaded.takes, loaded.poses.time) });
     return undefined;
@@ -112,15 +113,16 @@ export function take({ language, gesture, drawn, pick }) {
 
   function drawChoices() {
     const ready = state.clips.filter((clip) => clip.status === "done");
-    const options = [...(gesture ? [["", "As it is saved"]] : []), ...ready.map((clip) => [clip.id, clip.name])];
+    const own = gesture ? saved().clip?.clip_id ?? "" : null; // where the saved demonstration comes from
+    const options = [...(own === "" ? [["", "As it is saved"]] : []), ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name])];
     clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
     clips.value = draft().clip?.clip_id ?? "";
     const several = Boolean(source?.id);
     takes.parentElement.hidden = !several;
     if (!several) return;
     takes.replaceChildren(...source.takes.map((each, index) => h("option", { value: index }, `Take ${index + 1}, ${moment(each.start)} to ${moment(each.end)}`)), h("option", { value: BY_HAND }, "Range by hand"));
-    const own = takeOf(draft().clip, source.takes);
-    takes.value = own ? source.takes.indexOf(own) : BY_HAND;
+    const taken = takeOf(draft().clip, source.takes);
+    takes.value = taken ? source.takes.indexOf(taken) : BY_HAND;
   }
 
   function drawTrim() {
@@ -167,7 +169,7 @@ export function take({ language, gesture, drawn, pick }) {
   function draw(preview) {
     chosen = chosenIn(preview);
     drawChoices();
-    note.textContent = draft().clip ? "" : drawn ? "Imported as a drawing: the demonstration is not in the file, so it cannot be played, trimmed or followed by other keypoints. Show the gesture anew from a clip." : "The demonstration as the language keeps it. To trim it, or to show the gesture anew, choose a clip.";
+    note.textContent = draft().clip ? "" : drawn ? "Imported as a drawing: the demonstration is not in the file, so it cannot be played, trimmed or followed by other keypoints. Show the gesture anew from a clip." : "The demonstration as the language keeps it; its clip is not here, or no longer. To trim it, or to show the gesture anew, choose a clip.";
     note.hidden = Boolean(draft().clip);
     drawTrim();
     if (source) go(frame);

@@ -8,7 +8,7 @@ import { complain, toast } from "../toasts.js";
 import { tellDone } from "../undo.js";
 import { go, guard } from "../views.js";
 import { written } from "./command.js";
-import { begin, canRedo, canUndo, discard, draft, forget, isChanged, placeOf, redo, saved, undo } from "./draft.js";
+import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, placeOf, redo, saved, undo } from "./draft.js";
 import { switches, textProblem, texts } from "./form.js";
 import { keypoints, toggle } from "./keypoints.js";
 import { mayLeave } from "./leaving.js";
@@ -23,20 +23,23 @@ let editor = null; // the one on display
 
 /** What is edited: a gesture of the language, or a new one from what is selected. */
 function subject() {
-  const { gestures, gesture, clip, clips } = state;
-  if (!gestures || gestures.id !== state.language) return null;
+  const { gestures, gesture, clip, clips, loaded } = state;
+  if (!gestures || gestures.id !== state.language || !loaded) return null;
   if (gesture) return { language: gestures, gesture, key: `${gestures.id} ${gesture}` };
   if (!clip || !clips.some((each) => each.id === clip && each.status === "done") || !state.takes || !state.timeline) return null;
   return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
 }
+
+/** Whether the clip of a demonstration can be shown. */
+const isThere = (where) => Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
 
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = selectedRange();
     return { label: "", description: "", command: "", salient: null, direction: "auto", tempo: "auto", mirror: "auto", clip: { clip_id: state.clip, start, end, keep_transit: false } };
   }
-  const { label, description, command, salient, direction, tempo, mirror } = language.gestures.find((each) => each.label === gesture);
-  return { label, description, command: written(command), salient: [...salient].sort(), direction, tempo, mirror, clip: null };
+  const { label, description, command, salient, direction, tempo, mirror, source } = language.gestures.find((each) => each.label === gesture);
+  return { label, description, command: written(command), salient: [...salient].sort(), direction, tempo, mirror, clip: isThere(source) ? source : null };
 }
 
 function build(section, about) {
@@ -83,7 +86,7 @@ function build(section, about) {
   function changed() {
     problem.hidden = true;
     draw();
-    ask(language.id, requestOf(gesture, draft(), drawn && !draft().clip));
+    ask(language.id, requestOf(gesture, draft(), saved(), drawn && !draft().clip));
   }
 
   function abandon() {
@@ -120,13 +123,15 @@ function build(section, about) {
   const form = h("form", { className: "editor-page", noValidate: true, onsubmit: submit },
     h("div", { className: "page-head" },
       h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`), h("span", { className: "dim in-language" }, `in ${language.name}`), status,
-      h("span", { className: "spacer" }), undoing, redoing, button("Cancel", "Back without saving", leave), saving),
+      h("span", { className: "spacer" }),
+      h("div", { className: "editor-actions" }, undoing, redoing, button("Cancel", "Back without saving", leave), saving)),
     restored, problem,
     h("div", { className: "editor-grid" },
       h("div", { className: "column" }, parts.take.element, parts.keypoints.element),
       h("div", { className: "column" }, parts.image.element, parts.health.element),
       h("div", { className: "column" }, parts.texts.element, parts.switches.element)));
   const kept = begin(placeOf(language.id, gesture ?? `new ${state.clip}`), valuesOf(about), changed);
+  if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip }); // It was deleted since.
   if (kept !== null) {
     restored.replaceChildren(`A draft that was not saved, last changed ${ago(kept)}, is restored.`, button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard));
     restored.hidden = false;
@@ -185,6 +190,6 @@ export function open(section) {
 function adopt(about) {
   const now = about.language.gestures.find((each) => each.label === about.gesture);
   const then = editor.about.language.gestures.find((each) => each.label === about.gesture);
-  const content = (gesture) => gesture && JSON.stringify({ ...gesture, thumbnail: null });
+  const content = (gesture) => gesture && JSON.stringify({ ...gesture, thumbnail: null, source: null });
   if (content(now) === content(then)) editor.about.language = about.language;
 }

@@ -1,0 +1,64 @@
+"""Which clip a gesture's demonstration comes from, so that it can be edited there."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+from app.api.demonstrations import Demonstration
+from app.api.schemas import NewDemonstration, SourceView
+from app.api.studio import Studio
+from app.recognition import Gesture, Language
+from app.recognition.takes import takes_in
+from app.recognition.trajectory import Trajectory
+from app.store import DemonstrationSource, LanguageState
+
+
+def remember(
+    studio: Studio,
+    state: LanguageState,
+    label: str,
+    where: NewDemonstration,
+    demonstration: Demonstration,
+) -> None:
+    """Keep where the demonstration of a gesture, as it was just saved, comes from."""
+    saved = next(each for each in studio.language(state).gestures if each.label == label)
+    if (key := _key(saved)) is None:
+        return
+    start = demonstration.start if where.start is None else where.start
+    end = demonstration.end if where.end is None else where.end
+    if where.start is None and where.end is None:
+        # Who names no range means the clip's only take, from salute to salute.
+        for take in takes_in(studio.recording(where.clip_id)):
+            start, end = take.start, take.end
+    source = DemonstrationSource(
+        trajectory=key,
+        clip_id=where.clip_id,
+        start=start,
+        end=end,
+        keep_transit=where.keep_transit,
+    )
+    studio.sources.keep(source)
+
+
+def sources_in(studio: Studio, language: Language) -> dict[str, SourceView]:
+    """Return by label where the demonstrations of a language come from, as far as is known."""
+    keys = {gesture.label: key for gesture in language.gestures if (key := _key(gesture))}
+    known = studio.sources.of(set(keys.values()))
+    return {
+        label: SourceView(**known[key].model_dump(exclude={"trajectory"}))
+        for label, key in keys.items()
+        if key in known
+    }
+
+
+def _key(gesture: Gesture) -> str | None:
+    """Return a digest of the demonstration's trajectory; None without one."""
+    return None if gesture.trajectory is None else _digest(gesture.trajectory)
+
+
+def _digest(trajectory: Trajectory) -> str:
+    digest = hashlib.sha256(json.dumps([trajectory.landmarks, trajectory.unit]).encode())
+    for values in (trajectory.time, trajectory.xy):
+        digest.update(values.astype("<f8").tobytes())
+    return digest.hexdigest()

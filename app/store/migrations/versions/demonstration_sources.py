@@ -1,0 +1,29 @@
+"""The clips that demonstrations come from, so that a gesture can be edited with its clip."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0004"
+down_revision = "0003"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Make the table; of gestures saved before nobody knows."""
+    op.create_table(
+        "demonstration_source",
+        sa.Column("trajectory", sa.String(64), nullable=False),
+        sa.Column("clip_id", sa.String(32), nullable=False),
+        sa.Column("start", sa.Float(), nullable=False),
+        sa.Column("end", sa.Float(), nullable=False),
+        sa.Column("keep_transit", sa.Boolean(), nullable=False),
+        sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
+        sa.PrimaryKeyConstraint("trajectory"),
+    )
+    op.create_index("ix_demonstration_source_clip_id", "demonstration_source", ["clip_id"])
+
+
+def downgrade() -> None:
+    """Drop it."""
+    op.drop_table("demonstration_source")

@@ -1,0 +1,35 @@
+"""Where demonstrations come from: which part of which clip."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from sqlmodel import col, select
+
+from app.store.database import Database
+from app.store.models import Clip, DemonstrationSource
+
+
+class SourceStore:
+    """Keeps the sources of demonstrations in `database`.
+
+    By the demonstration and not by language, revision or label: so it is known after a rename, a
+    revert, in a copy, and in a file that was exported and comes back.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def keep(self, source: DemonstrationSource) -> None:
+        """Keep where a demonstration comes from, instead of what was known before."""
+        with self._database.writing() as session:
+            session.merge(source)
+
+    def of(self, trajectories: Collection[str]) -> dict[str, DemonstrationSource]:
+        """Return what is known of demonstrations, without those whose clip is deleted."""
+        with self._database.reading() as session:
+            query = select(DemonstrationSource).join(Clip)
+            query = query.where(
+                col(DemonstrationSource.trajectory).in_(trajectories), col(Clip.deleted).is_(None)
+            )
+            return {source.trajectory: source for source in session.exec(query)}

@@ -1,0 +1,80 @@
+"""A gesture remembers the clip that it came from, whatever is done to its language."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import Any
+
+import httpx
+import pytest
+
+from app.api.studio import Studio
+from app.store.models import now
+from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.recordings import add_recorded_clip, recording_of
+
+CLIPS = "/api/v1/clips"
+
+
+def source(client: httpx.Client, language_id: str) -> Any:
+    (gesture,) = client.get(f"{LANGUAGES}/{language_id}").json()["gestures"]
+    return gesture["source"]
+
+
+@pytest.fixture
+def saved(client: httpx.Client, language_id: str, circle_clip: str) -> dict[str, Any]:
+    """Return where the demonstration of a saved gesture is said to come from."""
+    (take,) = client.get(f"{CLIPS}/{circle_clip}/takes").json()
+    (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
+    expected = {"start": take["start"], "end": take["end"], "keep_transit": False}
+    assert gesture["source"] == {"clip_id": circle_clip, **expected}
+    found: dict[str, Any] = gesture["source"]
+    return found
+
+
+def test_a_new_name_other_words_and_keypoints_change_nothing(
+    client: httpx.Client, language_id: str, saved: dict[str, Any]
+) -> None:
+    change = {"label": "ring", "description": "round", "salient": ["left_wrist", "right_wrist"]}
+    client.patch(f"{LANGUAGES}/{language_id}/gestures/circle", json=change)
+    assert source(client, language_id) == saved
+
+
+def test_a_copy_and_a_file_that_comes_back_know_it_too(
+    client: httpx.Client, language_id: str, saved: dict[str, Any]
+) -> None:
+    copy = client.post(f"{LANGUAGES}/{language_id}/duplicate").json()
+    exported = client.get(f"{LANGUAGES}/{language_id}/export").content
+    imported = client.post(f"{LANGUAGES}/import", content=exported).json()
+    assert [source(client, each["id"]) for each in (copy, imported)] == [saved, saved]
+
+
+def test_shown_anew_it_is_the_new_clip_and_after_going_back_the_old_one(
+    client: httpx.Client, studio: Studio, language_id: str, saved: dict[str, Any]
+) -> None:
+    anew = add_recorded_clip(studio, recording_of("circle backwards"))
+    place = f"{LANGUAGES}/{language_id}/gestures/circle"
+    changed = client.patch(place, json={"demonstration": {"clip_id": anew}}).json()
+    assert source(client, language_id)["clip_id"] == anew
+    to = {"revision": changed["revision"] - 1}
+    client.post(f"{LANGUAGES}/{language_id}/revert", json=to)
+    assert source(client, language_id) == saved
+
+
+def test_of_a_deleted_clip_nothing_is_told_until_it_is_restored(
+    client: httpx.Client, language_id: str, circle_clip: str, saved: dict[str, Any]
+) -> None:
+    client.delete(f"{CLIPS}/{circle_clip}")
+    assert source(client, language_id) is None
+    client.post(f"{CLIPS}/{circle_clip}/restore")
+    assert source(client, language_id) == saved
+
+
+def test_of_a_clip_that_is_gone_for_good_nothing_is_left(
+    client: httpx.Client, studio: Studio, language_id: str, circle_clip: str, saved: dict[str, Any]
+) -> None:
+    assert source(client, language_id) == saved
+    client.delete(f"{CLIPS}/{circle_clip}")
+    assert studio.clips.purge(now() + timedelta(seconds=1)) == 1
+    assert source(client, language_id) is None
+    assert add_gesture(client, language_id, circle_clip, "again").status_code == 404
