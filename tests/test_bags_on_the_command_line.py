@@ -3,15 +3,29 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
 
 from app.recognition import Language
 from tests.api.recordings import recording_of
-from tests.bags.bag_files import Row, file_of, our_rows, published_rows, write_bag, zipped
+from tests.bags.bag_files import (
+    START,
+    Row,
+    compressed,
+    file_of,
+    our_rows,
+    published_rows,
+    write_bag,
+    zipped,
+)
 from tests.bags.sessions import checked
 from tests.command_line import OsgStudio
+from tests.conftest import ROOT
+from tests.recognition.damaged_clips import picture
 
 
 @pytest.fixture
@@ -44,12 +58,10 @@ def test_a_bag_is_recognised_like_a_clip(
 def test_the_topic_is_named_where_there_are_several(
     tmp_path: Path, osg_studio: OsgStudio, language: Path
 ) -> None:
-    rows: list[Row] = []
-    for diver, shape in (("buddy", "line"), ("leader", "circle")):
-        rows += [
-            (f"/{diver}{topic}", content, received)
-            for topic, content, received in published_rows(recording_of(shape))
-        ]
+    rows = [
+        *as_another_diver("buddy", published_rows(recording_of("line"))),
+        *as_another_diver("leader", published_rows(recording_of("circle"))),
+    ]
     bag = write_bag(tmp_path / "dive", sorted(rows, key=lambda row: row[2]))
     ended = osg_studio("recognize", bag, "--language", language)
     assert ended.code == 2
@@ -75,6 +87,60 @@ def test_the_session_is_written_as_mcap(
     assert len(found["/video"]) == len(found["/pose"]) > 0
     left = {each.name for each in tmp_path.iterdir()}
     assert left == {"circle", "dive", "line", "session.mcap", "shapes.json"}
+
+
+def as_another_diver(diver: str, rows: Iterable[Row]) -> list[Row]:
+    """Return rows with their topics in a namespace."""
+    return [(f"/{diver}{topic}", content, received) for topic, content, received in rows]
+
+
+def documented(word: str) -> list[list[str]]:
+    """Return the commands of the page on robots that read a recording and do `word`."""
+    page = (ROOT / "docs" / "robots.md").read_text("utf-8")
+    (section,) = re.findall(r"^## Recordings$(.*?)^## ", page, re.DOTALL | re.MULTILINE)
+    lines = [line for line in section.splitlines() if line.startswith(f"osg-studio {word} ")]
+    assert lines
+    return [shlex.split(line)[1:] for line in lines]
+
+
+def test_the_documented_commands_do_what_they_say(
+    tmp_path: Path, osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "dives").mkdir()
+    for shape in ("circle", "line"):
+        write_bag(tmp_path / "dives" / shape, our_rows(recording_of(shape)))
+    divers = [
+        *as_another_diver("buddy", published_rows(recording_of("line"))),
+        *as_another_diver("leader", published_rows(recording_of("circle"))),
+    ]
+    write_bag(tmp_path / "dives" / "reef", sorted(divers, key=lambda row: row[2]))
+    for command in (*documented("define"), *documented("recognize")):
+        ended = osg_studio(*command)
+        assert ended.code == 0, ended.error
+    assert ended.out.split("\t")[2] == "line"
+    assert checked(tmp_path / "session.mcap")["/recognitions"]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed_models")
+def test_the_documented_robot_looks_at_the_pictures_of_a_bag(
+    tmp_path: Path, osg_studio: OsgStudio, language: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "dives").mkdir()
+    rows: list[Row] = [
+        ("/camera/image_raw/compressed", compressed(picture(i), ".jpg", START + i), START + i)
+        for i in range(0, 10**9, 10**8)
+    ]
+    write_bag(tmp_path / "dives" / "camera", rows)
+    language.rename(tmp_path / "pool.json")
+    (command,) = documented("robot")
+    ended = osg_studio(*command)
+    assert ended.code == 1, ended.error  # nobody is in these pictures
+    told = [json.loads(line) for line in ended.out.splitlines()]
+    assert (told[0]["event"], told[0]["live"]) == ("source_opened", False)
+    assert (told[-1]["event"], told[-1]["frames"]) == ("source_ended", 10)
 
 
 def test_what_is_no_bag_is_told_in_one_line(

@@ -106,18 +106,12 @@ def test_the_topic_is_chosen_in_a_dialogue(
     dialog = page.get_by_role("dialog", name="Choose a topic")
     expect(dialog.get_by_role("radio")).to_have_count(2)
     expect(dialog.get_by_role("radio", name="/buddy/pose_keypoints")).to_be_checked()
-    picture(page, "topics-dark")
-    page.emulate_media(color_scheme="light")
-    picture(page, "topics-light")
-    page.set_viewport_size({"width": 390, "height": 844})
-    picture(page, "topics-phone")
-    page.set_viewport_size({"width": 1280, "height": 800})
+    picture(page, "topics")
 
     # Whoever decides later finds the question at the clip, and can answer it by keyboard.
     dialog.get_by_role("button", name="Later").click()
     card = page.get_by_role("list", name="Clips", exact=True).get_by_role("listitem").first
     expect(card.get_by_text("2 topics: choose one")).to_be_visible()
-    picture(page, "topics-card")
     panel = page.locator("#welcome")
     expect(panel.get_by_role("heading", name="This recording holds 2 topics")).to_be_visible()
     panel.get_by_role("button", name="Choose a topic").click()
@@ -143,7 +137,6 @@ def test_the_topic_is_chosen_in_a_dialogue(
     page.get_by_label("Expected").select_option("line")
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(why.get_by_role("link", name="Share as one file")).to_be_visible()
-    picture(page, "session-shared")
 
 
 def test_a_broken_bag_says_why_at_its_upload(open_page: OpenPage, tmp_path: Path) -> None:
