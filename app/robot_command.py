@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -33,6 +33,7 @@ from app.robot.messages import line_of
 from app.robot.stage_profile import StageProfiler
 from app.robot.watched_language import WatchedLanguage
 from app.robot_text import profile_table, sentence_of
+from app.ros2_topics import also_told, ros2_topics
 from app.terminal import people
 
 NOTHING_RECOGNISED = 1
@@ -52,6 +53,9 @@ def robot(
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
+    ros2: Annotated[
+        bool, typer.Option("--ros2", help="Also publish to ROS 2; needs the packages in ros2/.")
+    ] = False,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Measure what each stage costs, and tell that only."),
@@ -78,21 +82,29 @@ def robot(
                 opened.enter_context(closing(meter))
             show_profile(frames, StageProfiler(body, finder, listener, water=water, meter=meter))
             return
-        runtime = Runtime(frames, finder, listener, water=water, changes=spoken.changes)
+        topics = opened.enter_context(ros2_topics()) if ros2 else None
+        runtime = Runtime(
+            frames,
+            finder,
+            listener,
+            water=water,
+            changes=spoken.changes,
+            observer=topics.look if topics else None,
+        )
         with signals_heeded(runtime.stop, spoken.reload):
-            recognised = told(runtime)
+            recognised = told(also_told(runtime, topics, listener) if topics else runtime)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
 
 
-def told(runtime: Runtime) -> int:
+def told(events: Iterable[Event]) -> int:
     """Write every event to stdout, and for people to stderr; return how many were recognitions.
 
     When nobody reads stdout any more the runtime ends, as pipelines do.
     """
     recognised = 0
     try:
-        for event in runtime:
+        for event in events:
             recognised += isinstance(event, TakeRecognized)
             tell(event)
     except BrokenPipeError:

@@ -1,4 +1,4 @@
-"""The thread in which a node looks at the frames of a source."""
+"""The thread in which a node looks at the frames of its topic."""
 
 from __future__ import annotations
 
@@ -9,35 +9,21 @@ from typing import Protocol
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.robot import Event, Frame, Listener, Runtime, Source, SpokenLanguage
-from osg_ros.stamps import Stopwatch
+from app.robot import Event, Frame, Listener, Runtime, SpokenLanguage
+from osg_ros.topic_source import TopicSource
 
 LONGEST_FRAME = 10.0
 """Seconds that the last frame may take when the thread is stopped; a slow robot needs one."""
 
 
-class StampedSource(Source, Protocol):
-    """A source whose seconds can be told as stamps."""
-
-    @property
-    def stopwatch(self) -> Stopwatch | None:
-        """From the frames' seconds to stamps; None before the first frame."""
-        ...
-
-    @property
-    def frame_id(self) -> str:
-        """The camera."""
-        ...
-
-
 class Watching(Protocol):
     """Who is told what a worker sees; called in the worker's thread."""
 
-    def look(self, source: StampedSource, frame: Frame, found: FrameLandmarks) -> None:
+    def look(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
         """Take a frame and its landmarks."""
         ...
 
-    def hear(self, source: StampedSource, event: Event, language: SpokenLanguage) -> None:
+    def hear(self, source: TopicSource, event: Event, language: SpokenLanguage) -> None:
         """Take what happened, and the language that is listened for."""
         ...
 
@@ -47,7 +33,7 @@ class Watching(Protocol):
 
 
 class GestureWorker:
-    """Runs `app.robot.Runtime` in a thread until it is stopped or the source is over.
+    """Runs `app.robot.Runtime` in a thread until it is stopped.
 
     Parameters
     ----------
@@ -62,22 +48,16 @@ class GestureWorker:
     watching
         Who is told.
 
-    Attributes
-    ----------
-    ended
-        Set when no more frames are looked at.
-
     """
 
     def __init__(
         self,
-        source: StampedSource,
+        source: TopicSource,
         estimator: PoseEstimator,
         language: SpokenLanguage,
         water: WaterCorrection,
         watching: Watching,
     ) -> None:
-        self.ended = threading.Event()
         self._source = source
         self._watching = watching
         self._next: SpokenLanguage | None = None
@@ -110,8 +90,6 @@ class GestureWorker:
                     self._watching.hear(self._source, event, self._listener.language)
         except RecognitionError as error:
             self._watching.complain(str(error))
-        finally:
-            self.ended.set()
 
     def _new_language(self) -> SpokenLanguage | None:
         language, self._next = self._next, None

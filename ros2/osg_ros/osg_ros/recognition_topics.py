@@ -7,6 +7,7 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from osg_interfaces.msg import ActiveLanguage, GestureRecognition, RecognizerState
+from rclpy.duration import Duration
 from std_msgs.msg import Header, String
 
 from app.recognition.takes import TakeState
@@ -15,6 +16,9 @@ from osg_ros.bodies import DIVER
 from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.optional_messages import message_type
 from osg_ros.stamps import Stopwatch
+
+LONGEST_DELIVERY = 2.0
+"""Seconds to wait for a subscriber that may be gone."""
 
 STATES = {
     TakeState.idle: RecognizerState.IDLE,
@@ -96,6 +100,11 @@ class RecognitionTopics:
     def speaks(self, language: SpokenLanguage) -> None:
         """Tell which language is recognised from now on."""
         self._language.publish(language_message(language, Header(stamp=self._now())))
+
+    def flush(self) -> None:
+        """Wait until what was said has arrived, for whoever ends right afterwards."""
+        for publisher in (self._recognition, self._label):
+            publisher.wait_for_all_acked(Duration(seconds=LONGEST_DELIVERY))
 
     def _tell(self, header: Header, state: int) -> None:
         if state != self._told:

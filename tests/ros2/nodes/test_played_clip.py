@@ -22,7 +22,7 @@ from app.recognition.video import read_frames
 from osg_ros.pictures import picture_message
 from osg_ros.stamps import nanoseconds_of, stamp_of
 from tests.ros2 import workspace
-from tests.ros2.nodes.bench import RELIABLE, Bench
+from tests.ros2.nodes.bench import BEST_EFFORT, RELIABLE, Bench
 from tests.ros2.nodes.keypoint_messages import stamped
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("installed_models")]
@@ -120,6 +120,30 @@ def test_label_by_label_and_stamp_by_stamp(
         assert json.loads(message.report)["votes"] == take["votes"]
         assert nanoseconds_of(message.start) == stamped(take["start"])
         assert nanoseconds_of(message.end) == stamped(take["end"])
+
+
+def test_the_robot_command_tells_ros_what_it_writes(
+    bench: Bench, domain: int, clip: Path, language_file: Path, recognised: list[dict[str, Any]]
+) -> None:
+    said = bench.heard(GestureRecognition, "recognition")
+    seen = bench.heard(Hands, "hands", BEST_EFFORT)
+    asked = ["robot", "--ros2", "--source", str(clip), "--language", str(language_file)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "app", *asked],
+        env=workspace.environment(domain),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    bench.wait(lambda: bool(said), "recognition")
+    written = [json.loads(line) for line in running.communicate(timeout=60)[0].splitlines()]
+    assert running.returncode == 0
+    (line,) = [line for line in written if line["event"] == "take_recognized"]
+    (message,), (take,) = said, recognised
+    assert message.label == line["label"] == take["label"]
+    assert message.confidence == pytest.approx(take["confidence"], abs=1e-9)
+    duration = nanoseconds_of(message.end) - nanoseconds_of(message.start)
+    assert duration == stamped(take["end"]) - stamped(take["start"])
+    assert seen
 
 
 def warm_up(bench: Bench, pictures: Any) -> None:
