@@ -13,7 +13,7 @@ from app.bags.salute_topic import SaluteTrack, salute_track
 from app.recognition.errors import BagError
 from app.recognition.estimation.base import Hand
 from app.recognition.frame_clock import FrameClock
-from app.recognition.landmark_sets import COCO_18, landmark_named, missing_from
+from app.recognition.landmark_sets import SKELETON_2D, landmark_named, missing_from
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recording import Recording
@@ -235,7 +235,7 @@ def _ros4hri(content: Any) -> Posed:
     """Read ROS4HRI's skeleton: fractions of the picture, confidence 0 where not seen."""
     points = [
         (name or "", float(p.x) if p.c else np.nan, float(p.y), float(p.c))
-        for name, p in zip(COCO_18, content.skeleton, strict=True)
+        for name, p in zip(SKELETON_2D, content.skeleton, strict=True)
     ]
     return _posed(points, None)
 

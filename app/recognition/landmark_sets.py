@@ -55,7 +55,17 @@ COCO_18: Final[LandmarkSet] = (
     "right_ear",
     "left_ear",
 )
-"""OpenPose's COCO model, and ROS's `hri_msgs/Skeleton2D`."""
+"""OpenPose's COCO model."""
+
+SKELETON_2D: Final[LandmarkSet] = (
+    *COCO_18[:14],
+    "left_eye",
+    "right_eye",
+    "left_ear",
+    "right_ear",
+)
+"""ROS4HRI's `hri_msgs/Skeleton2D`: said to follow OpenPose's COCO model, but by the message's own
+constants the left eye and the left ear come first."""
 
 BODY_25: Final[LandmarkSet] = (
     "nose",

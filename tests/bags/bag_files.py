@@ -16,7 +16,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from app.bags.definitions import DEFINITIONS
 from app.recognition import Recording
 from app.recognition.estimation.base import Image
-from app.recognition.landmark_sets import COCO_18
+from app.recognition.landmark_sets import SKELETON_2D
 from app.recognition.poses import FloatArray
 
 START = 1_763_731_234_123_456_789
@@ -167,7 +167,7 @@ def skeleton_rows(recording: Recording) -> Iterator[Row]:
     kind = "hri_msgs/msg/NormalizedPointOfInterest2D"
     for index, stamp in enumerate(stamps(poses.time)):
         points = []
-        for name in COCO_18:
+        for name in SKELETON_2D:
             known = name is not None
             x, y = poses.xy[index][poses.landmarks.index(name)] if name else (0.0, 0.0)
             points.append(message(kind, x / width, y / height, float(known)))

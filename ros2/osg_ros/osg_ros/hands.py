@@ -1,17 +1,16 @@
-"""Hands as messages: our own and the published port's; and ours read back."""
+"""Hands as messages: our own and the published port's."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, get_args
+from typing import Any
 
-import numpy as np
 from osg_interfaces.msg import Hand as HandMessage
 from osg_interfaces.msg import Hands, Keypoint
 from std_msgs.msg import Header
 
-from app.recognition.estimation.base import Hand, Side
+from app.recognition.estimation.base import Hand
 from app.recognition.landmarks import HAND_LANDMARKS
 from app.recognition.salute import best_salute
 from osg_ros.bodies import FrameSize
@@ -35,18 +34,6 @@ def hands_message(header: Header, size: FrameSize, hands: Sequence[Hand]) -> Han
         salute=best_salute(hands),
         hands=[_hand_message(hand) for hand in hands],
     )
-
-
-def hands_in(message: Hands) -> tuple[Hand, ...]:
-    """Return the hands of a message, the inverse of `hands_message`.
-
-    Raises
-    ------
-    ValueError
-        When a hand's side or its landmarks are none that are known.
-
-    """
-    return tuple(_hand_in(hand) for hand in message.hands)
 
 
 def published_hand_keypoints(kind: Any, part: Any, size: FrameSize, hands: Sequence[Hand]) -> Any:
@@ -78,14 +65,3 @@ def _hand_message(hand: Hand) -> HandMessage:
         for name, (x, y) in zip(HAND_LANDMARKS, hand.xy.tolist(), strict=True)
     ]
     return HandMessage(side=hand.side, score=hand.score, keypoints=points)
-
-
-def _hand_in(message: HandMessage) -> Hand:
-    names = tuple(keypoint.name for keypoint in message.keypoints)
-    if message.side not in get_args(Side) or names != HAND_LANDMARKS:
-        raise ValueError(
-            f"a hand of side {message.side!r} with {len(names)} keypoints; send side left or right "
-            f"and MediaPipe's {len(HAND_LANDMARKS)} landmarks by name and in order"
-        )
-    xy = np.array([(keypoint.x, keypoint.y) for keypoint in message.keypoints])
-    return Hand(xy, message.side, message.score)
