@@ -120,8 +120,12 @@ def test_the_draft_is_undone_step_by_step_and_saved_as_one_revision(
 def test_a_draft_survives_a_reload_and_can_be_discarded(
     open_page: OpenPage, library: Library
 ) -> None:
-    page = editing(open_page, library)
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="Change circle", exact=True).click()
     page.get_by_label("Description").fill("half finished")
+    page.go_back()
+    page.get_by_role("button", name="Go on editing").click()
+    expect(page.get_by_label("Description")).to_have_value("half finished")
     page.reload()
     expect(page.get_by_label("Description")).to_have_value("half finished")
     page.get_by_role("button", name="Discard the draft").click()

@@ -57,6 +57,41 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     expect(grid).to_be_visible()
 
 
+def test_a_switch_that_would_help_is_applied_and_taken_back(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    client = library.client
+    language = client.post("/api/v1/languages", json={"name": "both ways"}).json()["id"]
+    gestures = f"/api/v1/languages/{language}/gestures"
+    for label in ("circle", "circle backwards"):
+        clip = add_clip(server, label)
+        body = {"label": label, "clip_id": clip, "direction": "off"}
+        assert client.post(gestures, json=body).status_code == 201
+
+    def directions() -> list[str]:
+        listed = client.get(f"/api/v1/languages/{language}").json()["gestures"]
+        return [each["direction"] for each in listed]
+
+    page = open_page({"view": "health", "language": language}, scene=False)
+    remedies = page.get_by_role("list", name="Remedies for circle and circle backwards")
+    remedies.get_by_role("button", name="Apply: let the direction of").click()
+    expect(page.get_by_text("Remedy applied")).to_be_visible()
+    assert directions() == ["on", "on"]
+    expect(remedies).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("Undone")).to_be_visible()
+    assert directions() == ["off", "off"]
+
+
+def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
+    page = open_page(scene=False)
+    rates = [takes / 40 for takes in range(41)]
+    rounded = page.evaluate(
+        "async (rates) => rates.map((await import('/static/js/health/report.js')).percent)", rates
+    )
+    assert rounded == [f"{rate:.0%}".removesuffix("%") for rate in rates]
+
+
 def test_a_check_is_cancelled_and_begun_again(
     open_page: OpenPage, library: Library, server: Running
 ) -> None:

@@ -21,6 +21,9 @@ export const draft = () => now;
 export const saved = () => base;
 
 export const isChanged = () => now !== null && !same(now, base);
+/** Whether there is a changed draft that comes back when the gesture is opened again. */
+export const isKept = () => isChanged() && read(place) !== null;
+
 export const canUndo = () => past.length > 0;
 export const canRedo = () => future.length > 0;
 

@@ -8,7 +8,7 @@ import { complain, toast } from "../toasts.js";
 import { tellDone } from "../undo.js";
 import { go, guard } from "../views.js";
 import { written } from "./command.js";
-import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, placeOf, redo, saved, undo } from "./draft.js";
+import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, isKept, placeOf, redo, saved, undo } from "./draft.js";
 import { switches, textProblem, texts } from "./form.js";
 import { keypoints, toggle } from "./keypoints.js";
 import { mayLeave } from "./leaving.js";
@@ -147,6 +147,14 @@ function close() {
   editor = null;
 }
 
+/** The editor was left: by the browser's Back without being asked, so say that nothing is lost. */
+function left() {
+  const { gesture } = editor?.about ?? {};
+  const kept = editor && isKept();
+  close();
+  if (kept) toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, { action: { label: "Go on editing", run: () => go("gesture", { gesture }) } });
+}
+
 const leave = () => go(null, { gesture: null });
 
 function explain(section) {
@@ -161,7 +169,7 @@ function explain(section) {
 /** Build the view, and build it anew when something else is edited. */
 export function open(section) {
   follow(["view", "gesture", "gestures", "language", "clip", "clips", "takes", "timeline", "loaded"], () => {
-    if (state.view !== "gesture") return close();
+    if (state.view !== "gesture") return left();
     const about = subject();
     const known = about && (about.gesture === null || about.language.gestures.some((each) => each.label === about.gesture));
     if (!known) {

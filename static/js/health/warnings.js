@@ -1,26 +1,55 @@
 // What was found, the worst first, each with what would help and where to do it.
 
+import * as api from "../api.js";
 import { h } from "../dom.js";
+import { edit } from "../gestures.js";
+import { complain } from "../toasts.js";
+import { tellDone } from "../undo.js";
 import { go } from "../views.js";
 import { compare, editLink } from "./links.js";
 import { told } from "./report.js";
 
-function remedy({ gesture, text, before, after }) {
+const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.
+
+/** Let a switch of some gestures count; one undo takes it back. */
+async function switchOn(kind, gestures, text, button) {
+  const change = async (base) => {
+    let language = base;
+    for (const label of gestures) language = await api.languages.changeGesture(language, label, { [kind]: "on" });
+    return language;
+  };
+  button.disabled = true;
+  try {
+    await edit("Applying the remedy", `Remedy: ${text}`, change);
+    tellDone("Remedy applied", text);
+  } catch (error) {
+    complain(error, "Applying the remedy");
+    button.disabled = false;
+  }
+}
+
+function apply(kind, gestures, text) {
+  const button = h("button", { type: "button", "aria-label": `Apply: ${text}` }, "Apply");
+  button.onclick = () => switchOn(kind, gestures, text, button);
+  return button;
+}
+
+function remedy({ kind, gesture, text, before, after }, gestures) {
   return h("li", { className: "remedy" },
     h("span", { className: "remedy-text" }, text),
     h("span", { className: "effect num", title: `${told(before)} without, ${told(after)} with it` },
       h("span", { className: "visually-hidden" }, "confused in "), h("span", {}, told(before)), h("span", { "aria-label": "then" }, "\u2192"), h("b", {}, told(after))),
-    editLink(gesture));
+    SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture));
 }
 
 function warning({ code, gestures, message, below_bar: below, remedies }) {
-  const mended = new Set(remedies.map((each) => each.gesture));
+  const mended = new Set(remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture));
   return h("li", { className: `finding ${below ? "below" : "note"}` },
     h("span", { className: "mark", "aria-hidden": "true" }, below ? "!" : "i"),
     h("div", { className: "finding-text" },
       h("p", {}, h("b", {}, below ? "Below the bar: " : "Note: "), message),
       remedies.length ? h("p", { className: "dim remedies-title" }, "What would help, and how often the two would be confused then") : null,
-      remedies.length ? h("ul", { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` }, remedies.map(remedy)) : null,
+      remedies.length ? h("ul", { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` }, remedies.map((each) => remedy(each, gestures))) : null,
       h("div", { className: "finding-links" },
         code?.startsWith("phrases_") ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases") : null,
         gestures.length === 2 ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two") : null,
