@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks import explanation, extraction, library, memory, recognition, speed
+from benchmarks import explanation, extraction, library, memory, recognition, speed, studio_page
 
 PARTS = {
     "extraction": extraction.main,
@@ -13,6 +13,7 @@ PARTS = {
     "memory": memory.main,
     "explanation": explanation.main,
     "library": library.main,
+    "studio_page": studio_page.main,
 }
 
 
