@@ -116,7 +116,7 @@ def _table(
     names: tuple[str, ...], rows: list[list[list[float]]], told: bool, times: Times
 ) -> KeypointTable:
     """Make a table of T rows of K landmarks of x, y and visibility."""
-    points = np.array(rows, dtype=np.float64).reshape(-1, len(names), 3)
+    points = np.array(rows, dtype=np.float64).reshape(len(rows), len(names), 3)
     confidence = visibility_of(points) if told else None
     return KeypointTable(
         names=names,

@@ -145,6 +145,7 @@ def test_pixels_need_no_size_and_fractions_do(tmp_path: Path) -> None:
         ([["time", "nose_x", "nose_y"], ["", 20, 30]], "time does not go on at frame 1"),
         ([["time", "paw_x", "paw_y"], [0, 20, 30]], "--landmark paw=right_wrist"),
         ([["landmark", "x", "y"], ["nose", 20, 30]], "no column that tells the frame"),
+        ([["frame", "landmark", "x", "y"]], "no keypoint is seen in any of 0 frames"),
         (
             [["frame", "landmark", "x", "y"], [0, "nose", 20, 30], [0, "nose", 21, 31]],
             "row 1 is the second for nose",

@@ -1,0 +1,69 @@
+"""Keypoint files that were cut and changed: read, or refused as what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from app.keypoint_files import KeypointOptions, read_keypoints
+from app.recognition.errors import RecognitionError
+from app.recognition.landmark_sets import BODY_25
+from tests.keypoint_files.files import (
+    write_deeplabcut,
+    write_long,
+    write_named,
+    write_numbered,
+    write_openpose,
+)
+from tests.recognition.strategies import BODY, circle, recording
+
+POSES = recording(circle, frames=4, landmarks=tuple(BODY))
+OPTIONS = KeypointOptions(frame_rate=30, frame_size=(640, 480))
+
+WRITERS: dict[str, Callable[[Path], Path]] = {
+    "named": lambda folder: write_named(folder / "named.csv", POSES),
+    "numbered": lambda folder: write_numbered(folder / "numbered.csv", recording(circle, frames=3)),
+    "long": lambda folder: write_long(folder / "long.csv", POSES),
+    "deeplabcut": lambda folder: write_deeplabcut(folder / "dlc.csv", {"a": POSES, "b": POSES}),
+    "openpose": lambda folder: write_openpose(folder / "json", POSES, BODY_25),
+    "json": lambda folder: _one_frame_of(write_openpose(folder / "one", POSES, BODY_25)),
+}
+
+
+def _one_frame_of(folder: Path) -> Path:
+    return min(folder.iterdir())
+
+
+def damaged(content: bytes, seed: int, share: float) -> bytes:
+    """Change a few characters to others that such files hold, and cut the end off."""
+    generator = np.random.default_rng(seed)
+    values = bytearray(content[: max(1, int(len(content) * share))])
+    for place in generator.integers(0, len(values), size=3):
+        values[place] = generator.choice(list(b'0159.-e,"\n[]{}:nNx\x00\xff'))
+    return bytes(values)
+
+
+@pytest.mark.parametrize("form", WRITERS)
+@settings(
+    # An example takes milliseconds, but the machine may be busy with something else.
+    deadline=None,
+    max_examples=25,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],  # every example writes it anew
+)
+@given(seed=st.integers(0, 2**32 - 1), share=st.floats(0, 1))
+def test_a_damaged_file_is_read_or_refused(
+    tmp_path: Path, form: str, seed: int, share: float
+) -> None:
+    path = WRITERS[form](tmp_path)
+    file = _one_frame_of(path) if path.is_dir() else path
+    file.write_bytes(damaged(file.read_bytes(), seed, share))
+    try:
+        poses = read_keypoints(path, OPTIONS).recording.poses
+    except RecognitionError:
+        return
+    assert poses.seen.any()
