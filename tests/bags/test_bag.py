@@ -5,10 +5,11 @@ from __future__ import annotations
 import sqlite3
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from app.bags.bag import opened_bag
 from app.bags.clip import record_bag
@@ -75,6 +76,26 @@ def test_topics_are_listed_with_type_count_and_duration(
         assert keypoints.messages == len(recording.poses)
         assert bag.durations() == {"/pose_keypoints": pytest.approx(recording.poses.duration)}
         assert not listed["/vulcan_salute_detected"].usable
+
+
+@pytest.mark.parametrize("mode", ["FILE", "MESSAGE", "STORAGE"])
+@pytest.mark.parametrize("packed", [False, True])
+def test_recordings_compressed_by_the_recorder_are_read(
+    tmp_path: Path, mode: str, packed: bool
+) -> None:
+    recording = recording_of("line")
+    plugin = StoragePlugin.MCAP if mode == "STORAGE" else StoragePlugin.SQLITE3
+    writer = Writer(tmp_path / "dive", version=9, storage_plugin=plugin)
+    writer.set_compression(CompressionMode[mode], CompressionFormat.ZSTD)
+    with writer:
+        connections: dict[str, Any] = {}
+        for topic, content, received in published_rows(recording):
+            kind = content.__msgtype__
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connections[topic], received, store.serialize_cdr(content, kind))
+    path = zipped(tmp_path / "dive") if packed else tmp_path / "dive"
+    assert len(record_bag(path).poses) == len(recording.poses)
 
 
 def test_old_recordings_without_definitions_are_read_by_the_known_ones(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ from tests.bags.sessions import checked
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
@@ -107,6 +108,9 @@ def test_the_topic_is_chosen_in_a_dialogue(
     expect(dialog.get_by_role("radio")).to_have_count(2)
     expect(dialog.get_by_role("radio", name="/buddy/pose_keypoints")).to_be_checked()
     picture(page, "topics")
+    assert faults(page) == []
+    page.emulate_media(color_scheme="light")
+    assert faults(page) == []
 
     # Whoever decides later finds the question at the clip, and can answer it by keyboard.
     dialog.get_by_role("button", name="Later").click()
@@ -114,6 +118,7 @@ def test_the_topic_is_chosen_in_a_dialogue(
     expect(card.get_by_text("2 topics: choose one")).to_be_visible()
     panel = page.locator("#welcome")
     expect(panel.get_by_role("heading", name="This recording holds 2 topics")).to_be_visible()
+    assert faults(page) == []
     panel.get_by_role("button", name="Choose a topic").click()
     page.keyboard.press("Escape")
     card.get_by_role("button", name="Choose the topic of two-divers.mcap").press("Enter")

@@ -1,11 +1,13 @@
 """Clips: file and row appear and disappear together, whatever breaks in between."""
 
+import json
 from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
-from app.store import Clip, ClipStore, Database, JobStatus, JobStore, NotFound
+from app.store import Clip, ClipStore, ClipWithJob, Database, JobStatus, JobStore, NotFound
+from app.store.clips import TOPIC_NEEDED
 from app.store.models import now
 from tests.store.conftest import add_clip
 
@@ -30,6 +32,47 @@ def test_a_clip_shows_its_newest_job(clips: ClipStore, jobs: JobStore) -> None:
     retried = jobs.retry(added.clip.id, "diver")
     assert retried is not None
     assert clips.get(added.clip.id).job.id == retried.id
+
+
+TOPICS = [
+    {"name": "/left", "messages": 10, "width": 64, "height": 48, "duration": 1.5},
+    {"name": "/right", "messages": 20, "width": 128, "height": 96, "duration": 3.0},
+]
+
+
+def add_bag(clips: ClipStore, topic: str | None = None) -> ClipWithJob:
+    """Store a dive recording with two topics."""
+    partial = clips.new_partial()
+    partial.write_bytes(b"bag")
+    clip = Clip(
+        name="dive.mcap",
+        media_type="video/mp4",
+        size=3,
+        width=64,
+        height=48,
+        topics=json.dumps(TOPICS),
+        topic=topic,
+    )
+    return clips.add(clip, partial, "diver")
+
+
+def test_a_dive_recording_waits_for_its_topic(clips: ClipStore, jobs: JobStore) -> None:
+    added = add_bag(clips)
+    assert (added.job.status, added.job.error_code) == (JobStatus.FAILED, TOPIC_NEEDED)
+    assert clips.bag(added.clip.id).read_bytes() == b"bag"
+    assert not clips.video(added.clip.id).exists()
+    with pytest.raises(NotFound, match="no topic '/middle'"):
+        clips.choose_topic(added.clip.id, "/middle")
+    clips.choose_topic(added.clip.id, "/right")
+    chosen = clips.get(added.clip.id).clip
+    assert (chosen.topic, chosen.needs_topic) == ("/right", False)
+    assert (chosen.width, chosen.height, chosen.frames, chosen.duration) == (128, 96, 20, 3.0)
+    assert jobs.retry(added.clip.id, "diver") is not None
+    assert clips.sweep() == 0
+
+
+def test_a_dive_recording_whose_topic_is_known_is_queued(clips: ClipStore) -> None:
+    assert add_bag(clips, "/left").job.status == JobStatus.QUEUED
 
 
 def test_no_file_stays_when_the_row_cannot_be_written(clips: ClipStore) -> None:

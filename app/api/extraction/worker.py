@@ -72,7 +72,7 @@ def extract(files: ClipFiles, water: WaterCorrection, report: Report) -> None:
 
     # First of all: a card with a picture says more than one without.
     write_poster(files.video, files.poster)
-    steps = _Steps(files, report)
+    steps = _Steps(files, report, poster=False)
     recorded = extraction.record(
         files.video, progress=steps.progress, observer=steps.observe, water=water
     )
@@ -85,7 +85,7 @@ def extract_bag(
     """Write the video, pictures and recording of a topic, reporting as `extract` does."""
     from app.bags import record_bag
 
-    steps = _Steps(files, report)
+    steps = _Steps(files, report, poster=True)
     partial = files.video.with_suffix(".part")
     recorded = record_bag(
         bag, topic, video=partial, progress=steps.progress, observer=steps.observe, water=water
@@ -122,16 +122,27 @@ def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report)
 
 
 class _Steps:
-    """Takes the frames of a clip one by one, and reports how far the work is."""
+    """Takes the frames of a clip one by one, and reports how far the work is.
 
-    def __init__(self, files: ClipFiles, report: Report) -> None:
+    Parameters
+    ----------
+    files
+        What to write.
+    report
+        Hears of it.
+    poster
+        Whether the still picture is still to be written.
+
+    """
+
+    def __init__(self, files: ClipFiles, report: Report, *, poster: bool) -> None:
         from app.api.extraction.pictures import Poster, Thumbnails
 
         self._files, self._report = files, report
         self._reported = 0.0
         self._newest: tuple[VideoFrame, Body | None] | None = None
         self._thumbnails = Thumbnails()
-        self._poster = None if files.poster.exists() else Poster(files.poster)
+        self._poster = Poster(files.poster) if poster else None
 
     def observe(self, frame: VideoFrame, found: FrameLandmarks) -> None:
         self._newest = frame, found.body
