@@ -19,11 +19,14 @@ from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.recognizer import PROFILES
+from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import (
     Event,
     Listener,
+    PhraseListener,
     Runtime,
     Source,
+    SpokenLanguage,
     SpottingListener,
     TakeRecognized,
     open_source,
@@ -68,7 +71,7 @@ def robot(
     """
     with ExitStack() as opened:
         spoken = opened.enter_context(WatchedLanguage(language, profile))
-        listener = SpottingListener(spoken.first) if without_salutes else Listener(spoken.first)
+        listener = hearing_of(spoken.first, without_salutes=without_salutes)
         frames = opened.enter_context(closing(open_source(source)))
         finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
         if not without_salutes and not finds_hands(finder):
@@ -95,6 +98,13 @@ def robot(
             recognised = told(also_told(runtime, topics, listener) if topics else runtime)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
+
+
+def hearing_of(language: SpokenLanguage, *, without_salutes: bool) -> PhraseListener:
+    """Return what hears a language's gestures and phrases."""
+    if without_salutes:
+        return PhraseListener(SpottingListener(language), lag=LONGEST_MEMORY)
+    return PhraseListener(Listener(language))
 
 
 def told(events: Iterable[Event]) -> int:

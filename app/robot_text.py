@@ -10,6 +10,7 @@ from app.robot import (
     FramesDropped,
     LanguageChanged,
     LanguageRefused,
+    PhraseHeard,
     SourceLost,
     SourceOpened,
     SourceRestored,
@@ -24,6 +25,8 @@ def sentence_of(event: Event) -> str:
     """Return an event in words; empty for what a person sees anyway or need not know."""
     if isinstance(event, TakeRecognized | TakeRejected):
         return _about_take(event)
+    if isinstance(event, PhraseHeard):
+        return event.phrase.text
     if isinstance(event, LanguageChanged | LanguageRefused):
         return _about_language(event)
     return _about_source(event)

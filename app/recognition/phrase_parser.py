@@ -176,6 +176,10 @@ class PhraseParser:
             return (self._over(None, readings),)
         return (self._dropped("timed_out", None),)
 
+    def abandon(self) -> tuple[PhraseEvent, ...]:
+        """Drop a message that was begun, whatever it would have become."""
+        return (self._dropped("cancelled", None),) if self._message.gestures else ()
+
     def _heard(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
         before = self._message if self._message.gestures else _Message(start=start)
         self._message = replace(before, end=end, doubtful=label is None)

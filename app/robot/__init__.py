@@ -10,6 +10,7 @@ from app.robot.events import (
     FramesDropped,
     LanguageChanged,
     LanguageRefused,
+    PhraseHeard,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -21,6 +22,7 @@ from app.robot.events import (
 )
 from app.robot.listener import Hearing, Listener
 from app.robot.opening import open_source
+from app.robot.phrase_listener import PhraseListener
 from app.robot.runtime import Runtime
 from app.robot.source import Frame, Lost, Notice, Quiet, Restored, Source, Warned
 from app.robot.spoken_language import SpokenLanguage
@@ -36,6 +38,8 @@ __all__ = [
     "Listener",
     "Lost",
     "Notice",
+    "PhraseHeard",
+    "PhraseListener",
     "Quiet",
     "Restored",
     "Runtime",

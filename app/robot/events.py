@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 
 from app.recognition import Recognition
+from app.recognition.phrase_parser import PhraseEvent
 from app.recognition.takes import TakeState
 
 
@@ -293,6 +294,27 @@ class TakeRejected:
         return self.recognition.margin if self.recognition else None
 
 
+@dataclass(frozen=True)
+class PhraseHeard:
+    """What came of a gesture, or of a pause, in a language with phrases.
+
+    Attributes
+    ----------
+    time
+        Seconds: when it was known.
+    phrase
+        What the grammar makes of it; has a mission where the robot should do something.
+    sha256, revision
+        The language.
+
+    """
+
+    time: float
+    phrase: PhraseEvent
+    sha256: str
+    revision: int
+
+
 Event = (
     SourceOpened
     | SourceWarned
@@ -305,4 +327,5 @@ Event = (
     | LanguageRefused
     | TakeRecognized
     | TakeRejected
+    | PhraseHeard
 )

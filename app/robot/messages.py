@@ -11,14 +11,23 @@ from datetime import datetime
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    model_validator,
+)
 
+from app.recognition.phrase_parser import PhraseEventKind
 from app.recognition.takes import TakeState
 from app.robot.events import (
     Event,
     FramesDropped,
     LanguageChanged,
     LanguageRefused,
+    PhraseHeard,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -185,6 +194,53 @@ class TakeRejectedMessage(_Message):
     revision: Revision
 
 
+class MeaningMessage(BaseModel):
+    """One phrase of a message."""
+
+    model_config = ConfigDict(frozen=True, from_attributes=True)
+
+    phrase: Annotated[str, Field(description="Its name.")]
+    slots: Annotated[dict[str, Any], Field(description="The values shown, by slot.")]
+    command: Annotated[
+        str | dict[str, Any] | None,
+        Field(description="What the language's author wants the robot to do, values put in."),
+    ]
+    spoken: Annotated[str, Field(description="To say back to the diver.")]
+
+
+class PhraseHeardMessage(_Message):
+    """What came of a gesture, or of a pause, in a language with phrases."""
+
+    event: Literal["phrase_heard"] = "phrase_heard"
+    kind: Annotated[
+        PhraseEventKind,
+        Field(
+            description="complete: obey the mission. continues: more is needed or may come. "
+            "repeat: a gesture was not recognised. ambiguous, cancelled, timed_out, unexpected: "
+            "the message is dropped. outside: none has begun."
+        ),
+    ]
+    start: Annotated[float, Field(description="Seconds, of the message's first gesture.")]
+    end: Annotated[float, Field(description="Seconds, of its last gesture.")]
+    gestures: Annotated[tuple[str, ...], Field(description="Of the message so far.")]
+    label: Annotated[str | None, Field(description="Of this gesture.")]
+    expected: Annotated[tuple[str, ...], Field(description="What may come next.")]
+    mission: Annotated[
+        tuple[MeaningMessage, ...] | None, Field(description="What to do; only when complete.")
+    ]
+    text: Annotated[str, Field(description="In words, for the diver.")]
+    sha256: Sha256
+    revision: Revision
+
+    @model_validator(mode="before")
+    @classmethod
+    def _flattened(cls, event: Any) -> Any:
+        if not isinstance(event, PhraseHeard):
+            return event
+        seal = {"time": event.time, "sha256": event.sha256, "revision": event.revision}
+        return event.phrase.to_dict() | seal
+
+
 Message = (
     SourceOpenedMessage
     | SourceWarnedMessage
@@ -197,6 +253,7 @@ Message = (
     | LanguageRefusedMessage
     | TakeRecognizedMessage
     | TakeRejectedMessage
+    | PhraseHeardMessage
 )
 
 MESSAGES: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="event")])
@@ -214,6 +271,7 @@ _OF_EVENT: dict[type[Event], type[Message]] = {
     LanguageRefused: LanguageRefusedMessage,
     TakeRecognized: TakeRecognizedMessage,
     TakeRejected: TakeRejectedMessage,
+    PhraseHeard: PhraseHeardMessage,
 }
 
 

@@ -10,6 +10,7 @@ from typing import Any, get_args
 import jsonschema
 import pytest
 
+from app.recognition.phrase_parser import PhraseParser
 from app.recognition.takes import TakeState
 from app.robot import (
     Event,
@@ -17,6 +18,7 @@ from app.robot import (
     LanguageChanged,
     LanguageRefused,
     Listener,
+    PhraseHeard,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -35,6 +37,7 @@ from app.robot.messages import (
     published_schema,
 )
 from tests.api.recordings import recording_of
+from tests.recognition.grammars import MISSIONS
 from tests.robot.languages import heard, spoken
 
 SCHEMA = json.loads(published_schema())
@@ -53,7 +56,14 @@ def rejected() -> TakeRejected:
     return said
 
 
+def phrases(*shown: str) -> list[Event]:
+    parser = PhraseParser(MISSIONS)
+    events = [event for label in shown for event in parser.feed(label, 1.0, 2.0)]
+    return [PhraseHeard(3.0, event, SEAL, 3) for event in events]
+
+
 EVENTS: list[Event] = [
+    *phrases("start", "photo", "three", "end"),
     SourceOpened(0.0, "reef", True, (640, 480), datetime(2026, 11, 21, 13, 0, tzinfo=UTC)),
     SourceOpened(0.0, "dive.mp4", False, (640, 480), None),
     SourceWarned(2.0, "the clip is damaged"),
