@@ -128,6 +128,31 @@ def test_the_parameter_file_names_parameters_that_exist() -> None:
     assert declared - named == {"language", "autostart", "input", "image_width", "image_height"}
 
 
+def test_what_the_documentation_runs_exists() -> None:
+    page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
+    scripts = setup_arguments()["entry_points"]["console_scripts"]
+    executables = {script.split(" = ")[0] for script in scripts}
+    launching = (NODES / "osg_ros" / "launching.py").read_text(encoding="utf-8")
+    run = re.findall(r"^ros2 run osg_ros (\w+)", page, re.MULTILINE)
+    launched = re.findall(r"^ros2 launch osg_ros (\S+)(.*)$", page, re.MULTILINE)
+    assert run
+    assert set(run) <= executables
+    assert {file for file, _ in launched} == {path.name for path in NODES.glob("launch/*.py")}
+    for _, arguments in launched:
+        for name in re.findall(r"(\w+):=", arguments):
+            assert f'"{name}"' in launching
+
+
+def test_every_topic_that_a_node_publishes_is_documented() -> None:
+    page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
+    for path in (NODES / "osg_ros").glob("*.py"):
+        source = path.read_text(encoding="utf-8")
+        topics = re.findall(r'\.publisher\(\s*[^,]+,\s*f?"([^"]+)"', source)
+        assert [
+            topic for topic in topics if f"`{topic.replace('{DIVER}', 'diver')}`" not in page
+        ] == []
+
+
 @pytest.mark.parametrize("path", sorted(NODES.rglob("*.py")), ids=lambda path: path.name)
 def test_the_nodes_are_written_for_the_python_of_humble(path: Path) -> None:
     ast.parse(path.read_text(encoding="utf-8"), feature_version=(3, 10))

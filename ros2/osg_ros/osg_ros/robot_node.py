@@ -16,24 +16,23 @@ from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SourceOpened, SpokenLanguage
 from osg_ros.gesture_topics import GestureTopics
 from osg_ros.managed_node import ManagedNode
-from osg_ros.settings import Setting
 from osg_ros.spinning import running, start
 from osg_ros.stamps import NANOSECONDS, Stopwatch
 
-FRAME_ID = Setting("frame_id", "camera", "The camera's name in the headers.")
+FRAME_ID = "camera"
+"""Of the headers: the robot's own camera."""
 
 
 class RobotNode(ManagedNode):
     """Publishes what a runtime that runs elsewhere in this process sees and tells."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__("robot_node", (FRAME_ID,), "the camera", **options)
+        super().__init__("robot_node", (), "the camera", **options)
         self._topics: GestureTopics | None = None
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
         """Make the publishers."""
-        self._frame_id = self.settings["frame_id"]
         self._topics = GestureTopics(self)
 
     def begin(self) -> None:
@@ -55,7 +54,7 @@ class RobotNode(ManagedNode):
         """Publish what was found in a frame."""
         if self._topics is not None and self._stopwatch is not None:
             stamp = self._stopwatch.stamp(frame.time)
-            header = Header(stamp=stamp, frame_id=self._frame_id)
+            header = Header(stamp=stamp, frame_id=FRAME_ID)
             self._topics.look(header, frame, found)
 
     def hear(self, event: Event, language: SpokenLanguage) -> None:
@@ -68,7 +67,7 @@ class RobotNode(ManagedNode):
             now = self.get_clock().now().nanoseconds
             self._stopwatch = Stopwatch(round(began.timestamp() * NANOSECONDS) if began else now)
         if self._topics is not None:
-            self._topics.hear(event, language, self._stopwatch, self._frame_id)
+            self._topics.hear(event, language, self._stopwatch, FRAME_ID)
 
 
 @contextmanager
