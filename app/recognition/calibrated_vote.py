@@ -98,7 +98,7 @@ class CalibratedVote:
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Ask the language for each voter's say, and which directions and tempos it needs."""
         asked = self._motions.as_shown[:MAX_GESTURES_READ_OTHERWISE]
-        own = self._motions.own_distances(asked)
+        own = self._motions.own_distances
         pairs = own[:, :, asked][:, *np.triu_indices(len(asked), 1)]
         shapes = self._shapes.own_distances(MAX_GESTURES_READ_OTHERWISE)
         self._say, self._between = says(

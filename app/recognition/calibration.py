@@ -20,10 +20,11 @@ from app.recognition.calibrated_vote import VOTERS, CalibratedVote
 from app.recognition.forecast import Forecast
 from app.recognition.foreign import foreign_movements
 from app.recognition.fusion import TYPICAL
-from app.recognition.gesture import Gesture, Rates, condensed
+from app.recognition.gesture import Gesture, Rates
 from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE, describe_movement
 from app.recognition.poses import FloatArray
 from app.recognition.rejection import novelty, novelty_weights
+from app.recognition.trajectory import Trajectory
 from app.recognition.unforeseen import UNFORESEEN
 from app.recognition.variation import variants
 from app.recognition.voters.motion import MOTION_VOTERS
@@ -181,6 +182,10 @@ def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
     return _Reach(thresholds, takes)
 
 
+def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
+    return demonstration.once("takes to calibrate by", lambda: variants(demonstration, TAKES))
+
+
 def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> FloatArray:
     """Compare a gesture as shown with `TAKES` plausible takes of it: ``(V, TAKES)``.
 
@@ -188,10 +193,7 @@ def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> Flo
     """
     assert gesture.trajectory is not None  # it has a row
     references = vote.references
-    takes = [
-        describe_movement(take, references.landmarks)
-        for take in variants(gesture.trajectory, TAKES)
-    ]
+    takes = [describe_movement(take, references.landmarks) for take in _takes(gesture.trajectory)]
     distances = np.full((len(VOTERS), TAKES), np.inf)
     for voter in MOTION_VOTERS:
         described = np.array([take[voter.name] for take in takes])
@@ -217,7 +219,7 @@ def _foreign(
     measuring = vote.with_thresholds(thresholds)
     found = []
     for movement in foreign_movements(gestures):
-        compared = measuring.compare(condensed(movement), drawn=False)
+        compared = measuring.compare(movement, drawn=False)
         if np.isfinite(compared.scores).any():
             nearest = int(compared.scores.argmin())
             novelties = np.full(len(gestures), np.inf)

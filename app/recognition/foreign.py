@@ -8,11 +8,12 @@ have it.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from app.recognition.accidental import accidental_movements
-from app.recognition.gesture import Gesture
+from app.recognition.gesture import Gesture, condensed
 from app.recognition.trajectory import Trajectory
 
 MOST_SPLICES = 16
@@ -20,9 +21,17 @@ MOST_SPLICES = 16
 
 
 def foreign_movements(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
-    """Make movements that are no gesture of the language: accidental ones, then splices."""
-    accidental = tuple(movement.trajectory for movement in accidental_movements(1))
-    return accidental + splices([g.trajectory for g in gestures if g.trajectory is not None])
+    """Make movements that are no gesture of the language: accidental ones, then splices.
+
+    All of them condensed, as queries are.
+    """
+    shown = [gesture.trajectory for gesture in gestures if gesture.trajectory is not None]
+    return _accidental() + tuple(map(condensed, splices(shown)))
+
+
+@lru_cache(maxsize=1)
+def _accidental() -> tuple[Trajectory, ...]:
+    return tuple(condensed(movement.trajectory) for movement in accidental_movements(1))
 
 
 def splices(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:

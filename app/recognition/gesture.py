@@ -254,7 +254,7 @@ class Gesture:
                 f"{self.label!r} was imported without its demonstration and cannot be mirrored: "
                 f"define it again from a clip"
             )
-        trajectory = self.trajectory.mirrored()
+        trajectory = self.trajectory.once("mirrored", self.trajectory.mirrored)
         salient = tuple(other_side(name) for name in self.salient)
         drawing = draw(trajectory.select(sorted(salient)))
         return replace(

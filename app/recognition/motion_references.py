@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -13,14 +13,12 @@ from app.recognition.elastic import ElasticReferences, alignment_costs, half_of
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
 from app.recognition.movement import (
-    Movement,
     followed_landmarks,
-    hands_in,
     movement,
-    on_both_sides,
 )
 from app.recognition.poses import FloatArray
-from app.recognition.readings import Reading, readings
+from app.recognition.readings import Reading
+from app.recognition.shown_gesture import ShownGesture
 from app.recognition.trajectory import Trajectory
 from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
 
@@ -50,6 +48,10 @@ readings would take seconds."""
 MOST_COMPARED = 1
 """Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
 576 air-drawn digits, letters and commands none was named otherwise with 1, 2, 3, 4 or all."""
+
+REMEMBERED = 4
+"""Languages whose references are remembered: one, and a few versions with a change, each of up to
+ten megabytes."""
 
 ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
@@ -100,28 +102,32 @@ class MotionReferences:
 
     @classmethod
     def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
-        """Describe all gestures that have a demonstration, in all thinkable readings."""
+        """Describe all gestures that have a demonstration, in all thinkable readings.
+
+        The references of the last few languages are remembered: the same gestures are asked for
+        again with their thresholds, and whenever only the drawings or the voters' weights change.
+        """
+        return _remembered(tuple(ShownGesture.of(gesture) for gesture in gestures))
+
+    @classmethod
+    def of_shown(cls, gestures: Sequence[ShownGesture]) -> MotionReferences:
+        """Describe them anew."""
         landmarks = followed_landmarks([gesture.salient for gesture in gestures])
-        rows: list[tuple[int, Reading, Movement]] = []
-        for index, gesture in enumerate(gestures):
-            if gesture.trajectory is None or len(gesture.trajectory) < 2 or not gesture.salient:
-                continue
-            shown = movement(gesture.trajectory, landmarks)
-            open_readings = readings(
-                shown,
-                hands=hands_in(gesture.salient),
-                both_ways=gesture.switches.direction != "on",
-                either_side=gesture.switches.mirror == "auto" and on_both_sides(gesture.salient),
-            )
-            if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
-                open_readings = open_readings[:1]
-            rows += [(index, each, each.of(shown, landmarks)) for each in open_readings]
+        every = len(gestures) <= MAX_GESTURES_READ_OTHERWISE
+        described = {
+            index: gesture.read(landmarks, every=every)
+            for index, gesture in enumerate(gestures)
+            if gesture.trajectory is not None and len(gesture.trajectory) > 1 and gesture.salient
+        }
+        sizes = np.array([len(each.readings) for each in described.values()], dtype=np.intp)
         return cls(
             landmarks,
-            np.array([index for index, _, _ in rows], dtype=np.intp),
-            tuple(reading for _, reading, _ in rows),
+            np.repeat(np.array([*described], dtype=np.intp), sizes),
+            tuple(reading for each in described.values() for reading in each.readings),
             {
-                voter.name: np.array([voter.describe(read) for _, _, read in rows])
+                voter.name: np.concatenate(
+                    [each.descriptors[voter.name] for each in described.values()] or [np.empty(0)]
+                )
                 for voter in MOTION_VOTERS
             },
         )
@@ -215,8 +221,10 @@ class MotionReferences:
         """``(R,)``: the factor on each row's distances."""
         return np.array([reading.penalty for reading in self.readings])
 
-    def own_distances(self, rows: npt.NDArray[np.intp]) -> FloatArray:
-        """Compare some of the rows with all: ``(V, len(rows), R)``."""
+    @cached_property
+    def own_distances(self) -> FloatArray:
+        """``(V, S, R)``: of the rows as shown, the first so many that are read otherwise."""
+        rows = self.as_shown[:MAX_GESTURES_READ_OTHERWISE]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
             block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
@@ -276,6 +284,11 @@ class MotionReferences:
         return NearestReadings(np.where(found, compared[chosen], -1), distances)
 
 
+@lru_cache(maxsize=REMEMBERED)
+def _remembered(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
+    return MotionReferences.of_shown(gestures)
+
+
 def tempo_counts(
     references: MotionReferences,
     own: FloatArray,
@@ -302,8 +315,12 @@ def tempo_counts(
 
 def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[str, FloatArray]:
     """Describe a query once for each voter."""
-    seen = movement(trajectory, landmarks)
-    return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
+
+    def work_out() -> dict[str, FloatArray]:
+        seen = movement(trajectory, landmarks)
+        return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
+
+    return trajectory.once(("movement", tuple(landmarks)), work_out)
 
 
 def unambiguous(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -16,12 +17,17 @@ from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.recognizer import Recognizer
 from app.recognition.rejection import SCORE_FLOOR
+from app.recognition.trajectory import Trajectory
 from app.recognition.unforeseen import UNFORESEEN, Unforeseen
 from app.recognition.variation import Person, variants
 
 WIDEST_MARGIN = 4.0
 """Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
 compared at all needs to be."""
+
+MOST_REMEMBERED = 32
+"""Gestures whose takes are remembered: remedies rehearse the same gestures over and over, beside
+one that is changed, and a preview its neighbours. Each is up to half a megabyte."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -130,8 +136,8 @@ def rehearse(
     for row, index in enumerate(performed):
         demonstration = language.gestures[index].trajectory
         assert demonstration is not None  # chosen above
-        for take, variant in enumerate(variants(demonstration, count, seed=seed, person=person)):
-            compared = recognizer.compare(condensed(variant))
+        for take, performed_take in enumerate(_performed(demonstration, count, seed, person)):
+            compared = recognizer.compare(performed_take)
             scores[row, take] = compared.scores
             novelty[row, take] = compared.novelty[index]
             advance()
@@ -141,3 +147,12 @@ def rehearse(
         novelty=novelty,
         unforeseen=UNFORESEEN[person],
     )
+
+
+@lru_cache(maxsize=MOST_REMEMBERED)
+def _performed(
+    demonstration: Trajectory, count: int, seed: int, person: Person
+) -> tuple[Trajectory, ...]:
+    """Perform a demonstration, as the voters see it."""
+    takes = variants(demonstration, count, seed=seed, person=person)
+    return tuple(condensed(take) for take in takes)

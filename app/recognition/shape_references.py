@@ -99,15 +99,22 @@ def _judge(
     """Fill in the distances ``(V, G)`` to the gestures of one ballot."""
     if not set(ballot.salient) <= set(trajectory.landmarks):
         return
-    query = trajectory.select(ballot.salient)
-    if not np.isfinite(query.xy).all(axis=2).any(axis=0).all():
-        return  # a salient keypoint is never seen
-    descriptors = describe(draw(query, simplification), PAPER_VOTERS)
+    descriptors = trajectory.once(
+        ("drawing", ballot.salient, simplification),
+        lambda: _described(trajectory.select(ballot.salient), simplification),
+    )
     for row, voter in enumerate(PAPER_VOTERS):
         if voter.name in descriptors:
             distances[row, ballot.members] = voter.distances(
                 descriptors[voter.name], ballot.references[voter.name]
             )
+
+
+def _described(query: Trajectory, simplification: float) -> dict[str, FloatArray]:
+    """Draw and describe salient keypoints; nothing where one of them is never seen."""
+    if not np.isfinite(query.xy).all(axis=2).any(axis=0).all():
+        return {}
+    return describe(draw(query, simplification), PAPER_VOTERS)
 
 
 def _ballots(gestures: Sequence[Gesture], voters: Sequence[Voter]) -> tuple[_Ballot, ...]:

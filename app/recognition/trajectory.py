@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from functools import cached_property
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.landmarks import other_side
 from app.recognition.poses import FloatArray, PoseSequence
+
+Result = TypeVar("Result")
 
 Unit = Literal["torso_length", "extent"]
 
@@ -84,6 +87,29 @@ class Trajectory:
     def __len__(self) -> int:
         """Count the moments, T."""
         return len(self.time)
+
+    @cached_property
+    def _known(self) -> dict[Hashable, Any]:
+        return {}
+
+    def once(self, what: Hashable, work_out: Callable[[], Result]) -> Result:
+        """Work something out of this trajectory when it is first asked for, and keep it.
+
+        The same few trajectories are compared over and over while a language is made, checked or
+        explained: its demonstrations and their variants.
+
+        Parameters
+        ----------
+        what
+            Names the result and all that it depends on beside the trajectory.
+        work_out
+            Must give the same result whenever it is called; nobody may change that.
+
+        """
+        if what not in self._known:
+            self._known[what] = work_out()
+        found: Result = self._known[what]
+        return found
 
     def select(self, names: Sequence[str]) -> Trajectory:
         """Keep the named landmarks, in the order given.

@@ -1,0 +1,76 @@
+"""A gesture as it was shown, in the readings that it leaves open, described for all voters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.recognition.gesture import Gesture
+from app.recognition.movement import hands_in, movement, on_both_sides
+from app.recognition.poses import FloatArray
+from app.recognition.readings import Reading, readings
+from app.recognition.switches import Switch
+from app.recognition.trajectory import Trajectory
+from app.recognition.voters.motion import MOTION_VOTERS
+
+
+@dataclass(frozen=True, eq=False)
+class ReadGesture:
+    """One gesture in its readings, and per voter's name their descriptors."""
+
+    readings: tuple[Reading, ...]
+    descriptors: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class ShownGesture:
+    """All of a gesture that its readings depend on.
+
+    Attributes
+    ----------
+    trajectory, salient
+        The gesture's.
+    direction, mirror
+        Its switches.
+
+    """
+
+    trajectory: Trajectory | None
+    salient: tuple[str, ...]
+    direction: Switch
+    mirror: Switch
+
+    @classmethod
+    def of(cls, gesture: Gesture) -> ShownGesture:
+        """Take it out of a gesture."""
+        switches = gesture.switches
+        return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
+
+    def read(self, landmarks: tuple[str, ...], *, every: bool) -> ReadGesture:
+        """Describe a gesture with a demonstration in `every` thinkable reading, or just as shown.
+
+        Once for each set of landmarks that a language follows.
+        """
+        trajectory = self.trajectory
+        assert trajectory is not None
+        both_ways = self.direction != "on"
+        either_side = self.mirror == "auto" and on_both_sides(self.salient)
+        hands = hands_in(self.salient)
+
+        def work_out() -> ReadGesture:
+            shown = movement(trajectory, landmarks)
+            found = readings(shown, hands=hands, both_ways=both_ways, either_side=either_side)
+            found = found if every else found[:1]
+            movements = [each.of(shown, landmarks) for each in found]
+            return ReadGesture(
+                found,
+                {
+                    voter.name: np.array([voter.describe(each) for each in movements])
+                    for voter in MOTION_VOTERS
+                },
+            )
+
+        return trajectory.once(
+            ("readings", landmarks, hands, both_ways, either_side, every), work_out
+        )
