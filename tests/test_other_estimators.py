@@ -66,6 +66,9 @@ def test_a_language_of_mediapipe_is_understood_by_yolo_pose(
     ended = osg_studio("recognize", clip, "--language", file, "--json", *arguments(model))
     assert ended.code == 0, ended.error
     assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
+    told = " ".join(ended.error.split())
+    assert "this pose model gives no left_pinky, right_pinky, left_index" in told
+    assert "no hand" not in told
 
 
 def test_a_language_that_follows_a_finger_is_refused_before_the_clip_is_read(

@@ -17,8 +17,7 @@ from app.keypoint_files.sleap import read_sleap
 from app.keypoint_files.table import KeypointOptions, KeypointTable
 from app.recognition.errors import KeypointFileError
 from app.recognition.estimation.base import Hand
-from app.recognition.landmark_sets import landmark_named
-from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.landmark_sets import landmark_named, missing_from
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.recording import Recording
 from app.recognition.salute import best_salute
@@ -190,11 +189,8 @@ def _mapped(
             f"left out, for they mean no landmark here: {', '.join(dropped)}; keep one by "
             f"--landmark {dropped[0]}=NAME"
         )
-    if missing := [name for name in (*SHOULDERS, *HIPS) if name not in found]:
-        notes.append(
-            f"without {', '.join(missing)}: distance and drift are taken out by what is left of "
-            f"the torso"
-        )
+    if missing := missing_from(found):
+        notes.append(f"{path.name} gives no {', '.join(missing)}")
     return tuple(found), list(found.values()), tuple(notes)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
 from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
+from app.recognition.landmark_sets import missing_from
 from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.poses import PoseSequence, joined
 from app.recognition.recording import Recording
@@ -174,6 +175,8 @@ class _Collector:
         found = []
         if self._without_body:
             found.append(f"no person in {self._without_body} of {frames} frames")
+        if missing := missing_from(self._landmarks):
+            found.append(f"this pose model gives no {', '.join(missing)}")
         if not self._hands_sought:
             return tuple(found)
         if not any(self._hands):

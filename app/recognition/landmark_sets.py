@@ -8,9 +8,10 @@ and both would only repeat what shoulders and hips say.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from typing import Final
 
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY
 
 LandmarkSet = tuple[str | None, ...]
 
@@ -133,9 +134,12 @@ def landmark_named(name: str) -> str | None:
     return None
 
 
-def missing_from(landmarks: tuple[str, ...]) -> tuple[str, ...]:
-    """Return those of `POSE_LANDMARKS` that a source does not give, in their order."""
-    return tuple(name for name in POSE_LANDMARKS if name not in landmarks)
+def missing_from(landmarks: Collection[str]) -> tuple[str, ...]:
+    """Return what gestures are made with or measured against and a source does not give.
+
+    Those of `UPPER_BODY`, in the order of `POSE_LANDMARKS`.
+    """
+    return tuple(name for name in POSE_LANDMARKS if name in UPPER_BODY and name not in landmarks)
 
 
 def _words(name: str) -> list[str]:

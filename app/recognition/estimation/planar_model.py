@@ -69,11 +69,6 @@ class PlanarModel:
         height, width = (extent if isinstance(extent, int) else side for extent in shape[2:])
         self.input_size = (width, height)
 
-    @property
-    def metadata(self) -> dict[str, str]:
-        """What the exporting program wrote about the model."""
-        return dict(self._session.get_modelmeta().custom_metadata_map)
-
     def run(self, planes: npt.NDArray[np.floating]) -> list[npt.NDArray[np.float32]]:
         """Run the model.
 
