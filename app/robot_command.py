@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -33,6 +33,7 @@ from app.robot import (
 )
 from app.robot.energy import energy_meter
 from app.robot.messages import line_of
+from app.robot.publishing import Network, open_publisher
 from app.robot.stage_profile import StageProfiler
 from app.robot.watched_language import WatchedLanguage
 from app.robot_text import profile_table, sentence_of
@@ -59,6 +60,10 @@ def robot(
     ros2: Annotated[
         bool, typer.Option("--ros2", help="Also publish to ROS 2; needs the packages in ros2/.")
     ] = False,
+    publish: Annotated[
+        Network | None,
+        typer.Option(help="Also tell ROS 2 in the network, without ROS 2 on this machine."),
+    ] = None,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Measure what each stage costs, and tell that only."),
@@ -86,6 +91,9 @@ def robot(
             show_profile(frames, StageProfiler(body, finder, listener, water=water, meter=meter))
             return
         topics = opened.enter_context(ros2_topics()) if ros2 else None
+        heard = [tell]
+        if publish:
+            heard.append(opened.enter_context(closing(open_publisher(publish))).publish)
         runtime = Runtime(
             frames,
             finder,
@@ -95,7 +103,8 @@ def robot(
             observer=topics.look if topics else None,
         )
         with signals_heeded(runtime.stop, spoken.reload):
-            recognised = told(also_told(runtime, topics, listener) if topics else runtime)
+            events = also_told(runtime, topics, listener) if topics else runtime
+            recognised = told(events, heard)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
 
@@ -107,8 +116,8 @@ def hearing_of(language: SpokenLanguage, *, without_salutes: bool) -> PhraseList
     return PhraseListener(Listener(language))
 
 
-def told(events: Iterable[Event]) -> int:
-    """Write every event to stdout, and for people to stderr; return how many were recognitions.
+def told(events: Iterable[Event], listeners: Sequence[Callable[[Event], None]]) -> int:
+    """Tell every event to all who listen; return how many were recognitions.
 
     When nobody reads stdout any more the runtime ends, as pipelines do.
     """
@@ -116,7 +125,8 @@ def told(events: Iterable[Event]) -> int:
     try:
         for event in events:
             recognised += isinstance(event, TakeRecognized)
-            tell(event)
+            for listener in listeners:
+                listener(event)
     except BrokenPipeError:
         # Python flushes stdout once more at its end, and would complain there.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -133,7 +143,7 @@ def show_profile(source: Source, profiler: StageProfiler) -> None:
 
 
 def tell(event: Event) -> None:
-    """Write one event, at once."""
+    """Write one event to stdout, and for people to stderr, at once."""
     typer.echo(line_of(event))
     if sentence := sentence_of(event):
         people.print(sentence, markup=False, highlight=False, soft_wrap=True)

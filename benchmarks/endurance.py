@@ -8,7 +8,7 @@ memory grows, how many frames are remembered, and whether every loop says the sa
 from __future__ import annotations
 
 import argparse
-import os
+import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import closing
@@ -45,6 +45,8 @@ SAME: Final = 0.02
 
 BEAT: Final = 1e-6
 """Seconds by which sums of periods may be off."""
+
+OWN: Final = re.compile(r"^(?:RssAnon|VmSwap):\s+(\d+) kB$", re.MULTILINE)
 
 STOCK_EVERY: Final = 10
 """Frames between two looks at the memory; the last one of a loop stands."""
@@ -182,8 +184,8 @@ class Lap:
         Looked at in it.
     remembered
         Most frames that the listener remembered.
-    resident
-        Bytes of memory at its end.
+    memory
+        Bytes at its end, see `own_bytes`.
     said
         What its takes were answered with.
 
@@ -191,7 +193,7 @@ class Lap:
 
     frames: int = 0
     remembered: int = 0
-    resident: int = 0
+    memory: int = 0
     said: list[Said] = field(default_factory=list)
 
 
@@ -206,7 +208,7 @@ def endure(
         lap.frames += 1
         lap.remembered = max(lap.remembered, len(listener))
         if lap.frames % STOCK_EVERY == 0:
-            lap.resident = resident_bytes()
+            lap.memory = own_bytes()
 
     for event in Runtime(source, estimator, listener, water=water, observer=take_stock):
         if isinstance(event, TakeRecognized | TakeRejected):
@@ -217,19 +219,22 @@ def endure(
     return [laps[loop] for loop in sorted(laps)]
 
 
-def resident_bytes() -> int:
-    """Return the memory that this process has now (Linux)."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+def own_bytes() -> int:
+    """Return the memory that this process has for itself, swapped out or not (Linux).
+
+    The resident size would also tell what the system takes back from it and gives it again.
+    """
+    status = Path("/proc/self/status").read_text()
+    return sum(int(kilobytes) for kilobytes in OWN.findall(status)) * 1024
 
 
 def slope_of(laps: Sequence[Lap], period: float) -> tuple[float, float]:
     """Return bytes a minute of stream time, and half of the 95 % interval, by least squares."""
-    resident = np.array([lap.resident for lap in laps], dtype=np.float64)
+    memory = np.array([lap.memory for lap in laps], dtype=np.float64)
     minutes = np.arange(len(laps)) * period / 60
     centred = minutes - minutes.mean()
-    slope = float(centred @ resident / (centred @ centred))
-    left = resident - resident.mean() - slope * centred
+    slope = float(centred @ memory / (centred @ centred))
+    left = memory - memory.mean() - slope * centred
     error = float(np.sqrt(left @ left / max(1, len(laps) - 2) / (centred @ centred)))
     return slope, 1.96 * error
 
@@ -247,7 +252,7 @@ def report(laps: Sequence[Lap], period: float) -> None:
     sure = [said.confidence for lap in laps for said in lap.said if said.confidence is not None]
     frames = sum(lap.frames for lap in laps)
     print(f"{len(laps)} loops, {len(laps) * period / 60:.1f} min of stream, {frames} frames")
-    print(f"memory: {settled[0].resident / 1e6:.1f} MB at first, {laps[-1].resident / 1e6:.1f} MB")
+    print(f"memory: {settled[0].memory / 1e6:.1f} MB at first, {laps[-1].memory / 1e6:.1f} MB")
     print(f"slope: {slope / 1e3:+.2f} kB a minute (95 %: {half / 1e3:.2f} more or less)")
     print(f"most frames remembered in a loop: {laps[0].remembered} in the first, ", end="")
     print(f"{max(lap.remembered for lap in laps)} in any")

@@ -12,7 +12,7 @@ from packaging.utils import canonicalize_name
 from tests.conftest import ROOT
 
 # Whatever else is installed, these must not be needed to recognise a gesture on a robot.
-OPTIONAL_EXTRAS = ("studio", "mediapipe", "test", "bench")
+OPTIONAL_EXTRAS = ("studio", "mediapipe", "test", "dds", "bench")
 
 IMPORT_EVERY_MODULE_OF_THE_CORE = """
 import importlib, pkgutil

@@ -77,3 +77,7 @@ class EstimatorError(RecognitionError):
 
 class SourceError(RecognitionError):
     """Raised when a camera or stream cannot be opened, or stops giving frames."""
+
+
+class PublishError(RecognitionError):
+    """Raised when what was recognised cannot be published as asked."""

@@ -12,7 +12,7 @@ from app.recognition.estimation import FrameLandmarks, Image
 from app.recognition.live import LONGEST_SALUTE
 from app.recognition.takes import LONGEST_TAKE
 from app.robot import Frame, Listener, Notice
-from benchmarks.endurance import Lap, LoopedClip, endure, resident_bytes, slope_of
+from benchmarks.endurance import Lap, LoopedClip, endure, own_bytes, slope_of
 from tests.api.recordings import FRAME_SIZE, RATE, recording_of
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.test_live import frames_of
@@ -68,7 +68,7 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
             assert one.confidence == pytest.approx(first.confidence, abs=0.05)
         assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE
     settled = laps[len(laps) // 2 :]
-    assert settled[-1].resident - settled[0].resident < 4e6
+    assert settled[-1].memory - settled[0].memory < 4e6
 
 
 def test_a_looped_clip_is_one_stream(tmp_path: Path) -> None:
@@ -81,8 +81,8 @@ def test_a_looped_clip_is_one_stream(tmp_path: Path) -> None:
 
 
 def test_the_slope_is_that_of_the_line_through_the_laps() -> None:
-    laps = [Lap(resident=1000 + 300 * number) for number in range(10)]
+    laps = [Lap(memory=1000 + 300 * number) for number in range(10)]
     slope, half = slope_of(laps, period=30.0)
     assert slope == pytest.approx(600)
     assert half == pytest.approx(0, abs=1e-6)
-    assert resident_bytes() > 10e6
+    assert own_bytes() > 10e6

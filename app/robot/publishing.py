@@ -1,0 +1,42 @@
+"""Telling others in the network what the robot's runtime tells."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+from app.recognition.errors import PublishError
+from app.robot.events import Event
+
+Network = Literal["dds"]
+"""How others are told: DDS with the names of ROS 2."""
+
+
+class Publisher(Protocol):
+    """Sends events to whoever listens."""
+
+    def publish(self, event: Event) -> None:
+        """Send one event."""
+        ...
+
+    def close(self) -> None:
+        """Leave the network."""
+        ...
+
+
+def open_publisher(network: Network) -> Publisher:
+    """Join a network.
+
+    Raises
+    ------
+    PublishError
+        When its library is not installed, or its settings are wrong.
+
+    """
+    try:
+        from app.robot.dds import DdsPublisher
+    except ModuleNotFoundError as error:
+        raise PublishError(
+            f"publishing over {network} needs {error.name}, which is not installed; install it "
+            f'with: pip install "osg-studio[{network}]"'
+        ) from error
+    return DdsPublisher()
