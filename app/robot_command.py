@@ -48,7 +48,9 @@ def robot(
     language: Annotated[Path, typer.Option(help="Language file; read again when it changes.")],
     source: Annotated[
         str,
-        typer.Option(help="Camera number or device, rtsp:// or http:// address, clip, or bag."),
+        typer.Option(
+            help="Camera number or device, rtsp:// or http:// address, clip, BAG or BAG@/TOPIC."
+        ),
     ] = "0",
     profile: Annotated[str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")] = "full",
     without_salutes: Annotated[

@@ -178,7 +178,7 @@ class BagFrames(Iterator[VideoFrame]):
 
 
 def _even(image: Image) -> Image:
-    """Leave out a last odd row or column, unless it is the only one."""
+    """Leave out a last odd row or column; raise BagError where nothing would be left."""
     height, width = image.shape[:2]
     if min(height, width) < 2:
         raise BagError(f"a picture has {width} x {height} pixels; the recording is damaged")

@@ -257,7 +257,7 @@ def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
     """Show each label from the end of its take to the beginning of the next one."""
     events = []
     for each in recognitions:
-        shown = each.result.label or f"not {each.result.nearest}"
+        shown = each.result.label or f"no gesture, nearest {each.result.nearest}"
         text = f"{shown}  {each.result.confidence:.2f}"
         events.append(_Event(each.start, "/label", overlay.label("", stamp_of(each.start))))
         events.append(_Event(each.end, "/label", overlay.label(text, stamp_of(each.end))))
