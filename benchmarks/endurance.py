@@ -87,6 +87,7 @@ class LoopedClip:
     """
 
     live = False
+    began = None
 
     def __init__(self, clip: Path, seconds: float, every: int = 1) -> None:
         self.name = f"{clip.name}, looped"

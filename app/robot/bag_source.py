@@ -33,6 +33,7 @@ class BagSource:
     """
 
     live = False
+    began = None
 
     def __init__(self, text: str, limits: VideoLimits | None = None) -> None:
         self.name = text

@@ -23,6 +23,7 @@ class RecordedSource:
     """
 
     live = False
+    began = None
 
     def __init__(self, name: str, frames: FrameSource, release: Callable[[], None]) -> None:
         self.name = name

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from datetime import UTC, datetime
 from typing import Final
 
 from app.recognition.errors import RecognitionError
@@ -132,8 +131,7 @@ class Runtime:
 
     def _opened(self) -> SourceOpened:
         source = self._source
-        began = datetime.now(UTC) if source.live else None
-        return SourceOpened(0.0, source.name, source.live, source.frame_size, began)
+        return SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
 
     def _look(self, frame: Frame) -> Iterator[Event]:
         found = self._estimator.estimate(corrected(frame.image, self._water), frame.time)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Protocol
 
 from app.recognition.estimation.base import Image
@@ -115,6 +116,8 @@ class Source(Protocol):
         For people, without passwords.
     live
         Whether frames that nobody asks for in time are dropped.
+    began
+        When the source's clock was 0, in UTC; None for a recording, whose past nobody knows.
     frame_size
         Width and height in pixels of the first frame; later ones may differ after a `Restored`.
 
@@ -128,6 +131,11 @@ class Source(Protocol):
     @property
     def live(self) -> bool:
         """Whether it is a camera or stream, not a recording."""
+        ...
+
+    @property
+    def began(self) -> datetime | None:
+        """When its clock was 0, in UTC; None: nobody knows."""
         ...
 
     @property

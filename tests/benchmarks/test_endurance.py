@@ -26,6 +26,7 @@ class LoopedLandmarks:
     """A stream whose landmarks are known: a source, and the estimator that finds them."""
 
     live = False
+    began = None
     name = "landmarks"
     frame_size = FRAME_SIZE
 

@@ -90,7 +90,7 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
     opened, _, idle, lost, restored, *_, ended = told
     assert isinstance(opened, SourceOpened)
     assert opened.live
-    assert opened.began is not None
+    assert opened.began == source.began
     assert idle == StateChanged(idle.time, TakeState.idle)
     assert isinstance(lost, SourceLost)
     assert isinstance(restored, SourceRestored)

@@ -38,6 +38,7 @@ class TopicSource:
     """
 
     live = True
+    began = None
 
     def __init__(self, name: str, refused: Callable[[str], None]) -> None:
         self.name = name
