@@ -1,0 +1,56 @@
+"""Bars on the novelty: each refuses as many true takes as it says."""
+
+import numpy as np
+import pytest
+
+from benchmarks.rejection import (
+    REFUSED,
+    Outcomes,
+    accepted_as_calibrated,
+    accepted_at_one_bar,
+    accepted_at_own_bars,
+    refused_as_calibrated,
+    with_interval,
+)
+
+QUERIES = 2000
+
+
+def drawn(true: float, foreign: float, seed: int) -> Outcomes:
+    """Draw novelties about two means; a language refuses what is above 1."""
+    generator = np.random.default_rng(seed)
+    known = np.arange(QUERIES) % 2 == 0
+    novelty = generator.normal(np.where(known, true, foreign), 0.2)
+    return Outcomes(novelty, known, novelty > 1, np.arange(QUERIES) // 20)
+
+
+NEAR, FAR = drawn(0.5, 0.9, seed=1), drawn(0.5, 2.0, seed=2)
+LOOSE = drawn(0.8, 2.0, seed=3)
+
+
+def test_a_sets_own_bar_refuses_its_share_of_the_true_takes() -> None:
+    for outcomes in (NEAR, FAR, LOOSE):
+        refused = (outcomes.novelty[outcomes.known] > outcomes.own_bar).mean()
+        assert refused == pytest.approx(REFUSED, abs=0.002)
+
+
+def test_one_bar_for_all_is_a_compromise() -> None:
+    """The set whose true takes lie farther out needs a wider bar, and gets less than it needs."""
+    assert accepted_at_one_bar([NEAR]) == pytest.approx(accepted_at_own_bars([NEAR]), abs=0.01)
+    assert accepted_at_one_bar([NEAR, LOOSE]) > accepted_at_own_bars([NEAR, LOOSE])
+
+
+def test_what_is_far_is_never_accepted_and_what_is_near_mostly_is() -> None:
+    assert accepted_at_own_bars([FAR]) == 0
+    assert accepted_as_calibrated([NEAR]) > 0.5
+    assert refused_as_calibrated([NEAR]) < 0.02
+
+
+def test_an_interval_holds_what_was_measured() -> None:
+    measured, low, high = (
+        float(word.strip("(%)"))
+        for word in with_interval(accepted_as_calibrated, [NEAR]).split()
+        if word != "to"
+    )
+    assert low < measured < high
+    assert 2 < high - low < 8
