@@ -16,20 +16,21 @@ import numpy as np
 from app.recognition.course import course
 from app.recognition.landmarks import other_side
 from app.recognition.motion_references import CLEARLY_SLOWER
-from app.recognition.movement import STEPS, movement
+from app.recognition.movement import STEPS, limbs_of, movement
 from app.recognition.pairing import ALIKE, Pairing
 from app.recognition.poses import FloatArray
 from app.recognition.sides import exchanged_back, mistaken_sides
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
 from app.recognition.trajectory_image import MIN_EXTENT
+from app.recognition.voters.wrist_bend import WristBend
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
-    "tempo", "place", "size", "unseen",
+    "tempo", "place", "size", "wrist", "unseen",
 ]  # fmt: skip
 """In what way: left and right exchanged by the pose model; the other way round; with the other
 hand; as its mirror image; a part missing, or too much; another course; slower or quicker; elsewhere
-beside the body; larger or smaller; not seen for a while."""
+beside the body; larger or smaller; with the wrist bent otherwise; not seen for a while."""
 
 DIFFERENT = 2 * ALIKE
 """Path distance from which a query's path is told to differ: twice what two people's takes of one
@@ -54,6 +55,10 @@ by more than a forearm's half; where people show the same, they differ by half o
 CLEARLY_LARGER = 1.0
 """Doublings of the size from which it is told; two people differ by a third of one."""
 
+BENT_OTHERWISE = 1.5
+"""Distance by `WristBend` from which a wrist is told to be bent otherwise: about the threshold of
+that voter, three times what two people's takes of one gesture differ by."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Difference:
@@ -66,7 +71,7 @@ class Difference:
     share
         In [0, 1]: of the distance between the paths, beyond what takes of one figure differ by,
         what undoing it takes away; 0 for what is told beside it and changes no path: tempo,
-        place, size, what was not seen.
+        place, size, the wrist, what was not seen.
     landmark
         The joint concerned most; None: all of them.
     start, end
@@ -113,7 +118,7 @@ def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, 
         return tuple(found)  # where and how large such a path is, says nothing of the gesture
     beside = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing)]
     if sees_direction:
-        beside += _read_backwards(pairing)
+        beside += [*_read_backwards(pairing), *_bent_otherwise(pairing)]
     return (*found, *beside, *_paced(pairing))
 
 
@@ -330,6 +335,28 @@ def _otherwise_sized(pairing: Pairing) -> Iterator[Difference]:
     if abs(doublings) > CLEARLY_LARGER:
         how = f"{2 ** abs(doublings):.1f} times {'larger' if doublings > 0 else 'smaller'}"
         yield _beside("size", None, None, None, f"it is shown {how}")
+
+
+def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
+    """Tell which wrist is bent otherwise, and by how many degrees."""
+    voter = WristBend()
+    shown, expected = (
+        voter.describe(each).reshape(-1, 1, 3) for each in (pairing.query, pairing.example.movement)
+    )
+    bones = limbs_of(pairing.landmarks)
+    wrists = dict.fromkeys(inner for inner, _ in bones if inner.endswith("wrist"))
+    for wrist, here, there in zip(wrists, shown, expected, strict=True):
+        distance = float(voter.distances(here, there)[0])
+        if np.isfinite(distance) and distance > BENT_OTHERWISE:
+            # The mean of a sine stays within 1; a rounding error need not.
+            bends = np.degrees(np.arcsin(np.clip([here[0, 0], there[0, 0]], -1, 1)))
+            apart = float(bends[0] - bends[1])
+            words = (
+                f"the {spoken(wrist)} is bent {abs(apart):.0f} degrees farther "
+                f"{'clockwise' if apart > 0 else 'counter-clockwise'} than for "
+                f"{pairing.example.label!r}"
+            )
+            yield _beside("wrist", wrist, None, None, words)
 
 
 def _paced(pairing: Pairing) -> Iterator[Difference]:

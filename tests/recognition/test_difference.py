@@ -1,5 +1,7 @@
 """Differences: a known fault is named as what it is, at the time and on the joint where it lies."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -149,6 +151,31 @@ def test_what_changes_no_path_is_told_beside_it(query: PoseSequence, kind: str, 
     (only,) = told(query)
     assert (only.kind, only.share) == (kind, 0.0)
     assert words in only.words
+
+
+def bent(degrees: float) -> PoseSequence:
+    """Record a hook whose hand points this far clockwise of the forearm, in the image."""
+    poses = recording(hook)
+    xy = poses.xy.copy()
+    elbow, wrist, index, pinky = (
+        poses.landmarks.index(f"right_{part}") for part in ("elbow", "wrist", "index", "pinky")
+    )
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    xy[:, index] = xy[:, pinky] = xy[:, wrist] + 0.4 * (xy[:, wrist] - xy[:, elbow]) @ turn
+    return replace(poses, xy=xy)
+
+
+@pytest.mark.parametrize(("shown", "way"), [(40, "80 degrees farther clockwise"), (0, None)])
+def test_a_wrist_that_is_bent_otherwise_is_told_by_degrees(shown: float, way: str | None) -> None:
+    gesture = Gesture.from_demonstration("hook", bent(-shown))
+    trajectory = condensed(Trajectory.from_poses(bent(shown)))
+    pairing = Pairing.of(trajectory, gesture, AS_SHOWN)
+    assert pairing is not None
+    found = differences(pairing, sees_direction=True)
+    assert [each.kind for each in found] == ([] if way is None else ["wrist"])
+    assert all(way is not None and way in each.words for each in found)
+    assert differences(pairing, sees_direction=False) == ()
 
 
 def test_a_joint_that_was_not_seen_is_told_with_the_time() -> None:
