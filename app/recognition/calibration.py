@@ -48,7 +48,7 @@ REACH: Final[Mapping[str, float]] = MappingProxyType(
         "path_length": 7.0,
         "posture": 4.0,
         "hand_attitude": 4.0,
-        "wrist_bend": 3.25,
+        "wrist_bend": 3.5,
     }
 )
 """Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded

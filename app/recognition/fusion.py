@@ -52,7 +52,7 @@ TYPICAL = {
     "direction": Trust(1.0, 0.131, 1.3),
     "posture": Trust(3.0, 0.19, 1.1),
     "hand_attitude": Trust(1.0, 0.13, 0.56),
-    "wrist_bend": Trust(1.0, 0.47, 0.60),
+    "wrist_bend": Trust(1.0, 0.45, 0.58),
     "cloud": Trust(0.2, 0.18, 0.43),
     "stroke_direction": Trust(0.05, 0.35, 2.5),
     "which_hand": Trust(0.05, 0.05, 0.5),

@@ -31,7 +31,8 @@ class WristBend:
     gesture's meaning lies in its stroke (Kendon 2004), times how long it looks, for one that points
     at the camera points nowhere. Two means differ by as much as they exceed what both
     vary by on the way and `UNCERTAINTY` (Welch 1947), so that a wrist that waves, or that is seen
-    badly, has little to tell. An arm that rests counts as little as it turns.
+    badly, has little to tell. Of two arms it is the root of the mean square; one that rests counts
+    as little as it turns.
 
     A thumb up and a thumb down are the same arm with the wrist bent either way.
     """
@@ -63,11 +64,14 @@ class WristBend:
         """Return ``(M,)``; infinite where no arm is seen in both."""
         mean, spread, part = query.reshape(-1, 3).T
         means, spreads, parts = np.moveaxis(references.reshape(len(references), -1, 3), 2, 0)
-        relative = (means - mean) / np.sqrt(UNCERTAINTY**2 + spread**2 + spreads**2)
-        squares = (np.minimum(part, parts) * relative) ** 2
+        squares = (means - mean) ** 2 / (UNCERTAINTY**2 + spread**2 + spreads**2)
         known = np.isfinite(squares)
-        total = np.where(known, squares, 0.0).sum(axis=1)
-        return np.asarray(np.where(known.any(axis=1), np.sqrt(total), np.inf))
+        weights = np.where(known, np.minimum(part, parts) ** 2, 0.0)
+        total = (weights * np.where(known, squares, 0.0)).sum(axis=1)
+        mean_square = np.divide(
+            total, weights.sum(axis=1), out=np.full_like(total, np.inf), where=known.any(axis=1)
+        )
+        return np.asarray(np.sqrt(mean_square))
 
 
 def _mean_of_known(bones: FloatArray) -> FloatArray:
