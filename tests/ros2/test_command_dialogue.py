@@ -118,6 +118,13 @@ def test_another_language_forgets_what_was_begun_in_the_old_one() -> None:
     assert made.hear(shown("circle", 2, language="newer"), 2).command is None
 
 
+def test_the_same_language_again_forgets_nothing() -> None:
+    made = dialogue()
+    made.hear(shown("circle", 1), 1)
+    assert made.speak(CommandTable("language", dict(TABLE.commands))) is None
+    assert made.hear(shown("circle", 2), 2).command == "photo"
+
+
 def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
     made = dialogue()
     made.hear(shown("circle", 1), 1)

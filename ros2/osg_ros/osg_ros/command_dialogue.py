@@ -172,13 +172,15 @@ class CommandDialogue:
     def speak(self, table: CommandTable) -> Decision | None:
         """Take another language; what was begun in the old one is forgotten.
 
+        The same language again changes nothing.
+
         Returns
         -------
         What that means for the diver; None where nothing was begun.
 
         """
-        self.table = table
-        if self.pending is None:
+        before, self.table = self.table, table
+        if self.pending is None or table == before:
             return None
         label, self.pending = self.pending.label, None
         return Decision(f"{label!r} is forgotten: another language was loaded; show it again")

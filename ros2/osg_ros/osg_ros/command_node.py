@@ -57,7 +57,8 @@ class CommandNode(ManagedNode):
 
     def __init__(self, **options: Any) -> None:
         settings = (CONFIRM, CONFIRM_WITHIN, STALE_AFTER, LEAST_CONFIDENCE, CANCEL, EMERGENCY)
-        super().__init__("command_node", settings, "recognition", **options)
+        # Divers are silent most of the time.
+        super().__init__("command_node", settings, "recognition", steady=False, **options)
         self._dialogue = CommandDialogue(Rules())
         self._timer: Any = None
 

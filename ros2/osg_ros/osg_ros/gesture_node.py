@@ -51,6 +51,8 @@ class GestureNode(ManagedNode):
         source = TopicSource(self.resolve_topic_name(topic), self.complain)
         self.subscription(kind, topic, source.put, SENSOR_DATA)
         language = self._service.language
+        # The worker tells it with the first picture, which may be long in coming.
+        self._topics.recognitions.speaks(language)
         self._worker = GestureWorker(source, self._estimator, language, self._water, self)
 
     def halt(self) -> None:

@@ -20,6 +20,8 @@ class Health:
         Of the node, with its namespace.
     awaited
         The topic without which the node is idle, for people.
+    steady
+        Whether messages come all the time, so that silence is a fault.
 
     Attributes
     ----------
@@ -28,9 +30,10 @@ class Health:
 
     """
 
-    def __init__(self, name: str, awaited: str) -> None:
+    def __init__(self, name: str, awaited: str, *, steady: bool = True) -> None:
         self._name = name
         self._awaited = awaited
+        self._steady = steady
         self.inputs = 0
         self._reported = 0
         self._problems = 0
@@ -89,6 +92,6 @@ class Health:
         if self._listening_since is None:
             return DiagnosticStatus.OK, "not active"
         silent = now - max(self._listening_since, self._last)
-        if silent > SILENT_SECONDS:
+        if self._steady and silent > SILENT_SECONDS:
             return DiagnosticStatus.WARN, f"nothing on {self._awaited} for {silent:.0f} s"
         return DiagnosticStatus.OK, "working"

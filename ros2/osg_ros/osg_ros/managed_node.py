@@ -67,6 +67,8 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         Its own parameters.
     awaited
         The topic it works on, for diagnostics.
+    steady
+        Whether something is wrong when nothing comes on it.
     **options
         For `rclpy.node.Node`.
 
@@ -76,15 +78,24 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         All parameters.
     health
         What diagnostics tell.
+    finished
+        Whether it was shut down and cannot be used again.
 
     """
 
     def __init__(
-        self, name: str, settings: Iterable[Setting], awaited: str, **options: Any
+        self,
+        name: str,
+        settings: Iterable[Setting],
+        awaited: str,
+        *,
+        steady: bool = True,
+        **options: Any,
     ) -> None:
         super().__init__(name, **options)
         self.settings = Settings(self, (AUTOSTART, DIAGNOSTIC_PERIOD, *settings))
-        self.health = Health(self.get_fully_qualified_name(), awaited)
+        self.health = Health(self.get_fully_qualified_name(), awaited, steady=steady)
+        self.finished = False
         self._publishers_made: list[Any] = []
         self._subscriptions_made: list[Any] = []
         self._reported = time.monotonic()
@@ -191,6 +202,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
             self._stop()
             done = super().on_shutdown(state)
             self._let_go()
+            self.finished = True
             return done
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:

@@ -43,6 +43,7 @@ class RecognitionTopics:
     def __init__(self, node: ManagedNode) -> None:
         self._node = node
         self._told: int | None = None
+        self._spoken: SpokenLanguage | None = None
         self._recognition = node.publisher(GestureRecognition, "recognition", RESULTS)
         self._label = node.publisher(String, "recognized_gesture", RESULTS)
         self._state = node.publisher(RecognizerState, "state", LATCHED)
@@ -98,8 +99,10 @@ class RecognitionTopics:
         self._tell(Header(stamp=self._now()), state)
 
     def speaks(self, language: SpokenLanguage) -> None:
-        """Tell which language is recognised from now on."""
-        self._language.publish(language_message(language, Header(stamp=self._now())))
+        """Tell which language is recognised from now on; once, until it changes."""
+        if language is not self._spoken:
+            self._spoken = language
+            self._language.publish(language_message(language, Header(stamp=self._now())))
 
     def flush(self) -> None:
         """Wait until what was said has arrived, for whoever ends right afterwards."""

@@ -49,7 +49,8 @@ def running(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
     finally:
         executor.shutdown()
         for node in nodes:
-            node.trigger_shutdown()
+            if not node.finished:
+                node.trigger_shutdown()
             node.destroy_node()
 
 

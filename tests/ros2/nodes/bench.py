@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
-from lifecycle_msgs.msg import State
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
@@ -100,7 +99,7 @@ class Bench:
         """Shut down and destroy the nodes."""
         self._executor.shutdown()
         for node in self.nodes:
-            if state_of(node) != State.PRIMARY_STATE_FINALIZED:
+            if not node.finished:
                 node.trigger_shutdown()
             node.destroy_node()
         self.probe.destroy_node()

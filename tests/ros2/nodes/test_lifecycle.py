@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
@@ -18,6 +19,7 @@ from osg_ros.hand_node import HandNode
 from osg_ros.managed_node import ManagedNode
 from osg_ros.pose_node import PoseNode
 from osg_ros.recognition_node import RecognitionNode
+from osg_ros.spinning import running
 from osg_ros.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench, state_of
 
@@ -106,3 +108,14 @@ def test_a_node_that_is_stopped_is_told_to_be_inactive(bench: Bench, language_fi
     assert node.trigger_deactivate() == SUCCESS
     bench.wait(lambda: len(states) == 2, "second state")
     assert [state.state for state in states] == [RecognizerState.IDLE, RecognizerState.INACTIVE]
+
+
+def test_a_node_that_was_shut_down_by_a_manager_ends_with_its_process(domain: int) -> None:
+    rclpy.init(domain_id=domain)
+    try:
+        node = CommandNode()
+        with running([node]):
+            assert node.trigger_shutdown() == SUCCESS
+        assert node.finished
+    finally:
+        rclpy.try_shutdown()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -89,10 +90,12 @@ def test_an_operator_can_ask_for_another_quality_of_service(bench: Bench) -> Non
     assert asked.qos_profile.reliability == QoSReliabilityPolicy.RELIABLE
 
 
-def test_who_comes_later_hears_the_state_and_the_language(
-    bench: Bench, language_file: Path
+@pytest.mark.usefixtures("installed_models")
+@pytest.mark.parametrize("kind", [GestureNode, RecognitionNode])
+def test_who_comes_later_hears_the_state_and_the_language_before_any_picture(
+    bench: Bench, kind: type[GestureNode | RecognitionNode], language_file: Path
 ) -> None:
-    bench.active(RecognitionNode, language=str(language_file))
+    bench.active(kind, language=str(language_file))
     states = bench.heard(RecognizerState, "state", LATCHED)
     languages = bench.heard(ActiveLanguage, "language", LATCHED)
     bench.wait(lambda: bool(states and languages), "state and language")
@@ -146,3 +149,10 @@ def test_diagnostics_tell_the_language_and_warn_when_nothing_comes(
     told = len(reports)
     bench.wait(lambda: len(reports) > told + 1, "further reports")
     assert reports[-1].status[0].message == "not active"
+
+
+def test_a_diver_who_says_nothing_is_no_fault(bench: Bench) -> None:
+    node = bench.active(CommandNode)
+    later = time.monotonic() + 3600
+    status = node.health.report(later, 1.0, {}).status[0]
+    assert (status.level, status.message) == (DiagnosticStatus.OK, "working")
