@@ -49,6 +49,8 @@ class CameraDevice:
 
     def __init__(self, device: int | str) -> None:
         self._name = f"camera {device}"
+        # What OpenCV warns of is told by us, once, and not with every attempt to open it again.
+        cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)
         self._capture = cv2.VideoCapture(device)
         if not self._capture.isOpened():
             raise SourceError(

@@ -9,7 +9,7 @@ from functools import partial
 
 from app.bags import bag_and_topic, is_bag
 from app.recognition.video import FrameReader
-from app.robot.bag_source import BagSource
+from app.robot.bag_source import open_bag
 from app.robot.cameras import CameraDevice, NetworkStream, is_address, without_password
 from app.robot.live_source import LiveSource
 from app.robot.recorded_source import RecordedSource
@@ -63,7 +63,7 @@ def open_clip(path: str) -> Source:
 KINDS: tuple[SourceKind, ...] = (
     SourceKind(is_device, open_camera),
     SourceKind(is_address, open_stream),
-    SourceKind(is_recording, BagSource),
+    SourceKind(is_recording, open_bag),
     SourceKind(lambda text: True, open_clip),
 )
 """The first that accepts a text opens it. Clips come last: any other text is a file's path."""

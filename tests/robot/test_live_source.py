@@ -92,6 +92,9 @@ def test_a_password_is_not_shown() -> None:
 
 
 @pytest.mark.parametrize("name", ["63", "/dev/video63"])
-def test_a_camera_that_does_not_exist_is_refused_by_name(name: str) -> None:
+def test_a_camera_that_does_not_exist_is_refused_by_name(
+    name: str, capfd: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(SourceError, match=rf"camera {name} cannot be opened"):
         open_source(name)
+    assert capfd.readouterr() == ("", "")  # OpenCV would complain of its own accord
