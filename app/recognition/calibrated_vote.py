@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
+from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -134,13 +136,13 @@ class CalibratedVote:
         """Each voter's say in this language; 0: it cannot tell the gestures apart."""
         return dict(zip(VOTERS, self._say.tolist(), strict=True))
 
-    @property
-    def weights(self) -> dict[str, float]:
+    @cached_property
+    def weights(self) -> Mapping[str, float]:
         """Each voter's share in the decision, summing to 1."""
         say = self._say.copy()
         if self._tempo.any():
             say[_TEMPO] += TEMPO_SAY
-        return dict(zip(VOTERS, (say / say.sum()).tolist(), strict=True))
+        return MappingProxyType(dict(zip(VOTERS, (say / say.sum()).tolist(), strict=True)))
 
     @property
     def between(self) -> dict[str, float]:
