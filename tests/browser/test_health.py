@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
@@ -58,7 +58,10 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
 
 
 def test_a_switch_that_would_help_is_applied_and_taken_back(
-    open_page: OpenPage, server: Running, library: Library
+    open_page: OpenPage,
+    server: Running,
+    library: Library,
+    picture: Callable[[Page, str], Path],
 ) -> None:
     client = library.client
     language = client.post("/api/v1/languages", json={"name": "both ways"}).json()["id"]
@@ -74,7 +77,10 @@ def test_a_switch_that_would_help_is_applied_and_taken_back(
 
     page = open_page({"view": "health", "language": language}, scene=False)
     remedies = page.get_by_role("list", name="Remedies for circle and circle backwards")
-    remedies.get_by_role("button", name="Apply: let the direction of").click()
+    apply = remedies.get_by_role("button", name="Apply: let the direction of")
+    expect(apply).to_be_visible()
+    picture(page, "health")
+    apply.click()
     expect(page.get_by_text("Remedy applied")).to_be_visible()
     assert directions() == ["on", "on"]
     expect(remedies).to_have_count(0)

@@ -81,6 +81,8 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_label("Label").fill("our circle")
     page.get_by_label("Command").fill("Hold your depth")
+    expect(page.get_by_text("Missed: read as")).to_be_visible(timeout=EXTRACTION_MS)
+    picture(page, "editor")
     page.get_by_role("button", name="Save gesture").click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()
     expect(cards).to_have_count(9)
