@@ -163,8 +163,7 @@ class LiveSource:
 
     def _reopened(self, reason: str) -> Camera | None:
         """Open the camera again, as often as it takes; None when the source is closed meanwhile."""
-        since = self._now()
-        self._tell(Lost(since, reason))
+        self._tell(Lost(self._now(), reason))
         attempts = 0
         while not self._closing.wait(self._wait):
             self._wait = min(2 * self._wait, LONGEST_WAIT)
@@ -173,7 +172,8 @@ class LiveSource:
                 camera, image = _first_frame(self._opened)
             except SourceError:
                 continue
-            self._tell(Restored(self._now(), self._now() - since, attempts))
+            now = self._now()
+            self._tell(Restored(now, now - self._stamp, attempts))
             self._keep(image)
             return camera
         return None

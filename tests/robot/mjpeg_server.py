@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import TracebackType
@@ -32,10 +33,19 @@ class MjpegServer:
         Seconds between two pictures.
     brightness
         Of all its pictures.
+    pictures
+        After so many it says nothing more, and keeps the connection.
 
     """
 
-    def __init__(self, port: int = 0, *, pause: float = 0.02, brightness: int = 100) -> None:
+    def __init__(
+        self,
+        port: int = 0,
+        *,
+        pause: float = 0.02,
+        brightness: int = 100,
+        pictures: float = math.inf,
+    ) -> None:
         self._off = threading.Event()
         jpeg, off = picture(brightness), self._off
 
@@ -47,8 +57,11 @@ class MjpegServer:
                 self.end_headers()
                 head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}"
                 try:
+                    sent = 0
                     while not off.wait(pause):
-                        self.wfile.write(f"{head}\r\n\r\n".encode() + jpeg + b"\r\n")
+                        if sent < pictures:
+                            self.wfile.write(f"{head}\r\n\r\n".encode() + jpeg + b"\r\n")
+                            sent += 1
                 except OSError:
                     pass  # whoever watched has left
 

@@ -13,7 +13,7 @@ import pytest
 
 from app.recognition.errors import SourceError
 from app.robot import Frame, Lost, Notice, Quiet, Restored
-from app.robot.cameras import NetworkStream
+from app.robot.cameras import SILENT_SECONDS, NetworkStream
 from app.robot.live_source import LiveSource
 from app.robot.opening import open_source
 from tests.robot.mjpeg_server import FRAME_SIZE, MjpegServer
@@ -70,8 +70,19 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
     assert isinstance(frame, Frame)
     assert before.time < lost.time < restored.time <= frame.time
     assert restored.attempts >= 1
-    assert restored.missing == pytest.approx(restored.time - lost.time, abs=0.01)
+    assert restored.time - lost.time <= restored.missing <= restored.time - before.time
     assert frame.image.mean() == pytest.approx(200, abs=2)
+
+
+@pytest.mark.slow
+def test_a_stream_that_falls_silent_counts_as_lost_and_is_opened_again() -> None:
+    with MjpegServer(pictures=20) as server, closing(quick_to_return(server.address)) as source:
+        told = (each for each in source if isinstance(each, Lost | Restored))
+        lost, restored = islice(told, 2)
+    assert isinstance(lost, Lost)
+    assert f"no frame for {SILENT_SECONDS:g} s" in lost.reason
+    assert isinstance(restored, Restored)
+    assert restored.missing > SILENT_SECONDS
 
 
 def test_a_closed_source_gives_nothing_more() -> None:
