@@ -50,10 +50,13 @@ LIBRARIES = (
 )
 
 
+PYTHON_HEADERS = Path(sysconfig.get_paths()["include"])
+
+
 def compilers() -> tuple[str, str] | None:
-    """Return the C and the C++ compiler, or None where one is missing."""
+    """Return the C and the C++ compiler, or None where one or Python's headers are missing."""
     c, cpp = shutil.which("gcc"), shutil.which("g++")
-    return (c, cpp) if c and cpp else None
+    return (c, cpp) if c and cpp and (PYTHON_HEADERS / "Python.h").is_file() else None
 
 
 def build(package: Path, into: Path) -> None:
@@ -137,7 +140,7 @@ def compile_extension(name: str, made: Path) -> None:
         made.parent,
         PREFIX / "include",
         *(each for each in (PREFIX / "include").iterdir() if each.is_dir()),
-        Path(sysconfig.get_paths()["include"]),
+        PYTHON_HEADERS,
         Path(np.get_include()),
     ]
     flags = ["-w", "-O0", "-fPIC", *(f"-I{each}" for each in includes)]

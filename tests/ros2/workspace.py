@@ -33,7 +33,7 @@ def missing() -> str | None:
     from tests.ros2.typesupport import compilers
 
     if compilers() is None:
-        return "needs gcc and g++, to compile the message packages"
+        return "needs gcc, g++ and Python.h (python3-dev), to compile the message packages"
     return None
 
 

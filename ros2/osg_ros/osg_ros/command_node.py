@@ -20,11 +20,15 @@ from osg_ros.command_dialogue import (
     HeardGesture,
     Rules,
 )
+from osg_ros.command_table import read_commands
 from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.settings import Setting
 from osg_ros.spinning import spin
 from osg_ros.stamps import NANOSECONDS, nanoseconds_of, stamp_of
 
+LANGUAGE: Final = Setting(
+    "language", "", "Path of the language file, for where nobody tells the topic `language`."
+)
 CONFIRM: Final = Setting(
     "confirm", True, "Give a command only when its gesture is repeated; emergencies at once."
 )
@@ -56,19 +60,29 @@ class CommandNode(ManagedNode):
     """Speaks the commands of the active language; `CommandDialogue` decides."""
 
     def __init__(self, **options: Any) -> None:
-        settings = (CONFIRM, CONFIRM_WITHIN, STALE_AFTER, LEAST_CONFIDENCE, CANCEL, EMERGENCY)
+        settings = (
+            LANGUAGE,
+            CONFIRM,
+            CONFIRM_WITHIN,
+            STALE_AFTER,
+            LEAST_CONFIDENCE,
+            CANCEL,
+            EMERGENCY,
+        )
         # Divers are silent most of the time.
         super().__init__("command_node", settings, "recognition", steady=False, **options)
         self._dialogue = CommandDialogue(Rules())
         self._timer: Any = None
 
     def prepare(self) -> None:
-        """Read the rules and make the publishers.
+        """Read the rules and the commands, and make the publishers.
 
         Raises
         ------
         ValueError
-            When the rules contradict each other.
+            When the rules contradict each other, or the file is no language.
+        OSError
+            When it cannot be read.
 
         """
         rules = Rules(
@@ -79,6 +93,8 @@ class CommandNode(ManagedNode):
             cancel=frozenset(self.settings["cancel"]),
             emergency=frozenset(self.settings["emergency"]),
         )
+        path = self.settings["language"]
+        self._table = read_commands(path) if path else CommandTable()
         self._dialogue = CommandDialogue(rules)
         self._commands = self.publisher(Command, "command", RESULTS)
         self._state = self.publisher(CommandState, "command_state", LATCHED)
@@ -86,6 +102,7 @@ class CommandNode(ManagedNode):
     def begin(self) -> None:
         """Listen from now on; nothing of before counts."""
         self._dialogue = CommandDialogue(self._dialogue.rules)
+        self._dialogue.speak(self._table)
         self._tell(Decision("waiting for a gesture"), self._now())
         self.subscription(ActiveLanguage, "language", self._speak, LATCHED)
         self.subscription(GestureRecognition, "recognition", self._hear, RESULTS)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from builtin_interfaces.msg import Time
 from osg_interfaces.msg import ActiveLanguage, GestureRecognition, RecognizerState
@@ -13,6 +12,7 @@ from std_msgs.msg import Header, String
 from app.recognition.takes import TakeState
 from app.robot import SpokenLanguage, StateChanged, TakeRecognized, TakeRejected
 from osg_ros.bodies import DIVER
+from osg_ros.command_table import command_text
 from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.optional_messages import message_type
 from osg_ros.stamps import Stopwatch
@@ -156,10 +156,3 @@ def language_message(language: SpokenLanguage, header: Header) -> ActiveLanguage
         labels=list(spoken.labels),
         commands=[command_text(gesture.command) for gesture in spoken.gestures],
     )
-
-
-def command_text(command: str | dict[str, Any] | None) -> str:
-    """Return a gesture's command as one text: its words, or its object as JSON; empty: none."""
-    if isinstance(command, dict):
-        return json.dumps(command, ensure_ascii=False, separators=(",", ":"))
-    return command or ""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition
 from std_msgs.msg import Header
 
+from app.robot import SpokenLanguage
 from osg_ros.command_node import CommandNode
 from osg_ros.stamps import nanoseconds_of, stamp_of
 from tests.ros2.nodes.bench import LATCHED, Bench
@@ -115,6 +117,14 @@ def test_what_is_not_repeated_is_given_up_aloud(bench: Bench) -> None:
     bench.wait(lambda: len(robot.states) > told, "end of the wait")
     assert robot.states[-1].state == CommandState.WAITING
     assert robot.states[-1].reason == "'circle' was not repeated in time; show it twice"
+
+
+def test_the_language_file_is_enough_where_nobody_tells_the_language(
+    bench: Bench, language_file: Path
+) -> None:
+    node = bench.active(CommandNode, language=str(language_file))
+    spoken = SpokenLanguage.load(language_file)
+    assert node.facts() == {"language id": spoken.sha256, "commands": "circle, three, wedge"}
 
 
 def test_a_label_that_the_language_lacks_is_told_to_diagnostics(bench: Bench) -> None:
