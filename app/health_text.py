@@ -91,7 +91,7 @@ def percentage(forecast: Forecast | None) -> str:
     """Return a rate with its interval; a dash where nothing is known."""
     if forecast is None:
         return "-"
-    return f"{forecast.rate:.1%} ({forecast.low:.0%}-{forecast.high:.0%})"
+    return f"{forecast.rate:.1%} ({forecast.low:.1%}-{forecast.high:.1%})"
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
