@@ -5,7 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.elastic import elastic_distances, elastic_pairs
+from app.recognition.elastic import (
+    ElasticReferences,
+    alignment_costs,
+    elastic_distances,
+    elastic_pairs,
+)
 from app.recognition.poses import FloatArray
 from app.recognition.step_distances import squared_distances
 
@@ -114,3 +119,23 @@ def test_the_alignment_leaves_out_what_is_not_known() -> None:
     pairs = elastic_pairs(query, reference, 3)
     costs = squared_distances(query, reference[None])[pairs[:, 0], pairs[:, 1], 0]
     assert costs.sum() / 9 == pytest.approx(elastic_distances(query, reference[None], 3)[0])
+
+
+@given(sequences(5), st.integers(0, 15))
+def test_prepared_references_may_be_asked_for_a_few(drawn: FloatArray, band: int) -> None:
+    query, references = drawn[0], ElasticReferences(drawn[1:], band)
+    every = elastic_distances(query, drawn[1:], band)
+    np.testing.assert_allclose(references.distances(query), every, atol=1e-9)
+    costs = references.step_costs(query, np.array([2, 0]))
+    np.testing.assert_allclose(alignment_costs(costs, len(query), band), every[[2, 0]], atol=1e-9)
+
+
+def test_components_that_no_reference_knows_are_left_out_before() -> None:
+    generator = np.random.default_rng(5)
+    query, references = generator.normal(size=(9, 4)), generator.normal(size=(3, 9, 4))
+    references[..., 3] = np.nan
+    known = elastic_distances(query[:, :3], references[..., :3], 2)
+    np.testing.assert_allclose(ElasticReferences(references, 2).distances(query), known)
+    query[:, 0] = np.nan
+    known = elastic_distances(query[:, 1:3], references[..., 1:3], 2)
+    np.testing.assert_allclose(ElasticReferences(references, 2).distances(query), known)

@@ -1,5 +1,7 @@
 """Readings of the gestures of a language: which are compared with a query, and which fit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -60,3 +62,16 @@ def test_voters_asked_together_measure_what_each_measures_alone() -> None:
     for voter, row in zip(MOTION_VOTERS, together, strict=True):
         alone = voter.distances(query[voter.name], REFERENCES.descriptors[voter.name][rows])
         np.testing.assert_allclose(row, alone)
+
+
+def test_references_are_remembered_until_what_they_depend_on_changes() -> None:
+    renamed = [replace(gesture, label=f"{gesture.label} again") for gesture in GESTURES]
+    assert MotionReferences.of(renamed) is MotionReferences.of(GESTURES)
+    one_way = replace(GESTURES[0], switches=replace(GESTURES[0].switches, direction="on"))
+    changed = MotionReferences.of([one_way, *GESTURES[1:]])
+    assert len(changed) < len(REFERENCES)
+    assert not any(
+        reading.backward
+        for gesture, reading in zip(changed.gestures, changed.readings, strict=True)
+        if gesture == 0
+    )

@@ -164,3 +164,15 @@ def test_a_mirror_image_of_a_mirror_image_is_the_movement_itself(poses: PoseSequ
     again = mirrored.mirrored()
     assert again.landmarks == seen.landmarks
     np.testing.assert_array_equal(again.xy, seen.xy)
+
+
+def test_what_was_worked_out_once_is_kept_for_this_trajectory_alone() -> None:
+    seen, asked = trajectory([[0, 0], [1, 1]]), []
+
+    def work_out() -> int:
+        asked.append("once more")
+        return len(asked)
+
+    assert [seen.once("number", work_out) for _ in range(3)] == [1, 1, 1]
+    assert seen.once(("number", 2), work_out) == 2
+    assert seen.between(0, 1).once("number", work_out) == 3
