@@ -57,8 +57,8 @@ is held tells more than what it draws: with as long a reach, a quarter more of t
 are accepted at as many true ones refused; with half the reach it is a twentieth less, but one in
 seven of the true signals is refused. Of other people's takes not one in a hundred has a
 way 1.5 times as long; the reach is 1.7 times. A wrist may bend otherwise by about 30 degrees: that
-refuses one in two hundred of the true signals that nothing else refuses, and one in eight of the
-foreign ones."""
+refuses one in three hundred of the true signals that nothing else refuses, and one in ten of the
+foreign ones that nothing else does."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: where only one bone is seen, its

@@ -34,7 +34,7 @@ class WristBend:
     badly, has little to tell. Of two arms it is the root of the mean square; one that rests counts
     as little as it turns.
 
-    A thumb up and a thumb down are the same arm with the wrist bent either way.
+    Marshallers who turn a thumb up or down raise the same arm, and bend the wrist either way.
     """
 
     name = "wrist_bend"
