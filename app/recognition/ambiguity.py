@@ -95,7 +95,7 @@ def _may_run_together(grammar: Grammar) -> bool:
         return False
     if grammar.start is None or grammar.start == grammar.end:
         return True
-    inside = {use.label for use in grammar.uses() if use.phrase or "slot type" in use.where}
+    inside = {use.label for use in grammar.uses() if use.role is None}
     return bool(inside & {grammar.start, grammar.end})
 
 

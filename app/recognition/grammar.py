@@ -34,15 +34,15 @@ class Use:
         JSON pointer into the language file.
     where
         The same in words.
-    phrase
-        Name of the phrase, None outside phrases.
+    role
+        One of `FRAME`; None inside a phrase or a slot type.
 
     """
 
     label: str
     pointer: str
     where: str
-    phrase: str | None = None
+    role: str | None = None
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Grammar:
         for role in FRAME:
             label = getattr(self, role)
             if label is not None:
-                yield Use(label, pointer_to("grammar", role), f"the {role} gesture")
+                yield Use(label, pointer_to("grammar", role), f"the {role} gesture", role)
         for index, slot_type in enumerate(self.slot_types):
             for number, label in enumerate(slot_type.values):
                 pointer = pointer_to("grammar", "slot_types", index, "values", number, "gesture")
@@ -100,7 +100,7 @@ class Grammar:
         for index, phrase in enumerate(self.phrases):
             place = pointer_to("grammar", "phrases", index, "parts")
             for pointer, label in _labels_in(phrase.parts, place):
-                yield Use(label, pointer, f"the phrase {phrase.name!r}", phrase.name)
+                yield Use(label, pointer, f"the phrase {phrase.name!r}")
 
     def require(self, labels: Collection[str]) -> None:
         """Refuse a language that lacks a gesture of the grammar.

@@ -60,7 +60,7 @@ def check_grammar(grammar: Grammar) -> None:
             "/grammar/phrases",
         )
     for use in grammar.uses():
-        if use.label == grammar.cancel and use.pointer != "/grammar/cancel":
+        if use.label == grammar.cancel and use.role != "cancel":
             raise LanguageError(
                 f"{use.label!r} is the cancel gesture, so that {use.where} could never be heard "
                 "with it: choose another",

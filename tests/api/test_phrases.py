@@ -7,8 +7,9 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.languages import LANGUAGES
 from tests.api.running import assert_problem
+from tests.robot.languages import language_of
 
 GRAMMAR: dict[str, Any] = {
     "end": "circle",
@@ -32,12 +33,11 @@ def parts(*parts: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.fixture
-def place(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+def place(client: httpx.Client) -> str:
     """Return the address of a language of a circle and a line, with a phrase."""
-    add_gesture(client, language_id, circle_clip, "circle")
-    add_gesture(client, language_id, line_clip, "line")
-    place = f"{LANGUAGES}/{language_id}"
-    answer = client.patch(place, json={"grammar": GRAMMAR}, headers={"If-Match": '"3"'})
+    imported = client.post(f"{LANGUAGES}/import", content=language_of("circle", "line").to_json())
+    place = f"{LANGUAGES}/{imported.json()['id']}"
+    answer = client.patch(place, json={"grammar": GRAMMAR}, headers={"If-Match": '"1"'})
     assert answer.status_code == 200, answer.text
     return place
 
@@ -51,21 +51,27 @@ def shown(client: httpx.Client, place: str, *gestures: str, **query: str) -> dic
 
 def test_phrases_are_a_revision_of_the_language(client: httpx.Client, place: str) -> None:
     language = client.get(place).json()
-    assert language["revision"] == 4
+    assert language["revision"] == 2
     assert language["change"] == "Change the phrases"
     (phrase,) = language["grammar"]["phrases"]
     assert phrase["parts"][1]["slot"] == "times"
     exported = client.get(f"{place}/export").json()
     assert exported["grammar"]["phrases"][0]["name"] == "photo"
-    lost = client.patch(place, json={"grammar": GRAMMAR}, headers={"If-Match": '"3"'})
+    lost = client.patch(place, json={"grammar": GRAMMAR}, headers={"If-Match": '"1"'})
     assert_problem(lost, 412, "revision_conflict")
     # What was read can be sent back as it is.
     again = client.patch(place, json={"grammar": language["grammar"]})
     assert again.json()["grammar"] == language["grammar"]
+    longer = {**GRAMMAR, "timeout": 20, "phrases": [{**GRAMMAR["phrases"][0], "says": "photo"}]}
+    client.patch(place, json={"grammar": longer})
+    words = client.get(f"{place}/comparison", params={"older": 3, "newer": 4}).json()["words"]
+    assert len(words) == 2
+    assert "photo" in words[0]
+    assert "frames the phrases" in words[1]
     client.patch(place, json={"name": "renamed"})
     assert client.get(place).json()["grammar"] is not None
     assert client.patch(place, json={"grammar": None}).json()["grammar"] is None
-    words = client.get(f"{place}/comparison", params={"older": 3, "newer": 4}).json()["words"]
+    words = client.get(f"{place}/comparison", params={"older": 1, "newer": 2}).json()["words"]
     assert words == ["phrases were added"]
 
 
@@ -86,7 +92,7 @@ def test_gestures_are_simulated_without_leaving_anything_behind(
     assert last["text"] == "mission: photo, 1 times"
     assert last["mission"][0]["command"] == {"do": "photo", "times": 1}
     assert shown(client, place, "line", then="pause")["events"][-1]["kind"] == "timed_out"
-    assert client.get(place).json()["revision"] == 4
+    assert client.get(place).json()["revision"] == 2
 
 
 def test_ambiguities_are_told_as_the_phrases_change(client: httpx.Client, place: str) -> None:
@@ -119,7 +125,7 @@ def test_what_contradicts_itself_is_refused_with_a_pointer(
     assert answer.status_code == 422
     (fault,) = answer.json()["errors"]
     assert fault["pointer"] == pointer
-    assert client.get(place).json()["revision"] == 4
+    assert client.get(place).json()["revision"] == 2
 
 
 def test_a_renamed_gesture_stays_in_its_phrases(client: httpx.Client, place: str) -> None:

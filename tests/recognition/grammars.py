@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from math import prod
 
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -14,6 +15,9 @@ from app.recognition.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 from app.recognition.phrase_automaton import Reading, Said
 
 LABELS = ("a", "b", "c")
+
+MOST_MESSAGES = 500
+"""Of a grammar that is drawn: all of them are written out to compare with."""
 
 NUMBER = SlotType("number", "number", {"two": 2, "three": 3})
 DIRECTION = SlotType("direction", "text", {"left": "left", "right": "right"})
@@ -79,11 +83,24 @@ def grammars(draw: st.DrawFn) -> Grammar:
     frame = st.sampled_from([None, "a", "start"])
     start, end = draw(frame), draw(st.sampled_from([None, "c", "end"]))
     most = draw(st.integers(1, 2)) if end is not None else 1
+    single = sum(prod(map(_ways, phrase.parts)) for phrase in phrases)
+    assume(sum(single**count for count in range(1, most + 1)) <= MOST_MESSAGES)
     try:
         return Grammar(tuple(phrases), _TYPES, start, end, most_phrases=most)
     except LanguageError:
         assume(False)  # a phrase without a needed part, for instance
         raise
+
+
+def _ways(part: Part) -> int:
+    """Count the ways to show a part."""
+    if isinstance(part, Group):
+        once = prod(map(_ways, part.parts))
+    elif isinstance(part, Slot):
+        once = next(len(each.values) for each in _TYPES if each.name == part.slot_type)
+    else:
+        once = len(part.gestures)
+    return sum(once**count for count in range(part.least, part.most + 1))
 
 
 Sentence = tuple[tuple[str, ...], Reading]
