@@ -7,7 +7,9 @@ import pytest
 
 from app.health_text import health_text
 from app.recognition import Gesture, Language
+from app.recognition.grammar import Grammar
 from app.recognition.health import check_health
+from app.recognition.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
@@ -38,6 +40,19 @@ def test_a_language_with_nothing_below_the_bar_ends_with_zero(
     assert ended.code == 0
     assert ended.out.splitlines()[0] == "pool, revision 1: ready"
     assert "came without its demonstration" in ended.out
+
+
+def test_an_ambiguity_of_the_phrases_is_below_the_bar(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    (drawn,) = pool(circle=circle).gestures
+    picture = Gesture(label="old", salient=("right_wrist",), image=drawn.image)
+    grammar = Grammar((Phrase("photo", (OneOf(("old",), most=2),)),))
+    file = tmp_path / "pictures.json"
+    Language("pool", [picture], grammar=grammar).save(file)
+    ended = osg_studio("check", file)
+    assert ended.code == 1
+    assert "BELOW THE BAR: after old the message is over, and it might go on with old" in ended.out
 
 
 @pytest.mark.slow
