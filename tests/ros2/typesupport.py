@@ -13,7 +13,9 @@ import sys
 import sysconfig
 from collections.abc import Sequence
 from contextlib import redirect_stdout
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import rosidl_generator_c
@@ -32,6 +34,8 @@ from rosidl_generator_type_description import generate_type_hash
 
 PREFIX = Path(sys.prefix)
 """Where pip put ROS 2: headers in include, libraries in lib, definitions in share."""
+
+SHARE = PREFIX / "share"
 
 DEPENDENCIES = ("builtin_interfaces", "service_msgs", "std_msgs")
 """Message packages that ours use; the events of a service use the second."""
@@ -87,30 +91,12 @@ def generate(package: Path, made: Path) -> None:
             package, package.name, definition.relative_to(package), made / definition.parent.name
         )
     files = [f"{made}:{each.parent.name}/{each.stem}.idl" for each in definitions]
-    share = PREFIX / "share"
-
-    def arguments(generator: str) -> dict[str, object]:
-        return legacy_generator_arguments(  # type: ignore[no-any-return]
-            package_name=package.name,
-            interface_files=files,
-            include_paths=[str(share / name) for name in DEPENDENCIES],
-            templates_path=share / generator / "resource",
-            output_path=made,
-        )
-
+    arguments = partial(_arguments, package.name, files, made)
     with generator_arguments_file(
         **arguments("rosidl_generator_type_description"),
-        include_paths=[f"{name}:{share / name}" for name in DEPENDENCIES],
+        include_paths=[f"{name}:{SHARE / name}" for name in DEPENDENCIES],
     ) as path:
-        hashes = generate_type_hash(path)
-    described = {Path(hashed).stem: hashed for hashed in hashes}
-    for generator in ("rosidl_generator_c", "rosidl_typesupport_fastrtps_c"):
-        header = f"{generator}__visibility_control.h"
-        generate_visibility_control_file(
-            package_name=package.name,
-            template_path=share / generator / "resource" / f"{header}.in",
-            output_path=made / "msg" / header,
-        )
+        described = {Path(hashed).stem: hashed for hashed in generate_type_hash(path)}
     with generator_arguments_file(
         **arguments("rosidl_generator_c"),
         type_description_tuples=[
@@ -125,6 +111,25 @@ def generate(package: Path, made: Path) -> None:
         rosidl_typesupport_c.generate_c(path, ["rosidl_typesupport_fastrtps_c"])
     with generator_arguments_file(**arguments("rosidl_generator_py")) as path:
         rosidl_generator_py.generate_py(path, ["rosidl_typesupport_c"])
+    for generator in ("rosidl_generator_c", "rosidl_typesupport_fastrtps_c"):
+        header = f"{generator}__visibility_control.h"
+        generate_visibility_control_file(
+            package_name=package.name,
+            template_path=SHARE / generator / "resource" / f"{header}.in",
+            output_path=made / "msg" / header,
+        )
+
+
+def _arguments(package: str, files: Sequence[str], made: Path, generator: str) -> dict[str, Any]:
+    """Return what every generator is told."""
+    arguments: dict[str, Any] = legacy_generator_arguments(
+        package_name=package,
+        interface_files=list(files),
+        include_paths=[str(SHARE / name) for name in DEPENDENCIES],
+        templates_path=SHARE / generator / "resource",
+        output_path=made,
+    )
+    return arguments
 
 
 def compile_extension(name: str, made: Path) -> None:

@@ -85,6 +85,7 @@ def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
     try:
         nodes = make()
         with told_to_end() as ending, running(nodes) as executor:
+            # A list: every node shall say what it lacks, not only the first.
             if not all([start(node) for node in nodes]):
                 sys.exit(NOT_STARTED)
             while not ending.is_set():
