@@ -22,6 +22,6 @@ export function framePanel() {
     h("p", { className: "dim" }, "An opening and a closing gesture keep accidents out: what is shown outside a message is not obeyed. A message may hold several phrases, each opened anew."),
     h("div", { className: "frame-fields" },
       role("start"), role("end"), role("cancel"),
-      numberField({ id: "frame-timeout", label: "Longest pause, seconds", value: String(timeout), min: 1, max: 600, step: "any", commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })) }),
+      numberField({ id: "frame-timeout", label: "Longest pause (s)", value: String(timeout), min: 1, max: 600, step: "any", commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })) }),
       numberField({ id: "frame-most", label: "Phrases, at most", value: String(most), min: 1, max: 8, commit: (text) => save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })) })));
 }
