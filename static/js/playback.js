@@ -6,12 +6,13 @@ const RETRY = 1000; // ms
 
 let socket = null;
 let workspace = null;
-let unsent = null; // the last wish while nobody hears
+let unsent = []; // wishes while this workspace's clock is not heard yet
 let wantedFrame = null; // what the URL said, until the clip is shown
 
 /** Follow the clock of a workspace, and of another one when that one is gone. */
 export function followClock(id) {
   workspace = id;
+  unsent = [];
   socket?.close();
   connect(id);
 }
@@ -20,7 +21,7 @@ function connect(id) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const opened = new WebSocket(`${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`);
   socket = opened;
-  opened.onopen = () => { if (unsent) opened.send(JSON.stringify(unsent)); unsent = null; };
+  opened.onopen = () => { for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish)); };
   opened.onmessage = ({ data }) => told(JSON.parse(data));
   // A workspace that is gone is opened anew by whoever shows something next.
   opened.onclose = () => { if (socket === opened && workspace === id) setTimeout(() => { if (socket === opened) connect(id); }, RETRY); };
@@ -33,7 +34,7 @@ function told(position) {
 
 function ask(wish) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wish));
-  else unsent = wish;
+  else unsent.push(wish);
 }
 
 /** Keep the frame that a link names, for `frameShown`. */

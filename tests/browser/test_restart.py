@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,9 +53,12 @@ def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
         "studio": open_page(query | {"frame": str(FRAME)}, scene=False),
         "languages": open_page(query | {"view": "languages"}, scene=False),
         "gesture": open_page(query | {"view": "gesture", "gesture": "circle"}, scene=False),
+        "phrases": open_page(query | {"view": "phrases"}, scene=False),
         "live": open_page(query | {"view": "live"}, scene=False),
         "health": open_page(query | {"view": "health"}, scene=False),
     }
+    for page in pages.values():
+        expect(page.get_by_text("Connected", exact=True)).to_be_visible()
     expect(pages["studio"].locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
     expect(pages["languages"].get_by_role("heading", name="kept")).to_be_visible()
     pages["gesture"].get_by_label("Description").fill("half finished")
@@ -108,8 +112,10 @@ def test_every_view_survives_a_server_that_is_killed(
         for page in pages.values():
             expect(page.locator("#away")).to_contain_text("No connection to the server")
             expect(page.get_by_role("status").get_by_text("Reconnecting")).to_be_visible()
-    shown = pages["studio"].expect_response(re.compile("/workspaces/.+/view"))
-    with shown, served(tmp_path, port=client.base_url.port or 0) as (_, client):
+    with ExitStack() as stack:
+        with pages["studio"].expect_response(re.compile("/workspaces/.+/view")):
+            again = served(tmp_path, port=client.base_url.port or 0)
+            _, client = stack.enter_context(again)
         for page in pages.values():
             expect(page.get_by_text("Connected", exact=True)).to_be_visible()
             expect(page.locator("#away")).to_be_hidden()
