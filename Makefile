@@ -7,9 +7,11 @@ UV ?= uv
 
 BIN := $(VENV)/bin
 # The environment is made without ensurepip, which Debian ships apart from Python: the pip that is at
-# hand installs into it. The lock files are complete, so pip resolves nothing and builds nothing.
+# hand installs into it. The lock files are complete, so pip resolves nothing, and to run it builds nothing.
 PIP_INSTALL := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check install --quiet --no-deps
 LOCKED := --require-hashes --only-binary :all:
+# ROS 2's generators of messages need it, for the tests; it is one Python file, and there is no wheel.
+SOURCE_ONLY := --no-binary empy
 
 # Measured where the parity test runs in CI; elsewhere that test is skipped.
 ifeq ($(shell uname -s -m),Linux x86_64)
@@ -82,5 +84,5 @@ $(VENV)/.runtime: $(VENV)/.python requirements.txt pyproject.toml
 
 $(VENV)/.development: $(VENV)/.runtime requirements-test.txt $(MEDIAPIPE_LOCK)
 	@echo "Installing the pinned tools for tests (once; a minute or two)"
-	@$(PIP_INSTALL) $(LOCKED) -r requirements-test.txt $(addprefix -r ,$(MEDIAPIPE_LOCK))
+	@$(PIP_INSTALL) $(LOCKED) $(SOURCE_ONLY) -r requirements-test.txt $(addprefix -r ,$(MEDIAPIPE_LOCK))
 	touch $@
