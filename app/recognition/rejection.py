@@ -17,7 +17,7 @@ demonstration (`calibration`) and are kept in the language file.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
@@ -59,9 +59,9 @@ def thresholds_of(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatAr
     )
 
 
-def novelty_weights(voters: Sequence[str]) -> FloatArray:
+def novelty_weights(voters: Sequence[str], views: Collection[str] = VIEWS.keys()) -> FloatArray:
     """Return what each voter counts in each of the `VIEWS`, ``(K, V)``; 0: nothing."""
-    return np.array([[view.get(voter, 0.0) for voter in voters] for view in VIEWS.values()])
+    return np.array([[VIEWS[view].get(voter, 0.0) for voter in voters] for view in views])
 
 
 def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) -> FloatArray:

@@ -14,13 +14,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.recognition.errors import PoseError, RecognitionError
+from app.recognition.gesture import Gesture
 from app.recognition.jumps import body_unit
 from app.recognition.landmarks import other_side
 from app.recognition.movement import followed_landmarks
 from app.recognition.poses import PoseSequence, joined
 from app.recognition.recognition_result import Recognition
 from app.recognition.recognizer import Recognizer
-from app.recognition.rejection import calibrated_confidence
+from app.recognition.rejection import (
+    calibrated_confidence,
+    novelty,
+    novelty_weights,
+    thresholds_of,
+)
 from app.recognition.salience import MIN_DISPLACEMENT, displacements
 from app.recognition.trajectory import Trajectory
 from app.recognition.transit import GRID_STEP, Motion, Span, motion_along, pieces_of
@@ -32,6 +38,10 @@ FAMILIAR = 0.97
 """Least confidence that a stretch is this gesture rather than none, whatever else is near.
 Confidence is calibrated for takes of which half mean something; of the stretches of a stream almost
 none do. Somebody who points into the distance draws a *line* at 0.96."""
+
+ASKED = ("figure", "posture", "length")
+"""Views that tell a gesture from what is none. How the wrist is bent tells two signs of one arm
+apart; people bend it as they like where it means nothing, so a gesture is not doubted for it."""
 
 FASTER, SLOWER = 0.4, 2.2
 """How much shorter or longer than its demonstration a gesture may take: two people's takes differ
@@ -277,11 +287,8 @@ class Spotter:
         result = spotted.recognition
         if result.label is None or result.confidence < self._confident:
             return False
-        at = result.gestures.index(result.label)
-        if calibrated_confidence(result.novelty[at], result.scores[at], np.inf) < FAMILIAR:
-            return False
         gesture = self._recognizer.language.gesture(result.label)
-        if gesture.trajectory is None:
+        if gesture.trajectory is None or _familiarity(result, gesture) < FAMILIAR:
             return False
         usual = float(gesture.trajectory.time[-1])
         if not FASTER * usual <= spotted.end - spotted.start <= SLOWER * usual:
@@ -321,3 +328,16 @@ def strokes_in(motion: Motion) -> list[Span]:
         Span(float(max(first - SLOW_EDGE, before)), float(min(last + SLOW_EDGE, after)))
         for first, last, before, after in zip(firsts, lasts, halves, halves[1:], strict=False)
     ]
+
+
+def _familiarity(result: Recognition, gesture: Gesture) -> float:
+    """Return the confidence that the nearest gesture was shown rather than none."""
+    at = result.gestures.index(gesture.label)
+    thresholds = thresholds_of([gesture], result.voters)
+    asked, every = (
+        float(novelty(result.distances[:, [at]], thresholds, weights)[0])
+        for weights in (novelty_weights(result.voters, ASKED), novelty_weights(result.voters))
+    )
+    # What the reading costs is part of the novelty told, and of neither of these.
+    cost = result.novelty[at] / every if every > 0 else 1.0
+    return calibrated_confidence(cost * asked, result.scores[at], np.inf)
