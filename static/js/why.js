@@ -100,7 +100,10 @@ function keep({ change, edited }) {
 /** What a change of the language does to its other gestures, in words. */
 function effectOf(effect) {
   if (!effect) return null;
-  if (effect.right_after < effect.right_before) return h("small", { className: "expected" }, `but costs ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")}`);
+  if (effect.right_after < effect.right_before) {
+    const [shown, are] = effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
+    return h("small", { className: "expected" }, `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`);
+  }
   return h("small", { className: "dim" }, `the others stay right (${effect.right_after} of ${effect.takes})`);
 }
 
