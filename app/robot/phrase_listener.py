@@ -47,9 +47,11 @@ class PhraseListener:
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Take the next frame; see `Hearing.feed`."""
-        self._time = time = float(moment.time[0])
+        time = float(moment.time[0])
         told: list[Event] = [*self._heard(time, self._left)]
-        self._left = ()
+        if time < self._time:  # another stream
+            told += self._abandoned(time)
+        self._time, self._left = time, ()
         told += self._with_phrases(self._hearing.feed(moment, salute))
         # While a take goes on nobody knows yet whether it goes on with the message.
         if self._parser is not None and self._hearing.state is not TakeState.recording:

@@ -123,6 +123,13 @@ def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> N
     assert phrases(told) == [("cancelled", None)]
 
 
+def test_a_stream_that_begins_anew_cancels_a_message() -> None:
+    listener = PhraseListener(Listener(language(CLOSED)))
+    heard(listener, recording_of("circle"))
+    told = heard(listener, recording_of("line"))
+    assert phrases(told) == [("cancelled", None), ("outside", None)]
+
+
 def test_the_state_and_the_language_are_those_of_the_listener_inside() -> None:
     listener = PhraseListener(Listener(language(OPEN)))
     heard(listener, cut(recording_of("circle"), 1.5))

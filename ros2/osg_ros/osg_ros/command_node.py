@@ -1,4 +1,4 @@
-"""Recognised gestures in, commands out: after confirmation, never of a rejected or stale gesture.
+"""Gestures and phrases in, commands out: after confirmation, never of what is rejected or stale.
 
 It needs no OSG Studio, only the messages, so it runs wherever ROS 2 does.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition
+from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
 from osg_ros.command_dialogue import (
@@ -18,6 +18,7 @@ from osg_ros.command_dialogue import (
     CommandTable,
     Decision,
     HeardGesture,
+    HeardPhrase,
     Rules,
 )
 from osg_ros.command_table import read_commands
@@ -30,12 +31,14 @@ LANGUAGE: Final = Setting(
     "language", "", "Path of the language file, for where nobody tells the topic `language`."
 )
 CONFIRM: Final = Setting(
-    "confirm", True, "Give a command only when its gesture is repeated; emergencies at once."
+    "confirm",
+    True,
+    "Give a command only when its gesture or message is repeated; emergencies at once.",
 )
 CONFIRM_WITHIN: Final = Setting(
     "confirm_seconds",
     CONFIRM_SECONDS,
-    "Seconds from a gesture to the end of its repetition.",
+    "Seconds from a gesture to the end of its repetition, or to a message's next gesture.",
     1.0,
     300.0,
 )
@@ -57,7 +60,7 @@ CHECK_SECONDS: Final = 0.2
 
 
 class CommandNode(ManagedNode):
-    """Speaks the commands of the active language; `CommandDialogue` decides."""
+    """Gives the commands of the active language; `CommandDialogue` decides."""
 
     def __init__(self, **options: Any) -> None:
         settings = (
@@ -106,6 +109,7 @@ class CommandNode(ManagedNode):
         self._tell(Decision("waiting for a gesture"), self._now())
         self.subscription(ActiveLanguage, "language", self._speak, LATCHED)
         self.subscription(GestureRecognition, "recognition", self._hear, RESULTS)
+        self.subscription(Phrase, "phrase", self._hear_phrase, RESULTS)
         self._timer = self.create_timer(CHECK_SECONDS, self._wait)
 
     def halt(self) -> None:
@@ -124,7 +128,8 @@ class CommandNode(ManagedNode):
     def _speak(self, language: ActiveLanguage) -> None:
         meant = zip(language.labels, language.commands, strict=False)
         commands = {label: command for label, command in meant if command}
-        decision = self._dialogue.speak(CommandTable(language.language_id, commands))
+        table = CommandTable(language.language_id, commands, frozenset(language.phrase_labels))
+        decision = self._dialogue.speak(table)
         if decision is not None:
             self._tell(decision, self._now())
         rules = self._dialogue.rules
@@ -144,17 +149,35 @@ class CommandNode(ManagedNode):
             label, recognition.confidence, stamp / NANOSECONDS, recognition.language_id
         )
         decision = self._dialogue.hear(gesture, self._now() / NANOSECONDS)
-        self._tell(decision, stamp)
+        self._act(decision, recognition)
+
+    def _hear_phrase(self, phrase: Phrase) -> None:
+        self.count_input()
+        heard = HeardPhrase(
+            kind=phrase.kind,
+            mission=phrase.mission,
+            text=phrase.text,
+            confidence=phrase.confidence,
+            start=nanoseconds_of(phrase.start) / NANOSECONDS,
+            stamp=nanoseconds_of(phrase.header.stamp) / NANOSECONDS,
+            label=phrase.label or None,
+            language_id=phrase.language_id,
+        )
+        self._act(self._dialogue.hear_phrase(heard, self._now() / NANOSECONDS), phrase)
+
+    def _act(self, decision: Decision, heard: GestureRecognition | Phrase) -> None:
+        """Tell what was decided about a message, and give the command if there is one."""
+        self._tell(decision, nanoseconds_of(heard.header.stamp))
         if decision.command is not None:
             self._commands.publish(
                 Command(
-                    header=recognition.header,
+                    header=heard.header,
                     command=decision.command,
                     label=decision.label,
                     emergency=decision.emergency,
-                    body_id=recognition.body_id,
-                    language_id=recognition.language_id,
-                    language_revision=recognition.language_revision,
+                    body_id=heard.body_id,
+                    language_id=heard.language_id,
+                    language_revision=heard.language_revision,
                 )
             )
 

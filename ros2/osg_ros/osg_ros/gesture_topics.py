@@ -10,6 +10,7 @@ from app.robot import (
     Frame,
     LanguageChanged,
     LanguageRefused,
+    PhraseHeard,
     SourceLost,
     SourceWarned,
     SpokenLanguage,
@@ -71,6 +72,8 @@ class GestureTopics:
         match event:
             case TakeRecognized() | TakeRejected() if clock:
                 self.recognitions.taken(event, language, clock, frame_id)
+            case PhraseHeard() if clock:
+                self.recognitions.phrased(event, clock, frame_id)
             case StateChanged() if clock:
                 self.recognitions.changed(event, clock, frame_id)
             case LanguageChanged():

@@ -9,7 +9,7 @@ from typing import Protocol
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.robot import Event, Frame, Listener, Runtime, SpokenLanguage
+from app.robot import Event, Frame, Listener, PhraseListener, Runtime, SpokenLanguage
 from osg_ros.topic_source import TopicSource
 
 LONGEST_FRAME = 10.0
@@ -61,7 +61,7 @@ class GestureWorker:
         self._source = source
         self._watching = watching
         self._next: SpokenLanguage | None = None
-        self._listener = Listener(language)
+        self._listener = PhraseListener(Listener(language))
         self._runtime = Runtime(
             source,
             estimator,

@@ -1,7 +1,8 @@
-"""Takes and recognitions of keypoints that other nodes find: the third of the separate nodes."""
+"""Takes, recognitions and phrases of keypoints of other nodes: the third of the separate nodes."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -11,7 +12,15 @@ from std_msgs.msg import Bool
 from app.recognition import PoseSequence
 from app.recognition.estimation.base import FrameLandmarks
 from app.recognition.extraction import moment_of
-from app.robot import Listener, SpokenLanguage, StateChanged, TakeRecognized, TakeRejected
+from app.robot import (
+    Listener,
+    PhraseHeard,
+    PhraseListener,
+    SpokenLanguage,
+    StateChanged,
+    TakeRecognized,
+    TakeRejected,
+)
 from osg_ros.bodies import body_in, published_moment
 from osg_ros.language_service import LANGUAGE, PROFILE, LanguageService
 from osg_ros.managed_node import SENSOR_DATA, ManagedNode
@@ -44,7 +53,9 @@ class RecognitionNode(ManagedNode):
         settings = (LANGUAGE, PROFILE, INPUT, IMAGE_WIDTH, IMAGE_HEIGHT)
         super().__init__("recognition_node", settings, "keypoints", **options)
         self._service: LanguageService | None = None
-        self._listener: Listener | None = None
+        self._listener: PhraseListener | None = None
+        # The service that changes the language runs beside what listens.
+        self._listening = threading.Lock()
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
@@ -68,7 +79,7 @@ class RecognitionNode(ManagedNode):
     def begin(self) -> None:
         """Listen from now on, as to another camera."""
         assert self._service
-        self._listener = Listener(self._service.language)
+        self._listener = PhraseListener(Listener(self._service.language))
         self._stopwatch = None
         self._recognitions.active(True)
         self._recognitions.speaks(self._service.language)
@@ -139,22 +150,24 @@ class RecognitionNode(ManagedNode):
         assert self._listener is not None
         assert self._stopwatch is not None
         self.count_input()
-        for event in self._listener.feed(moment, salute):
-            match event:
-                case TakeRecognized() | TakeRejected():
-                    self._recognitions.taken(
-                        event, self._listener.language, self._stopwatch, frame_id
-                    )
-                case StateChanged():
-                    self._recognitions.changed(event, self._stopwatch, frame_id)
-                case _:
-                    pass
+        with self._listening:
+            language = self._listener.language
+            for event in self._listener.feed(moment, salute):
+                match event:
+                    case TakeRecognized() | TakeRejected():
+                        self._recognitions.taken(event, language, self._stopwatch, frame_id)
+                    case PhraseHeard():
+                        self._recognitions.phrased(event, self._stopwatch, frame_id)
+                    case StateChanged():
+                        self._recognitions.changed(event, self._stopwatch, frame_id)
+                    case _:
+                        pass
 
     def _change_language(self, language: SpokenLanguage) -> None:
-        listener = self._listener
-        if listener is not None:
-            listener.speak(language)
-            self._recognitions.speaks(language)
+        with self._listening:
+            if self._listener is not None:
+                self._listener.speak(language)
+                self._recognitions.speaks(language)
 
 
 def main() -> None:

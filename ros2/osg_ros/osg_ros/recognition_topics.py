@@ -10,11 +10,18 @@ from rclpy.duration import Duration
 from std_msgs.msg import Header, String
 
 from app.recognition.takes import TakeState
-from app.robot import SpokenLanguage, StateChanged, TakeRecognized, TakeRejected
+from app.robot import (
+    PhraseHeard,
+    SpokenLanguage,
+    StateChanged,
+    TakeRecognized,
+    TakeRejected,
+)
 from osg_ros.bodies import DIVER
 from osg_ros.command_table import command_text
 from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.optional_messages import message_type
+from osg_ros.phrase_topic import PhraseTopic, phrase_labels
 from osg_ros.stamps import Stopwatch
 
 LONGEST_DELIVERY = 2.0
@@ -46,6 +53,7 @@ class RecognitionTopics:
         self._spoken: SpokenLanguage | None = None
         self._recognition = node.publisher(GestureRecognition, "recognition", RESULTS)
         self._label = node.publisher(String, "recognized_gesture", RESULTS)
+        self._phrases = PhraseTopic(node)
         self._state = node.publisher(RecognizerState, "state", LATCHED)
         self._language = node.publisher(ActiveLanguage, "language", LATCHED)
         self._classification_type = message_type("vision_msgs", "Classification")
@@ -79,14 +87,19 @@ class RecognitionTopics:
         header = Header(stamp=clock.stamp(event.time), frame_id=frame_id)
         message = recognition_message(event, language, clock, header)
         self._recognition.publish(message)
-        if message.rejected:
+        if not isinstance(event, TakeRecognized):
             return
+        self._phrases.taken(event, language)
         self._label.publish(String(data=message.label))
         if self._classification_type and self._hypothesis_type:
             hypothesis = self._hypothesis_type(class_id=message.label, score=message.confidence)
             self._classification.publish(
                 self._classification_type(header=header, results=[hypothesis])
             )
+
+    def phrased(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
+        """Tell what came of a gesture or of a pause; see `taken`."""
+        self._phrases.heard(event, clock, frame_id)
 
     def changed(self, event: StateChanged, clock: Stopwatch, frame_id: str) -> None:
         """Tell another state of the salutes; see `taken`."""
@@ -106,8 +119,10 @@ class RecognitionTopics:
 
     def flush(self) -> None:
         """Wait until what was said has arrived, for whoever ends right afterwards."""
+        patience = Duration(seconds=LONGEST_DELIVERY)
         for publisher in (self._recognition, self._label):
-            publisher.wait_for_all_acked(Duration(seconds=LONGEST_DELIVERY))
+            publisher.wait_for_all_acked(patience)
+        self._phrases.flush(patience)
 
     def _tell(self, header: Header, state: int) -> None:
         if state != self._told:
@@ -155,4 +170,5 @@ def language_message(language: SpokenLanguage, header: Header) -> ActiveLanguage
         profile=language.recognizer.profile,
         labels=list(spoken.labels),
         commands=[command_text(gesture.command) for gesture in spoken.gestures],
+        phrase_labels=phrase_labels(language),
     )

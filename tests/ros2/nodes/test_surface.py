@@ -28,6 +28,7 @@ TOPICS = {
     "/auv/humans/bodies/diver/skeleton2d": "hri_msgs/msg/Skeleton2D",
     "/auv/humans/bodies/tracked": "hri_msgs/msg/IdsList",
     "/auv/language": "osg_interfaces/msg/ActiveLanguage",
+    "/auv/phrase": "osg_interfaces/msg/Phrase",
     "/auv/pose_keypoints": "keypoints_interfaces/msg/PoseKeypointsArray",
     "/auv/recognition": "osg_interfaces/msg/GestureRecognition",
     "/auv/recognized_gesture": "std_msgs/msg/String",
