@@ -7,6 +7,7 @@ the sequences at once until the two halves meet: N steps of one array operation 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import prod
@@ -90,8 +91,8 @@ class ElasticReferences:
 
         """
         count = half_of(len(query), self.band)
-        if self._complete and np.isfinite(query[:, self._known]).all():
-            left = for_query(_from_both_ends(query[:, self._known], count))
+        if self.complete and np.isfinite(query[:, self.known]).all():
+            left = for_query(_from_both_ends(query[:, self.known], count))
             right = self._sides_of(rows)
             pairs = right.shape[-1]
             out = np.empty((2, count, count, pairs)) if out is None else out
@@ -107,30 +108,115 @@ class ElasticReferences:
         )
 
     @cached_property
-    def _known(self) -> npt.NDArray[np.intp]:
+    def known(self) -> npt.NDArray[np.intp]:
         """Indices of the components that any reference knows at any step."""
         return np.flatnonzero(np.isfinite(self.sequences).any(axis=(0, 1)))
 
     @cached_property
-    def _complete(self) -> bool:
+    def complete(self) -> bool:
         """Whether all references know these components throughout."""
-        return bool(len(self._known) and np.isfinite(self.sequences[..., self._known]).all())
+        return bool(len(self.known) and np.isfinite(self.sequences[..., self.known]).all())
 
     def _sides_of(self, rows: npt.NDArray[np.intp] | None) -> FloatArray:
         """Return one side of the matrix products that give the costs, ``(2, D' + 2, H, M)``."""
         if rows is None:
             return self._sides
-        return np.ascontiguousarray(np.moveaxis(self._sides_by_row[rows], 0, -1))
+        return np.ascontiguousarray(np.moveaxis(self.sides_by_row[rows], 0, -1))
 
     @cached_property
     def _sides(self) -> FloatArray:
         count = half_of(self.sequences.shape[1], self.band)
-        return for_references(_from_both_ends(self.sequences[..., self._known], count))
+        return for_references(_from_both_ends(self.sequences[..., self.known], count))
+
+    @cached_property
+    def sides_by_row(self) -> FloatArray:
+        """The same with the references first, ``(R, 2, D' + 2, H)``.
+
+        A few of them are then gathered from few places.
+        """
+        return np.ascontiguousarray(np.moveaxis(self._sides, -1, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticViews:
+    """The same sequences as several voters see them, for queries that all of these look at.
+
+    Attributes
+    ----------
+    views
+        V of them, with the same numbers of sequences and of steps, and the same band.
+
+    """
+
+    views: tuple[ElasticReferences, ...]
+
+    def step_costs(
+        self, queries: Sequence[FloatArray], rows: npt.NDArray[np.intp] | None = None
+    ) -> FloatArray:
+        """Compare the steps of a query with those of some references, from both ends.
+
+        What lies side by side is prepared and gathered at once: each view alone is so small that
+        the calls would take longer than the arithmetic.
+
+        Parameters
+        ----------
+        queries
+            V of ``(N, D)``, one a view.
+        rows
+            Indices of M of the references; all when not given.
+
+        Returns
+        -------
+        ``(2, V, H, H, M)``: of each view what `ElasticReferences.step_costs` returns.
+
+        """
+        references, steps, _ = self.views[0].sequences.shape
+        count = half_of(steps, self.views[0].band)
+        pairs = references if rows is None else len(rows)
+        costs = np.empty((2, len(self.views), count, count, pairs))
+        alone = set(range(len(self.views)))
+        if self._joined:
+            known = np.concatenate([queries[i][:, self.views[i].known] for i in self._joined], 1)
+            if np.isfinite(known).all():
+                self._joined_costs(_from_both_ends(known, count), rows, costs)
+                alone -= self._joined.keys()
+        for index in alone:
+            self.views[index].step_costs(queries[index], rows, costs[:, index])
+        return costs
+
+    def _joined_costs(
+        self, query: FloatArray, rows: npt.NDArray[np.intp] | None, costs: FloatArray
+    ) -> None:
+        """Fill in the costs of the joined views; the query ``(2, H, D)``, all side by side."""
+        _, _, _, count, pairs = costs.shape
+        sides = self._sides_by_row if rows is None else self._sides_by_row[rows]
+        right = np.ascontiguousarray(sides.transpose(1, 2, 3, 0))
+        left = np.empty((2, count, right.shape[1]))
+        start = 0
+        for index, part in self._joined.items():
+            size = part.stop - part.start - 2
+            for_query(query[..., start : start + size], left[..., part])
+            start += size
+            np.matmul(
+                left[..., part],
+                right[:, part].reshape(2, size + 2, count * pairs),
+                out=costs[:, index].reshape(2, count, count * pairs),
+            )
+
+    @cached_property
+    def _joined(self) -> dict[int, slice]:
+        """Of the views that are complete the index, and the rows of the products' right sides."""
+        joined, start = {}, 0
+        for index, view in enumerate(self.views):
+            if view.complete:
+                joined[index] = slice(start, start + len(view.known) + 2)
+                start = joined[index].stop
+        return joined
 
     @cached_property
     def _sides_by_row(self) -> FloatArray:
-        """The same with the references first: a few of them are then gathered from few places."""
-        return np.ascontiguousarray(np.moveaxis(self._sides, -1, 0))
+        """The right sides of the joined views, one below the other."""
+        return np.concatenate([self.views[index].sides_by_row for index in self._joined], axis=2)
 
 
 def half_of(steps: int, band: int) -> int:
@@ -140,7 +226,9 @@ def half_of(steps: int, band: int) -> int:
 
 def _from_both_ends(sequences: FloatArray, count: int) -> FloatArray:
     """Take the first steps of ``(..., N, D)``, and the last ones backwards: ``(2, ..., H, D)``."""
-    return np.stack([sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]])
+    ends = np.empty((2, *sequences.shape[:-2], count, sequences.shape[-1]))
+    ends[0], ends[1] = sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]
+    return ends
 
 
 def alignment_costs(costs: FloatArray, steps: int, band: int) -> FloatArray:

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.elastic import ElasticReferences, alignment_costs, half_of
+from app.recognition.elastic import ElasticReferences, ElasticViews, alignment_costs
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
 from app.recognition.movement import (
@@ -19,6 +19,7 @@ from app.recognition.movement import (
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading
 from app.recognition.shown_gesture import ShownGesture
+from app.recognition.step_distances import StepReferences
 from app.recognition.trajectory import Trajectory
 from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
 
@@ -57,6 +58,8 @@ ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
 _ELASTIC = tuple(voter.name for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter))
+
+_UNORDERED = tuple(voter.name for voter in MOTION_VOTERS if isinstance(voter, UnorderedVoter))
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
@@ -179,7 +182,8 @@ class MotionReferences:
         Indices of rows, in order.
 
         """
-        apart = ((self.descriptors["path"] - path) ** 2).sum(axis=(1, 2))
+        steps = self.descriptors["path"] - path
+        apart = np.einsum("rnd,rnd->r", steps, steps)
         chosen = self._shown.copy()
         chosen[np.lexsort((apart, self._kinds))[self._first_of_kind]] = True
         return np.flatnonzero(chosen)
@@ -203,9 +207,17 @@ class MotionReferences:
         return np.flatnonzero(rank < MOST_COMPARED)
 
     @cached_property
-    def _elastic(self) -> dict[str, ElasticReferences]:
+    def _elastic(self) -> ElasticViews:
         """What the elastic voters compare with."""
-        return {name: ElasticReferences(self.descriptors[name], BAND) for name in _ELASTIC}
+        return ElasticViews(
+            tuple(ElasticReferences(self.descriptors[name], BAND) for name in _ELASTIC)
+        )
+
+    @cached_property
+    def _unordered(self) -> dict[str, StepReferences]:
+        """What the unordered voters compare with: the distinct rows."""
+        distinct, _ = self._distinct
+        return {name: StepReferences(self.descriptors[name][distinct]) for name in _UNORDERED}
 
     @cached_property
     def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
@@ -241,20 +253,17 @@ class MotionReferences:
         The elastic voters' alignments are found together, which costs hardly more than one.
         """
         chosen = slice(None) if rows is None else rows
-        count, steps = len(self.gestures[chosen]), len(query["path"])
-        reached = half_of(steps, BAND)
-        costs = np.empty((2, len(self._elastic), reached, reached, count))
-        for index, (name, references) in enumerate(self._elastic.items()):
-            references.step_costs(query[name], rows, costs[:, index])
-        found = dict(zip(self._elastic, alignment_costs(costs, steps, BAND), strict=True))
-        distinct, which = self._distinct
+        costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
+        found = dict(zip(_ELASTIC, alignment_costs(costs, len(query["path"]), BAND), strict=True))
+        _, which = self._distinct
         for voter in MOTION_VOTERS:
             asked, others = query[voter.name], self.descriptors[voter.name]
             if isinstance(voter, UnorderedVoter):
-                found[voter.name] = voter.distances(asked, others[distinct])[which[chosen]]
+                to_distinct = voter.distances_to(asked, self._unordered[voter.name])
+                found[voter.name] = to_distinct[which[chosen]]
             elif voter.name not in found:
                 found[voter.name] = voter.distances(asked, others[chosen])
-        return np.stack([found[voter.name] for voter in MOTION_VOTERS])
+        return np.array([found[voter.name] for voter in MOTION_VOTERS])
 
     def nearest(
         self, query: dict[str, FloatArray], say: FloatArray, between: FloatArray, count: int

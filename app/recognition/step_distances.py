@@ -6,6 +6,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from app.recognition.poses import FloatArray
@@ -45,10 +48,40 @@ def squared_distances(
     return out
 
 
-def for_query(query: FloatArray) -> FloatArray:
+@dataclass(frozen=True, eq=False)
+class StepReferences:
+    """Sequences whose steps are compared with those of many queries, prepared once.
+
+    Attributes
+    ----------
+    sequences
+        ``(M, N, D)``, with NaN as for `squared_distances`.
+
+    """
+
+    sequences: FloatArray
+
+    def squared_distances(self, query: FloatArray) -> FloatArray:
+        """Return `squared_distances` of ``(N, D)``, but for what rounding leaves of 0."""
+        if self._complete and np.isfinite(query).all():
+            squares = for_query(query) @ self._side
+            return squares.reshape(len(query), *self.sequences.shape[1::-1])
+        return squared_distances(query, self.sequences)
+
+    @cached_property
+    def _complete(self) -> bool:
+        return bool(self.sequences.shape[-1] and np.isfinite(self.sequences).all())
+
+    @cached_property
+    def _side(self) -> FloatArray:
+        return _flat(for_references(self.sequences))
+
+
+def for_query(query: FloatArray, out: FloatArray | None = None) -> FloatArray:
     """Return the left side of the product, ``(..., N, D + 2)``, of ``(..., N, D)``."""
     *leading, size = query.shape
-    left = np.ones((*leading, size + 2))
+    left = np.empty((*leading, size + 2)) if out is None else out
+    left[..., size + 1] = 1.0
     np.multiply(query, -2.0, out=left[..., :size])
     np.einsum("...d,...d->...", query, query, out=left[..., size])
     return left

@@ -1,12 +1,14 @@
 """Elastic matching: the laws of dynamic time warping, against a plain loop."""
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.elastic import (
     ElasticReferences,
+    ElasticViews,
     alignment_costs,
     elastic_distances,
     elastic_pairs,
@@ -139,3 +141,24 @@ def test_components_that_no_reference_knows_are_left_out_before() -> None:
     query[:, 0] = np.nan
     known = elastic_distances(query[:, 1:3], references[..., 1:3], 2)
     np.testing.assert_allclose(ElasticReferences(references, 2).distances(query), known)
+
+
+@pytest.mark.parametrize("rows", [None, np.array([2, 0])])
+@pytest.mark.parametrize("hidden", [(), (0,), (0, 1), (2,)])
+def test_views_asked_together_answer_as_each_does_alone(
+    rows: npt.NDArray[np.intp] | None, hidden: tuple[int, ...]
+) -> None:
+    generator = np.random.default_rng(6)
+    sizes = (2, 3, 4)
+    queries = [generator.normal(size=(9, size)) for size in sizes]
+    views = [ElasticReferences(generator.normal(size=(4, 9, size)), 3) for size in sizes]
+    for index in hidden:
+        views[index].sequences[1, 4:, 0] = np.nan
+    views[2].sequences[..., 3] = np.nan
+    together = ElasticViews(tuple(views))
+    for _ in range(2):
+        costs = together.step_costs(queries, rows)
+        for index, view in enumerate(views):
+            alone = view.step_costs(queries[index], rows)
+            np.testing.assert_allclose(costs[:, index], alone, atol=1e-9)
+        queries[1][3] = np.nan  # and once more for a query with a gap

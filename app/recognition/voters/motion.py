@@ -10,7 +10,7 @@ import numpy as np
 from app.recognition.elastic import ElasticReferences
 from app.recognition.movement import LIMBS, Movement, sized
 from app.recognition.poses import FloatArray
-from app.recognition.step_distances import squared_distances
+from app.recognition.step_distances import ROUNDING, StepReferences
 from app.recognition.voters.base import euclidean_distances
 from app.recognition.voters.wrist_bend import WristBend
 
@@ -21,6 +21,9 @@ on drawn figures levels off; without a bound, a loop could be matched to a corne
 RESTING_WEIGHT = 0.3
 """Weight of a posture at the place where the movement starts; at the farthest place it is 1 more.
 From 0.2 to 0.5 the result is the same."""
+
+HAND_BONES = [index for index, (inner, _) in enumerate(LIMBS) if inner == "wrist"]
+"""Bones beyond the wrist, of each arm's."""
 
 SHORTEST_SECONDS = 0.05
 """Shortest duration taken seriously, two frames: a logarithm needs a floor."""
@@ -64,9 +67,13 @@ class ElasticVoter:
 class UnorderedVoter(ABC):
     """A voter to whom a movement is the same in whatever order its steps are taken."""
 
-    @abstractmethod
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """As of every `MotionVoter`."""
+        return self.distances_to(query, StepReferences(references))
+
+    @abstractmethod
+    def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
+        """Measure the same, of references that were prepared."""
 
 
 class Path(ElasticVoter):
@@ -100,8 +107,9 @@ class Direction(ElasticVoter):
         steps = np.empty_like(paths)
         steps[1:-1] = (paths[2:] - paths[:-2]) / 2
         steps[0], steps[-1] = paths[1] - paths[0], paths[-1] - paths[-2]
-        length = np.sqrt((steps**2).sum(axis=(1, 2), keepdims=True))
-        return np.asarray((steps / (length + 1e-9)).reshape(len(steps), -1))
+        flat = steps.reshape(len(steps), -1)
+        length = np.sqrt(np.einsum("nd,nd->n", flat, flat))
+        return np.asarray(flat / (length + 1e-9)[:, None])
 
 
 class Posture(ElasticVoter):
@@ -136,7 +144,7 @@ class HandAttitude(ElasticVoter):
         """Return ``(N, 2 B')`` vectors in sizes, NaN where not seen."""
         steps = len(movement.limbs)
         arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
-        hands = arms[:, :, [inner == "wrist" for inner, _ in LIMBS]].reshape(steps, -1, 2)
+        hands = arms[:, :, HAND_BONES].reshape(steps, -1, 2)
         return (sized(hands) * movement.under_way[:, None, None]).reshape(steps, -1)
 
 
@@ -154,10 +162,11 @@ class Cloud(UnorderedVoter):
         """Return ``(N, 2 L)`` coordinates in sizes."""
         return movement.figure.reshape(len(movement.paths), -1)
 
-    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+    def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
         """Return the chamfer distances, ``(M,)``."""
-        squares = squared_distances(query, references)
+        squares = references.squared_distances(query)
         nearest = np.stack([squares.min(axis=1), squares.min(axis=0)])
+        nearest[nearest < ROUNDING] = 0.0
         return np.asarray(np.sqrt(nearest).mean(axis=(0, 1)), dtype=np.float64)
 
 
@@ -212,7 +221,7 @@ class PathLength:
     def describe(self, movement: Movement) -> FloatArray:
         """Return the logarithm to base 2 of the length, ``(1,)``."""
         steps = movement.figure[1:] - movement.figure[:-1]
-        length = float(np.sqrt((steps**2).sum(axis=(1, 2))).sum())
+        length = float(np.sqrt(np.einsum("nld,nld->n", steps, steps)).sum())
         return np.log2([max(length, SHORTEST_LENGTH)])
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
