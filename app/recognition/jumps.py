@@ -59,7 +59,8 @@ def jumps(trajectory: Trajectory) -> Mask:
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     followed = _followed(trajectory.landmarks)
     paths = trajectory.xy[:, followed] / body_unit(trajectory)
-    known = np.asarray(np.isfinite(paths).all(axis=2))
+    finite = np.isfinite(paths)
+    known = np.asarray(finite[..., 0] & finite[..., 1])
     with_gaps: Mask = ~np.asarray(known.all(axis=0))
     for index in np.flatnonzero(with_gaps | _has_kink(paths)).tolist():
         seen = np.flatnonzero(known[:, index])

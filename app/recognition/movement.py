@@ -7,6 +7,7 @@ arms they belong to.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -81,7 +82,8 @@ class Movement:
     @cached_property
     def under_way(self) -> FloatArray:
         """``(N,)``: each step's distance from the first, as a share of the largest."""
-        away = np.sqrt(((self.paths - self.paths[0]) ** 2).sum(axis=(1, 2)))
+        way = self.paths - self.paths[0]
+        away = np.sqrt(np.einsum("nld,nld->n", way, way))
         return np.asarray(away / max(away.max(), 1e-9))
 
     @property
@@ -119,7 +121,11 @@ def sized(vectors: FloatArray) -> FloatArray:
 
     NaN adds nothing; what has no size stays as it is.
     """
-    size = np.sqrt(np.fmax(vectors**2, 0.0).sum() / len(vectors))
+    squares = vectors * vectors
+    total = float(squares.sum())
+    if math.isnan(total):
+        total = float(np.fmax(squares, 0.0, out=squares).sum())
+    size = math.sqrt(total / len(vectors))
     return vectors / size if size > 0 else vectors
 
 
@@ -255,7 +261,8 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     np.exp(-np.square(weights, out=weights), out=weights)
     total = weights.sum(axis=1)
     bridged = trajectory.xy.copy()
-    known = np.asarray(np.isfinite(bridged).all(axis=2))
+    finite = np.isfinite(bridged)
+    known = np.asarray(finite[..., 0] & finite[..., 1])
     for index in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
         seen = known[:, index]
         for axis in range(2):

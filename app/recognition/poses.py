@@ -279,7 +279,8 @@ def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
 
 def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:
     """Tell which of the points ``(..., 2)`` have both coordinates."""
-    return np.asarray(np.isfinite(points).all(axis=-1), dtype=np.bool_)
+    known = np.isfinite(points)
+    return np.asarray(known[..., 0] & known[..., 1], dtype=np.bool_)
 
 
 def _interpolated(path: FloatArray, time: FloatArray) -> FloatArray:

@@ -66,13 +66,17 @@ def fault(
             continue
         spoken = name.replace("_", " ")
         path = trajectory.xy[:, trajectory.landmarks.index(name)] / unit
-        seen = np.flatnonzero(np.isfinite(path).all(axis=1))
-        lasts = np.diff(trajectory.time[seen])
-        followed = lasts[(lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)].sum() / poses.duration
+        finite = np.isfinite(path)
+        seen = (finite[:, 0] & finite[:, 1]).nonzero()[0]
+        time, places = trajectory.time[seen], path[seen]
+        lasts = time[1:] - time[:-1]
+        bridged = (lasts <= MAX_GAP_SECONDS) | (seen[1:] - seen[:-1] == 1)
+        followed = lasts[bridged].sum() / poses.duration
         if followed < LEAST_FOLLOWED:
             return f"the {spoken} is followed for only {followed:.0%} of its {poses.duration:.1f} s"
-        steps = np.linalg.norm(np.diff(path[seen], axis=0), axis=1)
-        leaps = float(((steps > LEAP) & (lasts <= LEAP_SECONDS)).mean())
+        steps = places[1:] - places[:-1]
+        lengths = np.sqrt(np.einsum("td,td->t", steps, steps))
+        leaps = float(((lengths > LEAP) & (lasts <= LEAP_SECONDS)).mean())
         if leaps > MOST_LEAPS:
             return f"the {spoken} leaps over a torso length in {leaps:.0%} of its frames"
     return None

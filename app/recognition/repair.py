@@ -71,6 +71,8 @@ class Repair:
     @property
     def findings(self) -> tuple[str, ...]:
         """What was repaired, in sentences with counts; empty where nothing was."""
+        if not self.touched.any():
+            return ()
         frames = f"of {len(self.poses)} frames"
         found = []
         if self.exchanged.any():

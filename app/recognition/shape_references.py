@@ -112,7 +112,8 @@ def _judge(
 
 def _described(query: Trajectory, simplification: float) -> dict[str, FloatArray]:
     """Draw and describe salient keypoints; nothing where one of them is never seen."""
-    if not np.isfinite(query.xy).all(axis=2).any(axis=0).all():
+    known = np.isfinite(query.xy)
+    if not (known.all() or known.all(axis=2).any(axis=0).all()):
         return {}
     return describe(draw(query, simplification), PAPER_VOTERS)
 

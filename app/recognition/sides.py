@@ -99,7 +99,9 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     clear = np.flatnonzero(~blended if known.all() else known.any(axis=(1, 2, 3)) & ~blended)
     if len(clear) < 3:
         return none
-    xy = (xy if len(clear) == frames else xy[clear]) / body_unit(trajectory)
+    xy = xy if len(clear) == frames else xy[clear]
+    if (unit := body_unit(trajectory)) != 1.0:
+        xy = xy / unit
     toll = TOLL * median(_lengths(xy[:, 0] - xy[:, 1]).sum(axis=1))
     # A body in view tells its sides apart by the trunk, wherever the hands went meanwhile.
     speed = 0.0 if set(SHOULDERS) <= set(trajectory.landmarks) else UNSEEN_SPEED
@@ -145,7 +147,8 @@ def _blended(trajectory: Trajectory) -> Mask:
     if not set(SHOULDERS) <= set(trajectory.landmarks):
         return np.zeros(len(trajectory), dtype=bool)
     first, second = (trajectory.landmarks.index(name) for name in SHOULDERS)
-    width = np.hypot(*(trajectory.xy[:, first] - trajectory.xy[:, second]).T)
+    across = trajectory.xy[:, first] - trajectory.xy[:, second]
+    width = np.sqrt(np.einsum("td,td->t", across, across))
     known = width[np.isfinite(width)]
     usual = median(known) if len(known) else 0.0
     return np.asarray((width < BLENDED * usual) & (usual > FRONTAL))
@@ -163,13 +166,14 @@ class _Accelerations:
     carried
         ``(T - 2, 1, 1, 1)``: share of the last step by which the next one carries on.
     elsewhere
-        ``(T - 2, 1, 1)``: torso lengths that a landmark may have gone elsewhere in a gap.
+        ``(T - 2, 1, 1)``: torso lengths that a landmark may have gone elsewhere in a gap; 0 where
+        none may.
 
     """
 
     both: tuple[FloatArray, FloatArray]
     carried: FloatArray
-    elsewhere: FloatArray
+    elsewhere: FloatArray | float
 
     @classmethod
     def between(cls, xy: FloatArray, time: FloatArray, unseen_speed: float) -> _Accelerations:
@@ -178,9 +182,11 @@ class _Accelerations:
         # After a gap a hand may have stopped, so it is carried no farther than between the frames
         # before, and it may have gone elsewhere.
         carried = np.minimum(steps[1:] / steps[:-1], 1.0)[:, None, None, None]
+        both = (xy, xy[:, ::-1])
+        if unseen_speed == 0.0:
+            return cls(both, carried, 0.0)
         gaps = np.maximum(steps[1:], steps[:-1]) - median(steps)
-        elsewhere = unseen_speed * np.maximum(gaps, 0.0)[:, None, None]
-        return cls((xy, xy[:, ::-1]), carried, elsewhere)
+        return cls(both, carried, unseen_speed * np.maximum(gaps, 0.0)[:, None, None])
 
     def of(self, first: int, second: int, third: int) -> FloatArray:
         """Sum them, ``(T - 2,)``, for frames of which each is kept (0) or exchanged (1).
@@ -200,7 +206,11 @@ class _Accelerations:
 def _lengths(vectors: FloatArray, less: FloatArray | float = 0.0) -> FloatArray:
     """Return how much longer than `less` vectors ``(..., 2)`` are; 0 where not, or not known."""
     squares = np.square(vectors)
-    return np.asarray(np.fmax(np.sqrt(squares[..., 0] + squares[..., 1]) - less, 0.0))
+    lengths = squares[..., 0] + squares[..., 1]
+    np.sqrt(lengths, out=lengths)
+    if isinstance(less, np.ndarray):
+        lengths -= less
+    return np.asarray(np.fmax(lengths, 0.0, out=lengths))
 
 
 def _steadiest(missed: FloatArray, toll: float) -> Mask:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -40,10 +41,11 @@ class StrokeMoments:
     @classmethod
     def of(cls, image: npt.NDArray[np.uint8]) -> StrokeMoments:
         """Measure an image ``(height, width)`` with strokes, where it is not 0."""
-        height, width = image.shape
+        left, top, width, height = cv2.boundingRect(image)
         # A column of background on the right ends every run within its row.
         pixels = np.zeros(1 + height * (width + 1), dtype=np.uint8)
-        pixels[1:].reshape(height, width + 1)[:, :width] = image
+        box = image[top : top + height, left : left + width]
+        pixels[1:].reshape(height, width + 1)[:, :width] = box
         changes = np.flatnonzero(pixels[1:] != pixels[:-1])
         rows, columns = np.divmod(changes, width + 1)
         row, start, stop = rows[::2], columns[::2], columns[1::2]
@@ -51,8 +53,8 @@ class StrokeMoments:
         count = int(lengths.sum())
         centre_x = float(lengths @ (start + stop - 1)) / (2 * count)
         centre_y = float(lengths @ row) / count
-        across = np.maximum(centre_x - start, stop - 1 - centre_x)
-        radius = max(1.0, float((across**2 + (row - centre_y) ** 2).max()) ** 0.5)
+        across, down = np.maximum(centre_x - start, stop - 1 - centre_x), row - centre_y
+        radius = max(1.0, float((across * across + down * down).max()) ** 0.5)
         x, y = (np.arange(width) - centre_x) / radius, (np.arange(height) - centre_y) / radius
         powers = _powers(np.concatenate([x, y]))
         sums = np.zeros((HIGHEST_POWER + 1, width + 1))

@@ -202,9 +202,12 @@ class Trajectory:
 
         """
         self._require_two(count)
-        squares = np.fmax((self.xy[1:] - self.xy[:-1]) ** 2, 0.0)  # NaN: no length
+        steps = self.xy[1:] - self.xy[:-1]
+        squares = np.einsum("tkd,tkd->t", steps, steps)
+        if np.isnan(squares).any():
+            squares = np.fmax(steps**2, 0.0).sum(axis=(1, 2))  # NaN: no length
         travelled = np.zeros(len(self))
-        np.cumsum(np.sqrt(squares.sum(axis=(1, 2))), out=travelled[1:])
+        np.cumsum(np.sqrt(squares), out=travelled[1:])
         if travelled[-1] == 0:
             return np.linspace(self.time[0], self.time[-1], count)
         # A rest makes `travelled` flat; the tiny share of time keeps it strictly increasing.
@@ -220,13 +223,14 @@ class Trajectory:
 
         A moment between two samples of which one is NaN becomes NaN.
         """
-        after = np.clip(np.searchsorted(self.time, moments), 1, len(self) - 1)
-        before = after - 1
-        share = (moments - self.time[before]) / (self.time[after] - self.time[before])
-        share = np.clip(share, 0.0, 1.0)[:, None, None]
-        low, high = self.xy[before], self.xy[after]
-        # At a sample itself its neighbour's NaN must not leak in.
-        xy = np.where(share == 0, low, np.where(share == 1, high, low + share * (high - low)))
+        after = np.minimum(np.maximum(self.time.searchsorted(moments), 1), len(self) - 1)
+        start, end = self.time[after - 1], self.time[after]
+        share = np.minimum(np.maximum((moments - start) / (end - start), 0.0), 1.0)[:, None, None]
+        low, high = self.xy[after - 1], self.xy[after]
+        xy = low + share * (high - low)
+        # At a sample itself its neighbour's NaN must not leak in, nor a sum's rounding.
+        np.copyto(xy, high, where=share == 1)
+        np.copyto(xy, low, where=share == 0)
         return replace(self, xy=xy, time=moments)
 
 

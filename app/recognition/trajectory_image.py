@@ -68,7 +68,7 @@ class Drawing:
     @property
     def empty(self) -> bool:
         """Tell whether there is no stroke in the image."""
-        return not self.image.any()
+        return cv2.countNonZero(self.image) == 0
 
 
 def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Drawing:
@@ -165,8 +165,7 @@ def _farthest_from_line(points: list[list[float]], first: int, last: int) -> tup
     along_x, along_y = end_x - start_x, end_y - start_y
     length = along_x * along_x + along_y * along_y
     farthest, largest = first, 0.0
-    for index in range(first + 1, last):
-        x, y = points[index]
+    for index, (x, y) in enumerate(points[first + 1 : last], first + 1):
         x, y = x - start_x, y - start_y
         # Before the start the nearest place of the segment is its start, beyond the end its end.
         passed = x * along_x + y * along_y

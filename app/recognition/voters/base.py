@@ -65,7 +65,8 @@ def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray
 
     The paper's choice (Sec. IV-D1): cosine similarity would ignore magnitudes.
     """
-    return np.asarray(np.linalg.norm(references - query, axis=1), dtype=np.float64)
+    apart = references - query
+    return np.asarray(np.sqrt(np.einsum("gd,gd->g", apart, apart)), dtype=np.float64)
 
 
 DESCRIPTOR_DIGITS = 6

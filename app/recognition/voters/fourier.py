@@ -1,5 +1,7 @@
 """Voter: Fourier descriptors of the outline."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -50,8 +52,8 @@ class FourierDescriptors:
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return real, then imaginary parts of harmonics 1...10, -10...-1: ``(40,)``."""
         spectrum = np.fft.fft(_equal_steps(drawing.outline.points))[_KEPT]
-        spectrum /= max(np.linalg.norm(spectrum), 1e-12)  # a single pixel has none
-        return np.concatenate([spectrum.real, spectrum.imag])
+        parts = np.concatenate([spectrum.real, spectrum.imag])
+        return np.asarray(parts / max(math.sqrt(parts @ parts), 1e-12))  # a single pixel has none
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the distances at the best start points, ``(G,)`` between 0 and 2."""

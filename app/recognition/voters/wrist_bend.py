@@ -8,9 +8,9 @@ from app.recognition.movement import LIMBS, Movement
 from app.recognition.poses import FloatArray
 
 FOREARM = LIMBS.index(("elbow", "wrist"))
-HAND = tuple(
+HAND = [
     index for index, (inner, outer) in enumerate(LIMBS) if inner == "wrist" and outer != "thumb"
-)
+]
 """Bones whose mean is the hand's axis: the thumb stands off it, and is placed least well."""
 
 UNCERTAINTY = 0.2
@@ -49,11 +49,13 @@ class WristBend:
         steps = len(movement.limbs)
         arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
         forearm, hand = arms[:, :, FOREARM], _mean_of_known(arms[:, :, HAND])
-        lengths = np.linalg.norm(forearm, axis=2) * np.linalg.norm(hand, axis=2)
+        length = _lengths(forearm)
+        lengths = length * _lengths(hand)
         across = forearm[..., 0] * hand[..., 1] - forearm[..., 1] * hand[..., 0]
         bend = across / np.maximum(lengths, 1e-9)
-        turned = ((forearm - forearm[0]) ** 2).sum(axis=2) * np.linalg.norm(forearm, axis=2)
-        turned = np.where(np.isfinite(bend), turned, 0.0)
+        since = forearm - forearm[0]
+        turned = np.einsum("nad,nad->na", since, since) * length
+        turned[~np.isfinite(bend)] = 0.0
         weight = LEAST_WEIGHT + turned / max(turned.max(initial=0.0), 1e-12)
         total = weight.sum(axis=0)
         mean = (weight * bend).sum(axis=0) / total
@@ -63,7 +65,7 @@ class WristBend:
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return ``(M,)``; infinite where no arm is seen in both."""
         mean, spread, part = query.reshape(-1, 3).T
-        means, spreads, parts = np.moveaxis(references.reshape(len(references), -1, 3), 2, 0)
+        means, spreads, parts = references.reshape(len(references), -1, 3).transpose(2, 0, 1)
         squares = (means - mean) ** 2 / (UNCERTAINTY**2 + spread**2 + spreads**2)
         known = np.isfinite(squares)
         weights = np.where(known, np.minimum(part, parts) ** 2, 0.0)
@@ -74,9 +76,16 @@ class WristBend:
         return np.asarray(np.sqrt(mean_square))
 
 
+def _lengths(vectors: FloatArray) -> FloatArray:
+    """Return the lengths of ``(N, A, 2)``."""
+    return np.asarray(np.sqrt(np.einsum("nad,nad->na", vectors, vectors)))
+
+
 def _mean_of_known(bones: FloatArray) -> FloatArray:
     """Average ``(N, A, B, 2)`` over the bones seen: ``(N, A, 2)``, NaN where none is."""
     known = np.isfinite(bones)
+    if known.all():
+        return np.asarray(bones.sum(axis=2) / bones.shape[2])
     total = np.where(known, bones, 0.0).sum(axis=2)
     count = known.sum(axis=2)
     mean: FloatArray = np.full_like(total, np.nan)
