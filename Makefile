@@ -30,12 +30,13 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 	$(BIN)/osg-studio models install
 
-# By file: the tests of one file share a server, a database or a recording.
+# By file: the tests of one file share a server, a database or a recording. Three at a time also on two
+# cores: those in the browser and with other processes wait a lot.
 test: lint models  ## Check and test everything
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 3 --dist loadfile --durations 25
 
 lint: $(VENV)/.development  ## Check style, types and layers
 	$(BIN)/ruff check .

@@ -44,7 +44,7 @@ def spoken(tus_resumable: Annotated[str | None, Header()] = None) -> None:
 router = APIRouter(prefix="/uploads", tags=["clips"])
 
 
-@router.options("", status_code=204)
+@router.options("", status_code=204, responses=documented())
 def tell_abilities(studio: CurrentStudio) -> Response:
     """Tell what of the tus protocol is understood."""
     size = str(studio.settings.max_clip_bytes)

@@ -75,7 +75,7 @@ def test_a_skeleton_of_ros4hri_fills_the_landmarks_that_it_has(tmp_path: Path) -
     assert read.poses.frame_size == ASSUMED_SIZE
     warnings = " ".join(read.warnings)
     assert "1280 x 720 is taken" in warnings
-    assert "skeleton2d has no left_eye_inner" in warnings
+    assert "skeleton2d has no left_pinky" in warnings
     assert "no topic of the salute" in warnings
 
 
