@@ -292,7 +292,7 @@ def _direction_words(gesture: Gesture, counting: Counting) -> str:
         return "it is read either way round"
     if gesture.switches.direction == "on":
         return "it is read only the way round it is shown"
-    return "it counts here: another gesture is the same figure the other way round"
+    return "it counts, for another gesture is the same figure the other way round"
 
 
 def _tempo_words(gesture: Gesture, counting: Counting) -> str:
@@ -300,7 +300,7 @@ def _tempo_words(gesture: Gesture, counting: Counting) -> str:
         return "it is read however fast it is shown"
     if gesture.switches.tempo == "on":
         return "how long it takes counts"
-    return "it counts here: another gesture is the same movement, clearly slower or quicker"
+    return "it counts, for another gesture is the same movement, clearly slower or quicker"
 
 
 def _mirror_words(gesture: Gesture, counting: Counting) -> str:
