@@ -69,25 +69,9 @@ SKELETON_2D: Final[LandmarkSet] = (
 constants the left eye and the left ear come first."""
 
 BODY_25: Final[LandmarkSet] = (
-    "nose",
-    None,  # neck
-    "right_shoulder",
-    "right_elbow",
-    "right_wrist",
-    "left_shoulder",
-    "left_elbow",
-    "left_wrist",
+    *COCO_18[:8],
     None,  # middle of the hips
-    "right_hip",
-    "right_knee",
-    "right_ankle",
-    "left_hip",
-    "left_knee",
-    "left_ankle",
-    "right_eye",
-    "left_eye",
-    "right_ear",
-    "left_ear",
+    *COCO_18[8:],
     "left_foot_index",  # big toe
     None,  # left small toe
     "left_heel",
