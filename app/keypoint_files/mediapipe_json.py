@@ -9,21 +9,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from app.keypoint_files.columns import AXES, MOST_LANDMARKS, numbered_landmark, plain, time_column
-from app.keypoint_files.mediapipe_table import times_of
-from app.keypoint_files.table import (
-    MALFORMED,
-    KeypointOptions,
-    KeypointTable,
-    Times,
-    seen_only,
-    visibility_of,
-)
+from app.keypoint_files.mediapipe_table import table_of, times_of
+from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times
 from app.recognition.errors import KeypointFileError, RecognitionError
 from app.recognition.video_limits import VideoLimits
 
@@ -65,15 +59,8 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
     unseen = (np.nan, np.nan, np.nan)
     points = np.array([[row.get(name, unseen) for name in names] for row in rows])
     told = bool(np.isfinite(points[..., 2]).any())
-    confidence = visibility_of(points) if told else None
-    return KeypointTable(
-        names=names,
-        xy=seen_only(points[..., :2], confidence, 0.0),
-        confidence=confidence,
-        times=times,
-        frame_size=about.frame_size,
-        frame_rate=about.frame_rate,
-    )
+    table = table_of(names, points, told, times)
+    return replace(table, frame_size=about.frame_size, frame_rate=about.frame_rate)
 
 
 def _frames(content: Any) -> list[Any]:

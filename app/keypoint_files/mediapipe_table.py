@@ -80,7 +80,7 @@ def _wide(
         times.append(
             float(number) if columns.when is None else _number(line, columns.when, number, path)
         )
-    return _table(names, rows, told, times_of(np.array(times), columns.unit))
+    return table_of(names, _points(rows, len(names)), told, times_of(np.array(times), columns.unit))
 
 
 def _long(
@@ -109,14 +109,26 @@ def _long(
     names = tuple(dict.fromkeys(name for landmarks in frames.values() for name in landmarks))
     unseen = [np.nan] * 3
     rows = [[landmarks.get(name, unseen) for name in names] for landmarks in frames.values()]
-    return _table(names, rows, "v" in axes, times_of(np.array(list(frames)), unit))
+    return table_of(
+        names, _points(rows, len(names)), "v" in axes, times_of(np.array(list(frames)), unit)
+    )
 
 
-def _table(
-    names: tuple[str, ...], rows: list[list[list[float]]], told: bool, times: Times
-) -> KeypointTable:
-    """Make a table of T rows of K landmarks of x, y and visibility."""
-    points = np.array(rows, dtype=np.float64).reshape(len(rows), len(names), 3)
+def table_of(names: tuple[str, ...], points: FloatArray, told: bool, times: Times) -> KeypointTable:
+    """Make a table of landmarks as MediaPipe tells them.
+
+    Parameters
+    ----------
+    names
+        K names.
+    points
+        ``(T, K, 3)``: x, y and visibility; NaN: not told.
+    told
+        Whether the file tells visibilities at all.
+    times
+        When the frames are.
+
+    """
     confidence = visibility_of(points) if told else None
     return KeypointTable(
         names=names,
@@ -124,6 +136,11 @@ def _table(
         confidence=confidence,
         times=times,
     )
+
+
+def _points(rows: list[list[list[float]]], count: int) -> FloatArray:
+    """Return T rows of `count` landmarks of x, y and visibility as ``(T, count, 3)``."""
+    return np.array(rows, dtype=np.float64).reshape(len(rows), count, 3)
 
 
 def _lines(lines: Iterator[list[str]]) -> Iterator[list[str]]:
