@@ -11,6 +11,12 @@ from typing import Annotated, Any
 
 import typer
 
+from app.clip_argument import (
+    FrameRateOption,
+    FrameSizeOption,
+    LandmarkOption,
+    keypoint_options,
+)
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_picture import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
@@ -64,7 +70,7 @@ def evaluate(
         Path,
         typer.Argument(
             help="A language file: it names variants of its own gestures. Or a folder of labelled "
-            "clips or saved recordings: every take in turn is the demonstration.",
+            "clips, saved recordings or keypoint files: every take in turn is the demonstration.",
             metavar="FILE.json|FOLDER",
         ),
     ],
@@ -86,6 +92,9 @@ def evaluate(
         Person, typer.Option(help="With a language file: whose takes the variants resemble.")
     ] = Person.same,
     seed: Annotated[int, typer.Option(min=0, help="Of the variants.")] = 0,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
     picture: Annotated[
         Path | None, typer.Option(help="SVG to write; several confusion matrices get numbers.")
     ] = None,
@@ -95,8 +104,11 @@ def evaluate(
     profiles = profile or list(PROFILES)
     problems: dict[str, str] = {}
     if source.is_dir():
+        keypoints = keypoint_options(frame_rate, frame_size, landmark)
         with progress_bar("clips") as advance:
-            collection = collected(labelled_files(source, layout), progress=advance)
+            collection = collected(
+                labelled_files(source, layout), keypoints=keypoints, progress=advance
+            )
         problems = collection.problems
         findings = list(_of_takes(collection, profiles, language, problems))
     else:

@@ -1,11 +1,13 @@
-"""A folder of labelled clips or recordings: which file shows which gesture, by whom."""
+"""A folder of labelled clips, recordings or keypoint files: which shows which gesture, by whom."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from app.keypoint_files import is_keypoint_file
 from app.recognition.errors import RecognitionError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
@@ -15,7 +17,8 @@ SEPARATORS = "_-. "
 """Where the label of a file directly in the folder ends: ``circle-1.mp4``, ``circle 2.mp4``."""
 
 SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm", ".npz"})
-"""Files taken for clips, or (``.npz``) for saved recordings; others are passed over."""
+"""Files taken for clips, or (``.npz``) for saved recordings, beside the keypoint files of other
+programs; all else is passed over."""
 
 _FIELDS = {
     "{label}": r"(?P<label>[^/]+?)",
@@ -32,7 +35,7 @@ class LabelledFile:
     Attributes
     ----------
     path
-        The clip, or the saved recording.
+        The clip, the saved recording, or the keypoint file (of OpenPose, the folder).
     label
         The gesture it shows.
     person
@@ -46,7 +49,7 @@ class LabelledFile:
 
 
 def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFile, ...]:
-    """Find the clips and recordings of a folder, with their labels.
+    """Find the clips, recordings and keypoint files of a folder, with their labels.
 
     Parameters
     ----------
@@ -74,12 +77,10 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
             "{person}/{label}_#"
         )
     found = []
-    for path in sorted(folder.rglob("*")):
+    for path in _readable(folder):
         relative = PurePosixPath(path.relative_to(folder).as_posix())
-        hidden = any(part.startswith(".") for part in relative.parts)
-        if path.suffix.lower() not in SUFFIXES or hidden or not path.is_file():
-            continue
-        if fields := _read(str(relative.with_suffix("")), layout):
+        name = str(relative if path.is_dir() else relative.with_suffix(""))
+        if fields := _read(name, layout):
             found.append(LabelledFile(path, fields["label"], fields.get("person") or ""))
     if not found:
         raise RecognitionError(
@@ -87,6 +88,17 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
             "so, or say how they are named with --layout"
         )
     return tuple(found)
+
+
+def _readable(folder: Path) -> Iterator[Path]:
+    """Go through what may be a take; a folder of OpenPose is one, and not each of its frames."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith("."):
+            continue
+        if is_keypoint_file(path) or (path.is_file() and path.suffix.lower() in SUFFIXES):
+            yield path
+        elif path.is_dir():
+            yield from _readable(path)
 
 
 def _read(name: str, layout: str | None) -> dict[str, str] | None:

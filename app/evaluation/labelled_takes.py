@@ -14,6 +14,7 @@ from platformdirs import user_data_path
 from app import __version__
 from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
+from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Recording, record, takes_in
 from app.recognition.errors import ModelError, RecognitionError
 from app.recognition.estimation import PoseEstimator, create_estimator
@@ -50,6 +51,7 @@ def collected(
     files: Sequence[LabelledFile],
     *,
     keep_in: Path | None = None,
+    keypoints: KeypointOptions | None = None,
     progress: Progress | None = None,
 ) -> Collection:
     """Read all files; one that cannot be read does not end the work.
@@ -57,10 +59,12 @@ def collected(
     Parameters
     ----------
     files
-        Clips, and recordings that `Recording.save` wrote.
+        Clips, recordings that `Recording.save` wrote, and keypoint files of other programs.
     keep_in
         Folder for what is extracted, `recordings_dir` by default. A clip is known by its content,
         so it may be renamed or moved.
+    keypoints
+        What keypoint files do not tell.
     progress
         Called after every frame that is extracted; an exception in it ends the work.
 
@@ -72,7 +76,7 @@ def collected(
     """
     takes: list[LabelledTake] = []
     problems: dict[str, str] = {}
-    with closing(_Extractor(keep_in or recordings_dir(), progress)) as extractor:
+    with closing(_Extractor(keep_in or recordings_dir(), keypoints, progress)) as extractor:
         for file in files:
             try:
                 takes += _takes(file, extractor.recording(file.path))
@@ -86,14 +90,19 @@ def collected(
 class _Extractor:
     """Gives the recording of a file, extracting no clip twice; models are loaded when needed."""
 
-    def __init__(self, folder: Path, progress: Progress | None) -> None:
+    def __init__(
+        self, folder: Path, keypoints: KeypointOptions | None, progress: Progress | None
+    ) -> None:
         self._folder = folder
+        self._keypoints = keypoints
         self._progress = progress
         self._estimator: PoseEstimator | None = None
 
     def recording(self, path: Path) -> Recording:
         if path.suffix.lower() == ".npz":
             return Recording.load(path)
+        if is_keypoint_file(path):
+            return read_keypoints(path, self._keypoints).recording
         kept = self._folder / f"{_content_key(path)}.npz"
         if kept.is_file():
             return Recording.load(kept)

@@ -25,6 +25,7 @@ def found(folder: Path, names: list[str], layout: str | None = None) -> dict[str
         ("circle.npz", "circle", ""),
         ("not clear/take 1.webm", "not clear", ""),
         ("anna/not clear/take 1.webm", "not clear", "anna"),
+        ("anna/circle/take 1.csv", "circle", "anna"),
     ],
 )
 def test_the_place_of_a_file_tells_what_it_shows(
@@ -51,6 +52,11 @@ def test_a_layout_says_where_label_and_person_stand(
 def test_other_files_and_hidden_ones_are_passed_over(tmp_path: Path) -> None:
     names = ["a/1.mp4", "a/notes.txt", ".trash/2.mp4", "a/.3.mp4", "too/deep/for/this/4.mp4"]
     assert found(tmp_path, names) == {"a/1.mp4": ("a", "")}
+
+
+def test_a_folder_of_openpose_is_one_take(tmp_path: Path) -> None:
+    frames = [f"circle/dive 1/dive_{number:012}_keypoints.json" for number in range(3)]
+    assert found(tmp_path, frames) == {"circle/dive 1": ("circle", "")}
 
 
 def test_a_folder_in_which_nothing_fits_says_what_would(tmp_path: Path) -> None:

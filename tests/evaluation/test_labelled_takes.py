@@ -7,8 +7,12 @@ import pytest
 
 from app.evaluation.labelled_files import labelled_files
 from app.evaluation.labelled_takes import collected
+from app.keypoint_files import KeypointOptions
 from app.recognition import Recording
+from app.recognition.landmark_sets import BODY_25
 from tests.evaluation.takes import drawn_takes
+from tests.keypoint_files.files import write_openpose
+from tests.recognition.strategies import circle, recording
 
 
 def save_swipes(folder: Path) -> None:
@@ -39,6 +43,18 @@ def test_files_that_cannot_be_read_are_named_and_do_not_end_the_work(tmp_path: P
     assert len(found.takes) == 6
     assert list(found.problems) == [str(broken)]
     assert "not a readable recording" in found.problems[str(broken)]
+
+
+def test_keypoint_files_are_takes_too_with_what_they_do_not_tell_given(tmp_path: Path) -> None:
+    poses = recording(circle, frames=20)
+    (tmp_path / "circle").mkdir()
+    write_openpose(tmp_path / "circle" / "dive 1", poses, BODY_25)
+    files = labelled_files(tmp_path)
+    (take,) = collected(files, keypoints=KeypointOptions(frame_rate=20)).takes
+    assert (take.label, take.source) == ("circle", str(tmp_path / "circle" / "dive 1"))
+    assert take.poses.duration == pytest.approx(19 / 20)
+    (problem,) = collected(files).problems.values()
+    assert "--frame-rate" in problem
 
 
 @pytest.mark.slow
