@@ -127,11 +127,13 @@ def moment_of(
         Those to keep: what the estimator can find at all (`landmarks_of`).
 
     """
-    xy, visibility = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
-    if found.body is not None:
+    if found.body is None:
+        xy, visibility = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
+    else:
         seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
         xy = np.where(seen, found.body.xy, np.nan)
-        visibility = np.clip(np.nan_to_num(found.body.visibility), 0, 1)
+        # NaN becomes 0, unlike in np.clip.
+        visibility = np.fmin(np.fmax(found.body.visibility, 0), 1)
     moment = PoseSequence(
         landmarks=POSE_LANDMARKS,
         xy=xy[None],

@@ -8,9 +8,12 @@ the whole shape.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
+from operator import itemgetter
 
 import numpy as np
 
@@ -20,13 +23,17 @@ from app.recognition.landmarks import HAND_LANDMARKS
 from app.recognition.poses import FloatArray
 
 FINGERS = ("index_finger", "middle_finger", "ring_finger", "pinky")
-_JOINTS = np.array(
-    [
-        [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
-        for finger in FINGERS
-    ]
-)
-"""``(4 fingers, 4 joints)`` positions in `HAND_LANDMARKS`, knuckle to tip."""
+_JOINTS = [
+    [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
+    for finger in FINGERS
+]
+"""Positions in `HAND_LANDMARKS` of each finger's knuckle, middle joint, last joint and tip."""
+
+_JOINTS_OF_FINGERS = [itemgetter(*joints) for joints in _JOINTS]
+"""Each takes one finger's four joints out of a hand's points."""
+
+_INDEX_KNUCKLE, _MIDDLE_KNUCKLE, _, _LITTLE_KNUCKLE = (joints[0] for joints in _JOINTS)
+_TIPS = [joints[3] for joints in _JOINTS]
 
 PUBLISHED_RATIO = 1.2
 """How many times wider the middle gap must be in the published rule (OSG's reference code)."""
@@ -42,10 +49,15 @@ class Condition:
     middle: float
     width: float
 
-    def fulfilment(self, value: float) -> float:
-        """Tell in [0, 1] how far `value` is above the threshold."""
-        slope = min(max(8 * (value - self.middle) / self.width, -50.0), 50.0)
-        return 1 / (1 + math.exp(-slope))
+    def excess(self, value: float) -> float:
+        """Tell how far `value` is above the threshold; `fulfilment` makes a share of it."""
+        return 8 * (value - self.middle) / self.width
+
+
+def fulfilment(excess: float) -> float:
+    """Return the logistic share in [0, 1] of a `Condition.excess`."""
+    # In this order NaN, of coordinates too large to compute with, becomes the lower bound.
+    return 1 / (1 + math.exp(-min(max(-50.0, excess), 50.0)))
 
 
 # All thresholds: chosen on rendered hands with known pose, checked on photographs and drawings
@@ -107,8 +119,8 @@ NOT_FOLDED = Condition(-0.25, 0.08)
 """Tips of ring and little finger against their middle joints; a folded finger's tip is 0.3 and
 more nearer to the wrist."""
 
-DEGREES_OF_DOUBT = 4.0
-"""Width of the thresholds on angles that must stay small."""
+SMALL_ENOUGH = Condition(0.0, 4.0)
+"""Degrees by which an angle stays below its limit."""
 
 ENTER_SCORE = 0.5
 """A salute begins where the test itself says so."""
@@ -152,82 +164,100 @@ def salute_score(hand_xy: FloatArray) -> float:
         When `hand_xy` has another shape.
 
     """
-    points = _checked(hand_xy)
-    if not np.isfinite(points).all():
+    points = [complex(x, y) for x, y in _checked(hand_xy).tolist()]
+    if not all(map(cmath.isfinite, points)):
         return 0.0
-    shape = _HandShape.of(_upright_hand(points))
-    return max(_clear_salute(shape), _wide_salute(shape))
+    try:
+        shape = _HandShape.of(points)
+    except OverflowError:  # landmarks farther apart than numbers go
+        return 0.0
+    # The share grows with the excess: the least excess is that of the least fulfilled condition.
+    return fulfilment(max(_clear_salute(shape), _wide_salute(shape)))
 
 
 @dataclass(frozen=True, eq=False)
 class _HandShape:
     """What the conditions look at, of index, middle, ring and little finger in this order.
 
-    ``straight`` (4,) shares; ``length`` (4,) and ``stretch`` (4,) palms; ``angle`` (3,) degrees
-    from each finger to the next, away from the thumb; ``gap`` (3,) palms between their tips;
-    ``width`` palms across the knuckles.
+    ``straight`` (4) shares; ``length`` (4) and ``stretch`` (4) palms; ``index_pair``, ``spread``
+    and ``little_pair`` degrees from a finger to the next, away from the thumb; ``gap_ratio`` the
+    gap between the tips of the pairs over the wider one inside them; ``width`` palms across the
+    knuckles.
     """
 
-    straight: FloatArray
-    length: FloatArray
-    stretch: FloatArray
-    angle: FloatArray
-    gap: FloatArray
+    straight: list[float]
+    length: list[float]
+    stretch: list[float]
+    index_pair: float
+    spread: float
+    little_pair: float
+    gap_ratio: float
     width: float
 
     @classmethod
-    def of(cls, points: FloatArray) -> _HandShape:
-        """Measure a hand as `_upright_hand` turns it."""
-        joints = points[_JOINTS]
-        fingers = joints[:, 3] - joints[:, 0]
-        length = np.linalg.norm(fingers, axis=1)
-        bones = np.linalg.norm(np.diff(joints, axis=1), axis=2).sum(axis=1)
-        from_wrist = np.linalg.norm(joints, axis=2)
-        direction = np.degrees(np.arctan2(fingers[:, 0], fingers[:, 1]))
+    def of(cls, points: list[complex]) -> _HandShape:
+        """Measure a hand of 21 points ``x + iy`` in pixels."""
+        # Plain numbers: numpy takes several times as long for so few.
+        wrist = points[0]
+        axis = points[_MIDDLE_KNUCKLE] - wrist
+        across = points[_INDEX_KNUCKLE] - points[_LITTLE_KNUCKLE]
+        palm = max(abs(axis), KNUCKLES_PER_PALM * abs(across), 1e-9)
+        upright = axis.conjugate() / palm
+        # Angles count away from the thumb, on a left hand as on a right one.
+        sense = 1 if (across * upright).imag > 0 else -1
+        straight, length, stretch, angle, tips = [], [], [], [], []
+        for joints_of in _JOINTS_OF_FINGERS:
+            knuckle, middle, last, tip = joints_of(points)
+            finger = tip - knuckle
+            bones = abs(middle - knuckle) + abs(last - middle) + abs(tip - last)
+            straight.append(abs(finger) / max(bones, 1e-9))
+            length.append(abs(finger) / palm)
+            stretch.append((abs(tip - wrist) - abs(middle - wrist)) / palm)
+            angle.append(sense * math.degrees(cmath.phase(finger * upright)))
+            tips.append(tip)
+        index_gap, gap, little_gap = (abs(there - here) for here, there in pairwise(tips))
         return cls(
-            straight=length / np.maximum(bones, 1e-9),
+            straight=straight,
             length=length,
-            stretch=from_wrist[:, 3] - from_wrist[:, 1],
-            angle=direction[:-1] - direction[1:],
-            gap=np.linalg.norm(np.diff(joints[:, 3], axis=0), axis=1),
-            width=float(np.linalg.norm(joints[0, 0] - joints[3, 0])),
+            stretch=stretch,
+            index_pair=angle[0] - angle[1],
+            spread=angle[1] - angle[2],
+            little_pair=angle[2] - angle[3],
+            gap_ratio=gap / max(index_gap, little_gap, 1e-6 * palm),
+            width=abs(across) / palm,
         )
-
-    @property
-    def gap_ratio(self) -> float:
-        """Gap between the pairs over the wider one inside them."""
-        return float(self.gap[1] / max(self.gap[0], self.gap[2], 1e-6))
 
 
 def _clear_salute(shape: _HandShape) -> float:
-    index_pair, spread, little_pair = shape.angle.tolist()
+    """Return the least excess of the conditions of a salute with straight fingers."""
+    wider_pair = max(abs(shape.index_pair), abs(shape.little_pair))
     return min(
-        STRAIGHT.fulfilment(shape.straight.min()),
-        LONG.fulfilment(shape.length[:3].min()),
-        LONG_LITTLE_FINGER.fulfilment(shape.length[3]),
-        STRETCHED_OUT.fulfilment(shape.stretch.min()),
-        SPREAD.fulfilment(spread),
-        SPREAD_EXCESS.fulfilment(spread - PAIR_MARGIN * max(abs(index_pair), abs(little_pair))),
-        TIP_GAP_RATIO.fulfilment(shape.gap_ratio),
-        PALM_WIDTH.fulfilment(shape.width),
+        STRAIGHT.excess(min(shape.straight)),
+        LONG.excess(min(shape.length[:3])),
+        LONG_LITTLE_FINGER.excess(shape.length[3]),
+        STRETCHED_OUT.excess(min(shape.stretch)),
+        SPREAD.excess(shape.spread),
+        SPREAD_EXCESS.excess(shape.spread - PAIR_MARGIN * wider_pair),
+        TIP_GAP_RATIO.excess(shape.gap_ratio),
+        PALM_WIDTH.excess(shape.width),
     )
 
 
 def _wide_salute(shape: _HandShape) -> float:
-    index_pair, spread, little_pair = shape.angle.tolist()
+    """Return the least excess of the conditions of a wide salute with bent fingertips."""
     return min(
-        NEARLY_STRAIGHT.fulfilment(shape.straight[:2].min()),
-        LONG.fulfilment(shape.length[:2].min()),
-        NOT_CURLED.fulfilment(shape.stretch[:2].min()),
-        VISIBLE_RING.fulfilment(shape.length[2]),
-        VISIBLE_LITTLE.fulfilment(shape.length[3]),
-        NOT_FOLDED.fulfilment(shape.stretch[2:].min()),
-        WIDE_SPREAD.fulfilment(spread),
-        Condition(0, DEGREES_OF_DOUBT).fulfilment(WIDEST_SPREAD - spread),
-        Condition(0, DEGREES_OF_DOUBT).fulfilment(CLOSE_INDEX_PAIR - abs(index_pair)),
-        Condition(0, DEGREES_OF_DOUBT).fulfilment(CLOSE_LITTLE_PAIR - abs(little_pair)),
-        WIDE_TIP_GAP_RATIO.fulfilment(shape.gap_ratio),
-        PALM_WIDTH.fulfilment(shape.width),
+        NEARLY_STRAIGHT.excess(min(shape.straight[:2])),
+        LONG.excess(min(shape.length[:2])),
+        NOT_CURLED.excess(min(shape.stretch[:2])),
+        VISIBLE_RING.excess(shape.length[2]),
+        VISIBLE_LITTLE.excess(shape.length[3]),
+        NOT_FOLDED.excess(min(shape.stretch[2:])),
+        WIDE_SPREAD.excess(shape.spread),
+        SMALL_ENOUGH.excess(WIDEST_SPREAD - shape.spread),
+        SMALL_ENOUGH.excess(CLOSE_INDEX_PAIR - abs(shape.index_pair)),
+        SMALL_ENOUGH.excess(CLOSE_LITTLE_PAIR - abs(shape.little_pair)),
+        WIDE_TIP_GAP_RATIO.excess(shape.gap_ratio),
+        PALM_WIDTH.excess(shape.width),
     )
 
 
@@ -248,7 +278,7 @@ def published_rule(hand_xy: FloatArray) -> bool:
         When `hand_xy` has another shape.
 
     """
-    tips = _checked(hand_xy)[_JOINTS[:, 3]]
+    tips = _checked(hand_xy)[_TIPS]
     index, middle, little = np.linalg.norm(np.diff(tips, axis=0), axis=1)
     return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
 
@@ -329,20 +359,3 @@ def _checked(hand_xy: FloatArray) -> FloatArray:
     if points.shape != (len(HAND_LANDMARKS), 2):
         raise PoseError(f"a hand has shape {points.shape}, expected (21, 2): x and y of 21 points")
     return points
-
-
-def _upright_hand(points: FloatArray) -> FloatArray:
-    """Move the wrist to 0, turn the middle knuckle to +y, index to +x, and scale by the palm."""
-    points = points - points[0]
-    middle_knuckle = points[_JOINTS[1, 0]]
-    palm = float(np.linalg.norm(middle_knuckle))
-    cosine, sine = middle_knuckle / max(palm, 1e-9)
-    turned = np.stack(
-        [points[:, 0] * sine - points[:, 1] * cosine, points[:, 0] * cosine + points[:, 1] * sine],
-        axis=1,
-    )
-    knuckles = turned[_JOINTS[0, 0]] - turned[_JOINTS[3, 0]]
-    if knuckles[0] < 0:
-        turned[:, 0] *= -1
-    size = max(palm, KNUCKLES_PER_PALM * float(np.linalg.norm(knuckles)), 1e-9)
-    return turned / size

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from app.recognition.errors import PoseError
 from app.recognition.estimation.base import Hand
@@ -92,6 +93,11 @@ def test_place_size_turn_and_side_do_not_matter(
 def test_the_score_is_a_share(seed: int, noise: float) -> None:
     (hand,) = labelled_hands(1, seed, noise)
     assert 0 <= salute_score(hand.xy) <= 1
+
+
+@given(arrays(np.float64, (21, 2), elements=st.floats(allow_nan=False, allow_infinity=False)))
+def test_coordinates_as_large_as_numbers_go_give_a_share_too(hand: FloatArray) -> None:
+    assert 0 <= salute_score(hand) <= 1
 
 
 def test_a_hand_that_is_partly_unseen_does_not_salute() -> None:
