@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
-from enum import StrEnum
+from enum import Enum
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -69,7 +69,7 @@ command_line.command()(robot)
 command_line.command()(phrase)
 
 
-class FileFormat(StrEnum):
+class FileFormat(str, Enum):
     """The language files that can be written."""
 
     osg_studio = "osg-studio"
@@ -111,7 +111,7 @@ def serve(
     except ModuleNotFoundError as error:
         raise RecognitionError(
             f"the studio's packages are not installed ({error.name} is missing); "
-            'install them with: pip install "osg-studio[studio]"'
+            'install them, on Python 3.11 or newer, with: pip install "osg-studio[studio]"'
         ) from error
     given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir, "token": token}
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -31,7 +31,7 @@ DEFAULT_VARIANTS = 50
 """Of each gesture, as often as the paper shows each of its eight."""
 
 
-class Person(StrEnum):
+class Person(str, Enum):
     """Whose takes the variants resemble."""
 
     same = "same"

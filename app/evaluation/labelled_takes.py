@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Recording, record, takes_in
+from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError, RecognitionError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.recording import FILE_VERSION
@@ -127,9 +127,7 @@ class _Extractor:
 
 def _content_key(path: Path) -> str:
     """Name a clip by its content, and by the program whose models saw it."""
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-    return f"{digest}-{__version__}-{FILE_VERSION}"
+    return f"{sha256_of(path)}-{__version__}-{FILE_VERSION}"
 
 
 def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:

@@ -101,7 +101,8 @@ class CalibratedVote:
         """Ask the language for each voter's say, and which directions and tempos it needs."""
         asked = self._motions.as_shown[:MAX_GESTURES_READ_OTHERWISE]
         own = self._motions.own_distances
-        pairs = own[:, :, asked][:, *np.triu_indices(len(asked), 1)]
+        one, other = np.triu_indices(len(asked), 1)
+        pairs = own[:, :, asked][:, one, other]
         shapes = self._shapes.own_distances(MAX_GESTURES_READ_OTHERWISE)
         self._say, self._between = says(
             VOTERS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -267,14 +267,14 @@ def _check_text(text: Any, most: int, pointer: str) -> None:
 
 def _utc_second(moment: datetime | None) -> datetime:
     if moment is None:
-        moment = datetime.now(UTC)
+        moment = datetime.now(timezone.utc)
     if moment.tzinfo is None:
         raise LanguageError(f"created must have a time zone, got {moment!r}", "/created")
-    return moment.astimezone(UTC).replace(microsecond=0)
+    return moment.astimezone(timezone.utc).replace(microsecond=0)
 
 
 def _moment(timestamp: str) -> datetime:
     try:
-        return datetime.strptime(timestamp, TIMESTAMP).replace(tzinfo=UTC)
+        return datetime.strptime(timestamp, TIMESTAMP).replace(tzinfo=timezone.utc)
     except ValueError as error:
         raise LanguageError(f"no such date and time: {timestamp!r}", "/created") from error

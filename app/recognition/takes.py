@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
+from enum import Enum
 from pathlib import Path
 
 from app.recognition.errors import PoseError
@@ -25,7 +25,7 @@ LONGEST_TAKE = 60.0
 salute or gone away, and their next salute begins a new gesture."""
 
 
-class TakeState(StrEnum):
+class TakeState(str, Enum):
     """What a `TakeMachine` does now."""
 
     idle = "idle"

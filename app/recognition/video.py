@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Protocol
 
 import av
 import numpy as np
@@ -21,6 +21,7 @@ from av.container import InputContainer
 from av.video.frame import VideoFrame as DecodedFrame
 from av.video.reformatter import VideoReformatter
 from av.video.stream import VideoStream
+from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.estimation.base import Image

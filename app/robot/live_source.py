@@ -6,7 +6,7 @@ import threading
 import time as clock
 from collections import deque
 from collections.abc import Callable, Iterator
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import Final, Protocol
 
 from app.recognition.errors import SourceError
@@ -91,7 +91,7 @@ class LiveSource:
         self._opened = opened
         self._first_wait = first_wait
         self._wait = first_wait
-        self.began = datetime.now(UTC)
+        self.began = datetime.now(timezone.utc)
         self._began = clock.monotonic()
         self._stamp = -SHORTEST_STEP
         self._news = threading.Condition()

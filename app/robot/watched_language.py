@@ -5,7 +5,9 @@ from __future__ import annotations
 import threading
 from collections import deque
 from pathlib import Path
-from typing import Final, Self
+from typing import Final
+
+from typing_extensions import Self
 
 from app.recognition import RecognitionError
 from app.robot.spoken_language import SpokenLanguage

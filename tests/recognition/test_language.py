@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta, timezone
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
@@ -90,7 +90,7 @@ def test_a_field_that_the_file_could_not_hold_is_refused(
 def test_created_is_kept_in_utc_to_the_second() -> None:
     there = timezone(timedelta(hours=-4))
     language = Language("pool", created=datetime(2026, 5, 1, 20, 30, 15, 999, tzinfo=there))
-    assert language.created == datetime(2026, 5, 2, 0, 30, 15, tzinfo=UTC)
+    assert language.created == datetime(2026, 5, 2, 0, 30, 15, tzinfo=timezone.utc)
 
 
 def test_loading_and_saving_again_gives_the_same_bytes(language: Language, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import cache
 
 from app.recognition import Gesture, Language, PoseSequence, Recording, takes_in
@@ -17,7 +17,7 @@ def language_of(*labels: str, revision: int = 1) -> Language:
         Gesture.from_demonstration(label, takes_in(recording_of(label))[0].poses)
         for label in labels
     ]
-    made = datetime(2026, 11, 21, tzinfo=UTC)  # else two of the same gestures would differ
+    made = datetime(2026, 11, 21, tzinfo=timezone.utc)  # else two of the same gestures would differ
     return Language("pool", gestures, created=made, revision=revision).calibrated()
 
 

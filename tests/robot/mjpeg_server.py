@@ -6,10 +6,10 @@ import math
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import TracebackType
-from typing import Self
 
 import cv2
 import numpy as np
+from typing_extensions import Self
 
 FRAME_SIZE = (64, 48)
 BOUNDARY = "picture"

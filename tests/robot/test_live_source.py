@@ -5,7 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Iterator
 from contextlib import closing
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import partial
 from itertools import islice
 
@@ -29,11 +29,11 @@ def frames(given: Iterator[Frame | Notice]) -> Iterator[Frame]:
 
 
 def test_frames_of_a_stream_come_in_order_at_growing_times() -> None:
-    before = datetime.now(UTC)
+    before = datetime.now(timezone.utc)
     with MjpegServer(brightness=100) as server, closing(open_source(server.address)) as source:
         assert source.live
         assert source.began is not None
-        assert before <= source.began <= datetime.now(UTC)
+        assert before <= source.began <= datetime.now(timezone.utc)
         assert source.frame_size == FRAME_SIZE
         seen = list(islice(frames(iter(source)), 5))
     times = [frame.time for frame in seen]

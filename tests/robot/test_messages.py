@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from typing import Any, get_args
 
 import jsonschema
@@ -64,7 +64,7 @@ def phrases(*shown: str) -> list[Event]:
 
 EVENTS: list[Event] = [
     *phrases("start", "photo", "three", "end"),
-    SourceOpened(0.0, "reef", True, (640, 480), datetime(2026, 11, 21, 13, 0, tzinfo=UTC)),
+    SourceOpened(0.0, "reef", True, (640, 480), datetime(2026, 11, 21, 13, 0, tzinfo=timezone.utc)),
     SourceOpened(0.0, "dive.mp4", False, (640, 480), None),
     SourceWarned(2.0, "the clip is damaged"),
     SourceLost(2.0, "unplugged"),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, Self
+from typing import Final
 
 import cv2
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import Self
 
 from app.recognition.estimation.base import LARGEST_SIDE, Image
 from app.recognition.poses import FloatArray

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import shlex
 import tempfile
@@ -14,6 +13,7 @@ from typing import Final, Literal
 
 import platformdirs
 
+from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
     INSTALLED_FILES,
@@ -196,5 +196,4 @@ def _size(path: Path) -> int:
 def _sha256(path: Path, size: int, changed: int) -> str:
     """Hash a file; `size` and `changed` (ns) make the cache forget a file that was rewritten."""
     del size, changed
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    return sha256_of(path)

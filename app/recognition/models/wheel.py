@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import subprocess
 import sys
 from pathlib import Path
 from typing import Final
 
+from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import WHEEL
 
@@ -90,8 +90,7 @@ def check_wheel(path: Path) -> None:
 
     """
     try:
-        with path.open("rb") as file:
-            found = hashlib.file_digest(file, "sha256").hexdigest()
+        found = sha256_of(path)
     except OSError as error:
         raise ModelError(
             f"cannot read {path}: {error.strerror}; give a folder made by "
