@@ -1,8 +1,10 @@
-"""The command ``osg-studio robot``: listen for a language, and tell what was said as JSON lines."""
+"""The command ``osg-studio robot``: listen for a language, and tell what was said as JSON lines.
+
+What only some options need is imported where they are given: a robot starts without it.
+"""
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import sys
@@ -17,11 +19,14 @@ import typer
 from app.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
+from app.recognition.estimation.base import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
+from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recognizer import PROFILES
 from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import (
     Event,
+    Hearing,
     Listener,
     PhraseListener,
     Runtime,
@@ -31,13 +36,11 @@ from app.robot import (
     TakeRecognized,
     open_source,
 )
-from app.robot.energy import energy_meter
 from app.robot.messages import line_of
 from app.robot.publishing import Network, open_publisher
-from app.robot.stage_profile import StageProfiler
+from app.robot.runtime import Observer
 from app.robot.watched_language import WatchedLanguage
-from app.robot_text import profile_table, sentence_of
-from app.ros2_topics import also_told, ros2_topics
+from app.robot_text import sentence_of
 from app.terminal import people
 
 NOTHING_RECOGNISED = 1
@@ -88,25 +91,23 @@ def robot(
             )
         if profile_stages:
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
-            if meter := energy_meter():
-                opened.enter_context(closing(meter))
-            show_profile(frames, StageProfiler(body, finder, listener, water=water, meter=meter))
+            profile_until_stopped(frames, body, finder, listener, water)
             return
-        topics = opened.enter_context(ros2_topics()) if ros2 else None
         heard = [tell]
+        observer: Observer | None = None
+        if ros2:
+            from app.ros2_topics import ros2_topics
+
+            topics = opened.enter_context(ros2_topics())
+            heard.append(lambda event: topics.hear(event, listener.language))
+            observer = topics.look
         if publish:
             heard.append(opened.enter_context(closing(open_publisher(publish))).publish)
         runtime = Runtime(
-            frames,
-            finder,
-            listener,
-            water=water,
-            changes=spoken.changes,
-            observer=topics.look if topics else None,
+            frames, finder, listener, water=water, changes=spoken.changes, observer=observer
         )
         with signals_heeded(runtime.stop, spoken.reload):
-            events = also_told(runtime, topics, listener) if topics else runtime
-            recognised = told(events, heard)
+            recognised = told(runtime, heard)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
 
@@ -135,13 +136,19 @@ def told(events: Iterable[Event], listeners: Sequence[Callable[[Event], None]]) 
     return recognised
 
 
-def show_profile(source: Source, profiler: StageProfiler) -> None:
-    """Profile a source until it ends or somebody stops it; write JSON, and a table for people."""
+def profile_until_stopped(
+    source: Source,
+    body: PoseEstimator,
+    whole: PoseEstimator,
+    listener: Hearing,
+    water: WaterCorrection,
+) -> None:
+    """Tell what the stages cost when the source ends, or somebody stops it."""
+    from app.robot_stages import show_stages
+
     asked: list[bool] = []
     with signals_heeded(lambda: asked.append(True), lambda: None):
-        profile = profiler.run(source, lambda: bool(asked))
-    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
-    people.print(profile_table(profile))
+        show_stages(source, body, whole, listener, water=water, is_over=lambda: bool(asked))
 
 
 def tell(event: Event) -> None:

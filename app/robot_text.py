@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from rich import box
-from rich.table import Table
-
 from app.robot import (
     Event,
     FramesDropped,
@@ -18,7 +15,6 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.stage_profile import STAGES, StageProfile
 
 
 def sentence_of(event: Event) -> str:
@@ -64,20 +60,3 @@ def _about_source(event: Event) -> str:
             return f"{dropped} of {dropped + frames} frames dropped in {seconds:.0f} s"
         case _:
             return ""
-
-
-def profile_table(profile: StageProfile) -> Table:
-    """Lay out what each stage leaves of the rate, a stage a row."""
-    caption = (
-        f"{profile.frames} frames, {profile.takes} takes; recognition lowers the rate of pose and "
-        f"hands by {profile.share:.1%}; energy: {profile.energy or 'this machine does not tell'}"
-    )
-    table = Table("with", caption=caption, caption_justify="left", box=box.SIMPLE_HEAD)
-    table.add_column("frames a second", justify="right")
-    table.add_column("joules a frame", justify="right")
-    for stage in STAGES:
-        joules = profile.joules_per_frame(stage)
-        rate = profile.frames_per_second(stage)
-        row = "" if joules is None else f"{joules:.2f}"
-        table.add_row(stage if stage == STAGES[0] else f"+ {stage}", f"{rate:.1f}", row)
-    return table

@@ -5,14 +5,12 @@ The nodes and their messages are ROS packages (`ros2/`), which pip does not inst
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager
 from typing import Protocol
 
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SpokenLanguage
-from app.robot.listener import Hearing
 
 
 class Topics(Protocol):
@@ -44,10 +42,3 @@ def ros2_topics() -> AbstractContextManager[Topics]:
             "build them with colcon and source the workspace in this shell"
         ) from error
     return published()
-
-
-def also_told(events: Iterable[Event], topics: Topics, listener: Hearing) -> Iterator[Event]:
-    """Pass events on, each after it was told."""
-    for event in events:
-        topics.hear(event, listener.language)
-        yield event

@@ -21,6 +21,15 @@ for module in pkgutil.walk_packages(app.recognition.__path__, "app.recognition."
     importlib.import_module(module.name)
 """
 
+WANTED_BY_OPTIONS = {
+    "app.robot.dds",
+    "app.robot.energy",
+    "app.robot.stage_profile",
+    "app.robot_stages",
+    "app.ros2_topics",
+}
+"""Modules that `osg-studio robot` needs only where it is asked to publish or to profile."""
+
 SHOW_THE_HELP = """
 import app.cli
 sys.argv[1:] = ["--help"]
@@ -72,9 +81,9 @@ def test_the_core_needs_nothing_but_its_own_dependencies() -> None:
     assert finished.returncode == 0, finished.stderr
 
 
-def test_the_command_line_starts_without_the_web_app() -> None:
+def test_the_command_line_starts_without_the_web_app_and_what_options_want() -> None:
     finished = run_without(
-        modules_of(requirements_of("studio")),
+        modules_of(requirements_of("studio")) | WANTED_BY_OPTIONS,
         SHOW_THE_HELP,
     )
     assert finished.returncode == 0, finished.stderr
