@@ -7,21 +7,27 @@ import json
 import os
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Final, TypeVar
 
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import float64, int32, uint32
 from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy, Qos
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
-from app.robot.events import Event, LanguageChanged, SourceOpened, TakeRecognized, TakeRejected
+from app.robot.dds_messages import GestureRecognition, Header, Phrase, String, Time
+from app.robot.events import (
+    Event,
+    LanguageChanged,
+    PhraseHeard,
+    SourceOpened,
+    TakeRecognized,
+    TakeRejected,
+)
 from app.robot.messages import line_of
 
 NAMESPACE: Final = "osg"
@@ -60,58 +66,14 @@ RELIABLE: Final = Qos(
 Sample = TypeVar("Sample", bound=IdlStruct)
 
 
-@dataclass
-class String(IdlStruct, typename="std_msgs::msg::dds_::String_"):
-    """``std_msgs/String``."""
-
-    data: str = ""
-
-
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    """``builtin_interfaces/Time``."""
-
-    sec: int32 = 0
-    nanosec: uint32 = 0
-
-
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    """``std_msgs/Header``."""
-
-    stamp: Time = field(default_factory=Time)
-    frame_id: str = ""
-
-
-@dataclass
-class GestureRecognition(IdlStruct, typename="osg_interfaces::msg::dds_::GestureRecognition_"):
-    """``osg_interfaces/GestureRecognition``, which says what the fields mean."""
-
-    header: Header = field(default_factory=Header)
-    body_id: str = ""
-    language_id: str = ""
-    language_name: str = ""
-    language_revision: uint32 = 0
-    profile: str = ""
-    start: Time = field(default_factory=Time)
-    end: Time = field(default_factory=Time)
-    closed: bool = False
-    label: str = ""
-    nearest: str = ""
-    confidence: float64 = 0.0
-    margin: float64 = 0.0
-    rejected: bool = False
-    reason: str = ""
-    report: str = ""
-
-
 class DdsPublisher:
     """Tells a DDS domain what a robot's runtime tells; a `Publisher`.
 
     ``/osg/events`` (``std_msgs/String``) carries the JSON line of every event,
     ``/osg/recognition`` (``osg_interfaces/GestureRecognition``) every take,
     ``/osg/recognized_gesture`` (``std_msgs/String``) the labels of recognised ones, which is the
-    published port's topic.
+    published port's topic, and ``/osg/phrase`` (``osg_interfaces/Phrase``) what came of each take
+    or pause in a language with phrases.
 
     Parameters
     ----------
@@ -135,6 +97,7 @@ class DdsPublisher:
             self._events = self._writer("events", String)
             self._labels = self._writer("recognized_gesture", String)
             self._takes = self._writer("recognition", GestureRecognition)
+            self._phrases = self._writer("phrase", Phrase)
         except DDSException as error:
             raise PublishError(
                 f"DDS domain {number} cannot be joined ({error}); is there a network? For this "
@@ -159,10 +122,13 @@ class DdsPublisher:
             self._takes.write(self._recognition(event))
         if isinstance(event, TakeRecognized):
             self._labels.write(String(event.label))
+        if isinstance(event, PhraseHeard):
+            self._phrases.write(self._phrase(event))
 
     def close(self) -> None:
         """Leave the domain."""
-        del self._events, self._labels, self._takes, self._participant, self._domain
+        del self._events, self._labels, self._takes, self._phrases
+        del self._participant, self._domain
 
     def _writer(self, name: str, kind: type[Sample]) -> DataWriter[Sample]:
         topic = Topic(self._participant, f"rt/{NAMESPACE}/{name}", kind, qos=RELIABLE)
@@ -186,6 +152,24 @@ class DdsPublisher:
             rejected=isinstance(event, TakeRejected),
             reason=event.reason if isinstance(event, TakeRejected) else "",
             report=json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
+        )
+
+    def _phrase(self, event: PhraseHeard) -> Phrase:
+        phrase = event.phrase
+        mission = None if phrase.mission is None else phrase.mission.to_list()
+        return Phrase(
+            header=Header(self._stamp(event.time)),
+            language_id=event.sha256,
+            language_revision=event.revision,
+            kind=phrase.kind,
+            start=self._stamp(phrase.start),
+            end=self._stamp(phrase.end),
+            gestures=list(phrase.gestures),
+            label=phrase.label or "",
+            expected=list(phrase.expected),
+            confidence=event.confidence,
+            mission="" if mission is None else json.dumps(mission, allow_nan=False),
+            text=phrase.text,
         )
 
     def _stamp(self, seconds: float) -> Time:

@@ -304,6 +304,8 @@ class PhraseHeard:
         Seconds: when it was known.
     phrase
         What the grammar makes of it; has a mission where the robot should do something.
+    confidence
+        In [0, 1]: of the message's gesture that is least sure; 0 where none was recognised.
     sha256, revision
         The language.
 
@@ -311,6 +313,7 @@ class PhraseHeard:
 
     time: float
     phrase: PhraseEvent
+    confidence: float
     sha256: str
     revision: int
 

@@ -229,6 +229,9 @@ class PhraseHeardMessage(_Message):
         tuple[MeaningMessage, ...] | None, Field(description="What to do; only when complete.")
     ]
     text: Annotated[str, Field(description="In words, for the diver.")]
+    confidence: Annotated[
+        Share, Field(description="Of the message's least sure gesture; 0: none was recognised.")
+    ] = 0.0
     sha256: Sha256
     revision: Revision
 
@@ -237,8 +240,8 @@ class PhraseHeardMessage(_Message):
     def _flattened(cls, event: Any) -> Any:
         if not isinstance(event, PhraseHeard):
             return event
-        seal = {"time": event.time, "sha256": event.sha256, "revision": event.revision}
-        return event.phrase.to_dict() | seal
+        known = ("time", "confidence", "sha256", "revision")
+        return event.phrase.to_dict() | {name: getattr(event, name) for name in known}
 
 
 Message = (

@@ -33,6 +33,7 @@ class PhraseListener:
         self._lag = lag
         self._parser = parser_of(hearing.language)
         self._time = 0.0
+        self._takes: list[TakeRecognized] = []  # that a message may be made of
         self._left: tuple[PhraseEvent, ...] = ()  # what another language cancelled
 
     @property
@@ -81,7 +82,12 @@ class PhraseListener:
             told.append(event)
             if self._parser is None or not isinstance(event, TakeRecognized | TakeRejected):
                 continue
-            label = event.label if isinstance(event, TakeRecognized) else None
+            label = None
+            if isinstance(event, TakeRecognized):
+                label = event.label
+                # What does not lie before it is of another stream.
+                before = [take for take in self._takes if take.end <= event.start]
+                self._takes = [*before, event]
             told += self._heard(event.time, self._parser.feed(label, event.start, event.end))
         return tuple(told)
 
@@ -90,7 +96,17 @@ class PhraseListener:
 
     def _heard(self, time: float, events: Iterable[PhraseEvent]) -> tuple[PhraseHeard, ...]:
         spoken = self.language
-        return tuple(PhraseHeard(time, each, spoken.sha256, spoken.revision) for each in events)
+        return tuple(
+            PhraseHeard(time, each, self._confidence(each), spoken.sha256, spoken.revision)
+            for each in events
+        )
+
+    def _confidence(self, phrase: PhraseEvent) -> float:
+        """Return that of the message's least sure gesture, and forget those before the message."""
+        self._takes = [take for take in self._takes if take.start >= phrase.start]
+        # A pause may be told after the gesture that ended it, which is of the next message.
+        sure = (take.confidence for take in self._takes if take.end <= phrase.end)
+        return min(sure, default=0.0)
 
 
 def parser_of(language: SpokenLanguage) -> PhraseParser | None:

@@ -7,25 +7,36 @@ from __future__ import annotations
 
 import time
 from contextlib import closing
+from dataclasses import replace
 
-from app.robot import Listener
+from app.recognition.grammar import Grammar
+from app.recognition.phrase import OneOf, Phrase
+from app.robot import Event, Listener, PhraseListener, SpokenLanguage
 from app.robot.publishing import open_publisher
 from app.robot.runtime import language_changed
 from tests.api.recordings import recording_of
-from tests.robot.languages import heard, spoken
+from tests.robot.languages import heard, language_of
 
 PAUSE = 0.2
 """Seconds between two rounds: whoever listens may join at any time."""
 
+PHOTO = Phrase("photo", (OneOf(("circle",)),), {"do": "photo"}, "take a photo")
+
+
+def told() -> list[Event]:
+    """Return what is said in every round: a gesture that is a message, and one that is unknown."""
+    made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
+    language = SpokenLanguage.from_json(made.to_json())
+    shown = recording_of("circle", "line")
+    return [language_changed(0.0, language), *heard(PhraseListener(Listener(language)), shown)]
+
 
 def main() -> None:
     """Publish until the process is ended."""
-    language = spoken("circle")
-    shown = recording_of("circle", "line")
-    told = [language_changed(0.0, language), *heard(Listener(language), shown)]
+    events = told()
     with closing(open_publisher("dds")) as publisher:
         while True:
-            for event in told:
+            for event in events:
                 publisher.publish(event)
             time.sleep(PAUSE)
 

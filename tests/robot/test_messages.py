@@ -59,7 +59,7 @@ def rejected() -> TakeRejected:
 def phrases(*shown: str) -> list[Event]:
     parser = PhraseParser(MISSIONS)
     events = [event for label in shown for event in parser.feed(label, 1.0, 2.0)]
-    return [PhraseHeard(3.0, event, SEAL, 3) for event in events]
+    return [PhraseHeard(3.0, event, 0.9, SEAL, 3) for event in events]
 
 
 EVENTS: list[Event] = [

@@ -60,6 +60,7 @@ def test_a_message_is_heard_right_after_the_gesture_that_closes_it() -> None:
     last = next(event for event in reversed(told) if isinstance(event, PhraseHeard))
     assert (last.phrase.start, last.phrase.end) == (takes[0].start, takes[1].end)
     assert last.time == takes[1].time
+    assert last.confidence == min(take.confidence for take in takes)
     assert told.index(last) == told.index(takes[1]) + 1
 
 

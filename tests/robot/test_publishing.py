@@ -11,7 +11,7 @@ from app.recognition.errors import PublishError
 from app.robot.publishing import open_publisher
 from tests.conftest import ROOT
 
-DEFINITION = ROOT / "ros2" / "osg_interfaces" / "msg" / "GestureRecognition.msg"
+DEFINITIONS = ROOT / "ros2" / "osg_interfaces" / "msg"
 
 
 def test_without_its_library_publishing_says_what_to_install(
@@ -35,20 +35,23 @@ def test_a_domain_that_there_is_not_is_refused(
         open_publisher("dds")
 
 
-def test_the_message_has_the_fields_of_its_definition_in_order() -> None:
+@pytest.mark.parametrize("name", ["GestureRecognition", "Phrase"])
+def test_a_message_has_the_fields_of_its_definition_in_order(name: str) -> None:
     pytest.importorskip("cyclonedds", reason="needs the extra dds")
     from cyclonedds.idl import types
 
-    from app.robot import dds
+    from app.robot import dds_messages
 
     kinds = {
-        "std_msgs/Header": dds.Header,
-        "builtin_interfaces/Time": dds.Time,
+        "std_msgs/Header": dds_messages.Header,
+        "builtin_interfaces/Time": dds_messages.Time,
         "string": str,
+        "string[]": types.sequence[str],
         "bool": bool,
         "uint32": types.uint32,
         "float64": types.float64,
     }
-    defined = re.findall(r"^([\w/]+) (\w+)", DEFINITION.read_text("utf-8"), re.MULTILINE)
-    ours = dds.GestureRecognition.__annotations__
+    definition = (DEFINITIONS / f"{name}.msg").read_text("utf-8")
+    defined = re.findall(r"^([\w/[\]]+) (\w+)(?:\s|$)", definition, re.MULTILINE)
+    ours = getattr(dds_messages, name).__annotations__
     assert list(ours.items()) == [(name, kinds[kind]) for kind, name in defined]

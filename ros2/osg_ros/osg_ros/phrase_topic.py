@@ -8,7 +8,7 @@ from osg_interfaces.msg import Phrase
 from rclpy.duration import Duration
 from std_msgs.msg import Header
 
-from app.robot import PhraseHeard, SpokenLanguage, TakeRecognized
+from app.robot import PhraseHeard, SpokenLanguage
 from osg_ros.bodies import DIVER
 from osg_ros.managed_node import RESULTS, ManagedNode
 from osg_ros.stamps import Stopwatch
@@ -26,40 +26,24 @@ class PhraseTopic:
 
     def __init__(self, node: ManagedNode) -> None:
         self._phrase = node.publisher(Phrase, "phrase", RESULTS)
-        self._takes: list[TakeRecognized] = []
-
-    def taken(self, take: TakeRecognized, language: SpokenLanguage) -> None:
-        """Keep what a message may be made of, for how sure that is."""
-        if phrase_labels(language):
-            # What does not lie before it is of another stream.
-            before = [each for each in self._takes if each.end <= take.start]
-            self._takes = [*before, take]
 
     def heard(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
         """Tell what came of a gesture or of a pause; see `RecognitionTopics.taken`."""
-        start, end = event.phrase.start, event.phrase.end
-        self._takes = [take for take in self._takes if take.start >= start]
-        # A pause may be told after the gesture that ended it, which is of the next message.
-        sure = min((take.confidence for take in self._takes if take.end <= end), default=0.0)
         header = Header(stamp=clock.stamp(event.time), frame_id=frame_id)
-        self._phrase.publish(phrase_message(event, sure, clock, header))
+        self._phrase.publish(phrase_message(event, clock, header))
 
     def flush(self, patience: Duration) -> None:
         """Wait until what was said has arrived."""
         self._phrase.wait_for_all_acked(patience)
 
 
-def phrase_message(
-    event: PhraseHeard, confidence: float, clock: Stopwatch, header: Header
-) -> Phrase:
+def phrase_message(event: PhraseHeard, clock: Stopwatch, header: Header) -> Phrase:
     """Return the message of what came of a gesture or of a pause.
 
     Parameters
     ----------
     event
         What the listener says.
-    confidence
-        In [0, 1]: of the gesture that is least sure.
     clock
         From its seconds to stamps.
     header
@@ -79,7 +63,7 @@ def phrase_message(
         gestures=list(phrase.gestures),
         label=phrase.label or "",
         expected=list(phrase.expected),
-        confidence=confidence,
+        confidence=event.confidence,
         mission=mission,
         text=phrase.text,
     )

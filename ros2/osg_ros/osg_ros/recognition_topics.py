@@ -89,7 +89,6 @@ class RecognitionTopics:
         self._recognition.publish(message)
         if not isinstance(event, TakeRecognized):
             return
-        self._phrases.taken(event, language)
         self._label.publish(String(data=message.label))
         if self._classification_type and self._hypothesis_type:
             hypothesis = self._hypothesis_type(class_id=message.label, score=message.confidence)

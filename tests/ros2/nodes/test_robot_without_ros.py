@@ -6,59 +6,110 @@ import json
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 
 import pytest
 import rclpy
-from osg_interfaces.msg import GestureRecognition
+from osg_interfaces.msg import GestureRecognition, Phrase
 from std_msgs.msg import String
 
-from app.robot import Listener, TakeRecognized, TakeRejected
-from app.robot.messages import MESSAGES
-from tests.api.recordings import recording_of
-from tests.robot.languages import heard, spoken
+from app.robot import PhraseHeard, TakeRecognized, TakeRejected
+from app.robot.messages import MESSAGES, line_of
+from osg_ros.stamps import nanoseconds_of
+from tests.robot.publishing_robot import told
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import PATIENCE, RELIABLE, Bench
 
 pytest.importorskip("cyclonedds", reason="needs the extra dds")
 
-ENOUGH = 6
-"""Takes heard: two rounds of three."""
+ROUNDS = 2
+"""Heard of every topic: whoever joins amid the first has heard all by the end of the second."""
 
 
 @pytest.mark.slow
-def test_ros_hears_every_take_as_the_robot_heard_it(bench: Bench, domain: int) -> None:
+def test_ros_hears_every_take_and_phrase_as_the_robot_heard_it(bench: Bench, domain: int) -> None:
+    events = told()
+    said_takes = [each for each in events if isinstance(each, TakeRecognized | TakeRejected)]
+    said_labels = [each.label for each in said_takes if isinstance(each, TakeRecognized)]
+    said_phrases = [each for each in events if isinstance(each, PhraseHeard)]
     takes: list[GestureRecognition] = []
     labels: list[String] = []
+    phrases: list[Phrase] = []
     lines: list[String] = []
     for kind, topic, seen in (
-        (GestureRecognition, "/osg/recognition", takes),
-        (String, "/osg/recognized_gesture", labels),
-        (String, "/osg/events", lines),
+        (GestureRecognition, "recognition", takes),
+        (String, "recognized_gesture", labels),
+        (Phrase, "phrase", phrases),
+        (String, "events", lines),
     ):
-        bench.probe.create_subscription(kind, topic, seen.append, RELIABLE)
+        bench.probe.create_subscription(kind, f"/osg/{topic}", seen.append, RELIABLE)
+
+    def all_heard() -> bool:
+        return (
+            len(takes) >= ROUNDS * len(said_takes)
+            and len(labels) >= ROUNDS * len(said_labels)
+            and len(phrases) >= ROUNDS * len(said_phrases)
+            and len(lines) >= ROUNDS * len(events)
+        )
+
     robot = [sys.executable, "-m", "tests.robot.publishing_robot"]
     with subprocess.Popen(robot, env=workspace.environment(domain)) as process:
         try:
             end = time.monotonic() + PATIENCE
-            while len(takes) < ENOUGH and time.monotonic() < end:
+            while not all_heard() and time.monotonic() < end:
                 rclpy.spin_once(bench.probe, timeout_sec=0.1)
         finally:
             process.kill()
-    told = heard(Listener(spoken("circle")), recording_of("circle", "line"))
-    expected = [event for event in told if isinstance(event, TakeRecognized | TakeRejected)]
-    said = {(event.start, event.end): event for event in expected}
-    assert len(takes) >= ENOUGH
-    for take in takes:
-        event = said[
-            take.start.sec + take.start.nanosec / 1e9, take.end.sec + take.end.nanosec / 1e9
-        ]
+    assert all_heard()
+    compare_takes(takes, said_takes)
+    compare_phrases(phrases, said_phrases)
+    assert {label.data for label in labels} == set(said_labels)
+    assert {line.data for line in lines} == {line_of(event) for event in events}
+    assert {MESSAGES.validate_json(line.data).event for line in lines} == {
+        "language_changed",
+        "state_changed",
+        "take_recognized",
+        "take_rejected",
+        "phrase_heard",
+    }
+
+
+def nanoseconds(moment: float) -> int:
+    """Of a moment in seconds, as stamps have it."""
+    return round(moment * 1e9)
+
+
+def compare_takes(
+    takes: Iterable[GestureRecognition], said: Iterable[TakeRecognized | TakeRejected]
+) -> None:
+    expected = {(nanoseconds(event.start), nanoseconds(event.end)): event for event in said}
+    heard = {(nanoseconds_of(take.start), nanoseconds_of(take.end)): take for take in takes}
+    assert heard.keys() == expected.keys()
+    for span, take in heard.items():
+        event = expected[span]
         assert take.rejected is isinstance(event, TakeRejected)
         assert take.label == ("" if isinstance(event, TakeRejected) else event.label)
         assert (take.nearest, take.confidence) == (event.nearest, event.confidence)
         assert (take.language_id, take.language_revision) == (event.sha256, event.revision)
         assert take.language_name == "pool"
         assert json.loads(take.report)["nearest"] == event.nearest
-    recognised = {event.label for event in expected if isinstance(event, TakeRecognized)}
-    assert {label.data for label in labels} == recognised
-    kinds = {MESSAGES.validate_json(line.data).event for line in lines}
-    assert kinds == {"language_changed", "state_changed", "take_recognized", "take_rejected"}
+
+
+def compare_phrases(phrases: Iterable[Phrase], said: Iterable[PhraseHeard]) -> None:
+    expected = {event.phrase.kind: event for event in said}
+    heard = {phrase.kind: phrase for phrase in phrases}
+    assert heard.keys() == expected.keys() == {Phrase.COMPLETE, Phrase.OUTSIDE}
+    for kind, message in heard.items():
+        event = expected[kind]
+        phrase = event.phrase
+        assert nanoseconds_of(message.header.stamp) == nanoseconds(event.time)
+        assert nanoseconds_of(message.start) == nanoseconds(phrase.start)
+        assert nanoseconds_of(message.end) == nanoseconds(phrase.end)
+        assert (message.language_id, message.language_revision) == (event.sha256, event.revision)
+        assert tuple(message.gestures) == phrase.gestures
+        assert tuple(message.expected) == phrase.expected
+        assert message.label == (phrase.label or "")
+        assert (message.confidence, message.text) == (event.confidence, phrase.text)
+        mission = phrase.mission.to_list() if phrase.mission else None
+        assert (json.loads(message.mission) if message.mission else None) == mission
+    assert json.loads(heard[Phrase.COMPLETE].mission)[0]["command"] == {"do": "photo"}
