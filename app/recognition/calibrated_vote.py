@@ -185,8 +185,8 @@ class CalibratedVote:
         chosen = self._sides_nearest(scores + turned)
         return Comparison(
             voters=VOTERS,
-            distances=distances[:, chosen],
-            contributions=shares[:, chosen],
+            distances=distances.take(chosen, axis=1),
+            contributions=shares.take(chosen, axis=1),
             turned=turned[chosen],
             readings=tuple(
                 self._motions.readings[row] if row >= 0 else None for row in rows[chosen].tolist()
@@ -219,7 +219,7 @@ class CalibratedVote:
             confidence=calibrated_confidence(
                 float(compared.novelty[winner]),
                 float(scores[winner]),
-                float(np.delete(scores, winner).min(initial=np.inf)),
+                float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
             ),
             profile="full",
             voters=VOTERS,

@@ -21,39 +21,39 @@ def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]
     ----------
     image
         ``(height, width)``, 0 for background, with a border of more than half of `diameter` empty
-        pixels on all sides: what is moved out of a row at one end comes in at the other.
+        pixels on all sides: what is moved out of a row at one end comes in at the other. The width
+        is a multiple of 8, so that a row ends with a byte.
     diameter
-        Of OpenCV's ellipse, pixels; even, so that the disc has a pixel in its middle.
+        Of OpenCV's ellipse, pixels; even, so that the disc has a pixel in its middle; at least 4.
 
     Returns
     -------
     ``(height, width)`` of 0 and 255.
 
     """
-    height, width = image.shape
-    packed = np.packbits(image, axis=1)
-    row = 8 * packed.shape[1]
-    everything = (1 << (height * row)) - 1
-    bits = _dilated(int.from_bytes(packed.tobytes(), "big"), row, diameter)
+    row = image.shape[1]
+    everything = (1 << image.size) - 1
+    bits = _dilated(int.from_bytes(np.packbits(image).tobytes(), "big"), row, diameter)
     bits = everything ^ (_dilated(everything ^ (bits & everything), row, diameter) & everything)
-    unpacked = np.frombuffer(bits.to_bytes(packed.size, "big"), dtype=np.uint8)
-    return np.unpackbits(unpacked.reshape(packed.shape), axis=1)[:, :width] * np.uint8(255)
+    unpacked = np.frombuffer(bits.to_bytes(image.size // 8, "big"), dtype=np.uint8)
+    return np.unpackbits(unpacked).reshape(image.shape) * np.uint8(255)
 
 
 def _dilated(bits: int, row: int, diameter: int) -> int:
     """Unite an image with itself moved by every pixel of the disc; `row`: bits in a row.
 
     The disc is a union of rectangles, from high and narrow to low and wide. All moves go one way,
-    from the disc's first corner on, and are taken back at the end.
+    from the disc's first corner on, and are taken back at the end. All rectangles are at least
+    three rows high: moving the image down by one row once spares every one of them a move.
     """
     radius, reached, united = diameter // 2, 0, 0
-    wide, height = bits, radius
+    wide, height = _moved(bits, 0, 1, row), radius
     for reach, down in _rectangles(diameter):
         wide = _moved(wide, 2 * reached, 2 * reach, 1)
-        united = _moved(united, 0, 2 * (height - down), row)
+        united = _moved(united, 1, 1 + 2 * (height - down), row)
         united |= wide << (radius - down) * row + radius - reach
         reached, height = reach, down
-    return _moved(united, 0, 2 * height, row) >> radius * row + radius
+    return _moved(united, 1, 2 * height, row) >> radius * row + radius
 
 
 def _moved(bits: int, done: int, wanted: int, step: int) -> int:

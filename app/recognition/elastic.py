@@ -176,7 +176,9 @@ class ElasticViews:
         costs = np.empty((2, len(self.views), count, count, pairs))
         alone = set(range(len(self.views)))
         if self._joined:
-            known = np.concatenate([queries[i][:, self.views[i].known] for i in self._joined], 1)
+            known = np.concatenate(
+                [queries[i].take(self.views[i].known, axis=1) for i in self._joined], axis=1
+            )
             if np.isfinite(known).all():
                 self._joined_costs(_from_both_ends(known, count), rows, costs)
                 alone -= self._joined.keys()

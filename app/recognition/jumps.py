@@ -58,7 +58,7 @@ def jumps(trajectory: Trajectory) -> Mask:
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     followed = _followed(trajectory.landmarks)
-    paths = trajectory.xy[:, followed] / body_unit(trajectory)
+    paths = trajectory.xy.take(followed, axis=1) / body_unit(trajectory)
     finite = np.isfinite(paths)
     known = np.asarray(finite[..., 0] & finite[..., 1])
     with_gaps: Mask = ~np.asarray(known.all(axis=0))

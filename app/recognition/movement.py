@@ -37,6 +37,11 @@ SMOOTHING_SHARE = 0.03
 """Most of the duration that the smoothing's standard deviation may be: a quick gesture, or a clock
 that does not run in seconds, keeps its shape."""
 
+FARTHEST = 40.0
+"""Exponent of the Gaussian beyond which moments weigh alike: next to nothing, for ``exp(-40)`` is
+below the rounding of 1. Numbers so small that a double loses digits take four times as long.
+"""
+
 LIMBS = (
     ("shoulder", "elbow"),
     ("elbow", "wrist"),
@@ -184,18 +189,20 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
     """
     places = _places(trajectory.landmarks, tuple(landmarks))
     smooth = _smoothed(
-        replace(trajectory, landmarks=places.needed, xy=trajectory.xy[:, places.columns])
+        replace(trajectory, landmarks=places.needed, xy=trajectory.xy.take(places.columns, axis=1))
     )
     seen = np.isfinite(smooth.xy[0, places.followed]).all(axis=1)
     followed = places.followed[seen]
     reached = smooth.time[[0] * STEPS]
     if len(followed):
-        reached = replace(smooth, xy=smooth.xy[:, followed]).moments_in_arc_length(STEPS)
+        path = smooth.xy.take(followed, axis=1)
+        reached = replace(smooth, xy=path).moments_in_arc_length(STEPS)
     even = smooth.at(reached).xy
     paths = np.zeros((STEPS, len(landmarks), 2))
-    paths[:, places.paths[seen]] = even[:, followed] - even[:, followed].mean(axis=0)
+    shown = even.take(followed, axis=1)
+    paths[:, places.paths[seen]] = shown - shown.mean(axis=0)
     limbs = np.full((STEPS, places.bones, 2), np.nan)
-    limbs[:, places.shown] = even[:, places.outer] - even[:, places.inner]
+    limbs[:, places.shown] = even.take(places.outer, axis=1) - even.take(places.inner, axis=1)
     return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
 
 
@@ -257,8 +264,8 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
     scaled = time / (np.sqrt(2.0) * max(width, 1e-9))
-    weights = scaled[:, None] - scaled
-    np.exp(-np.square(weights, out=weights), out=weights)
+    exponents = np.square(scaled[:, None] - scaled)
+    weights = np.exp(-np.minimum(exponents, FARTHEST, out=exponents))
     total = weights.sum(axis=1)
     bridged = trajectory.xy.copy()
     finite = np.isfinite(bridged)

@@ -50,8 +50,9 @@ class Outline:
         left, top, width, height = cv2.boundingRect(image)
         strokes = image[top : top + height, left : left + width]
         border = CLOSING_DIAMETER // 2 + 1
-        padded = np.zeros((height + 2 * border, width + 2 * border), dtype=np.uint8)
-        padded[border:-border, border:-border] = strokes
+        row = -(-(width + 2 * border) // 8) * 8
+        padded = np.zeros((height + 2 * border, row), dtype=np.uint8)
+        padded[border : border + height, border : border + width] = strokes
         found, _ = cv2.findContours(
             closed(padded, CLOSING_DIAMETER),
             cv2.RETR_EXTERNAL,

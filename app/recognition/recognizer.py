@@ -108,9 +108,10 @@ class Recognizer:
         comparison = self.compare(query)
         result = self.decided(comparison)
         if repair:
-            poor = self._fault(repair, result.nearest)
-            label = None if poor else result.label
-            result = replace(result, label=label, findings=repair.findings, fault=poor)
+            poor, findings = self._fault(repair, result.nearest), repair.findings
+            if poor or findings:
+                label = None if poor else result.label
+                result = replace(result, label=label, findings=findings, fault=poor)
         return Examination(query=query, comparison=comparison, result=result)
 
     def _fault(self, repair: Repair, nearest: str) -> str | None:

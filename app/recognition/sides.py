@@ -93,7 +93,7 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     sides = np.array(sides_of(trajectory.landmarks), dtype=np.intp)
     if not sides.size:
         return none
-    xy = trajectory.xy[:, sides]
+    xy = trajectory.xy.take(sides, axis=1)
     blended = _blended(trajectory)
     known = np.isfinite(xy)
     clear = np.flatnonzero(~blended if known.all() else known.any(axis=(1, 2, 3)) & ~blended)

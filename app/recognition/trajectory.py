@@ -81,7 +81,8 @@ class Trajectory:
             scale = extent if extent >= MIN_EXTENT_IN_FRAME * frame else frame
             xy = (poses.xy - np.nanmean(poses.xy, axis=(0, 1))) / scale
             return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="extent")
-        xy = (poses.xy - centre[:, None]) / length
+        # Repeated, for numpy would go through pairs of numbers one by one.
+        xy = (poses.xy - np.repeat(centre[:, None], len(poses.landmarks), axis=1)) / length
         return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="torso_length")
 
     def __len__(self) -> int:
@@ -124,7 +125,7 @@ class Trajectory:
         if missing:
             raise PoseError(f"no landmarks {missing} in this trajectory; it has {self.landmarks}")
         columns = [self.landmarks.index(name) for name in names]
-        return replace(self, landmarks=tuple(names), xy=self.xy[:, columns])
+        return replace(self, landmarks=tuple(names), xy=self.xy.take(columns, axis=1))
 
     def between(self, start: float, end: float) -> Trajectory:
         """Keep the moments with ``start <= time <= end`` (seconds since the first moment)."""

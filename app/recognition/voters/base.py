@@ -69,6 +69,11 @@ def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray
     return np.asarray(np.sqrt(np.einsum("gd,gd->g", apart, apart)), dtype=np.float64)
 
 
+def absolute_differences(query: FloatArray, references: FloatArray) -> FloatArray:
+    """Measure by how much ``(1,)`` differs from each row of ``(G, 1)``: ``(G,)``."""
+    return np.asarray(np.abs(references - query)[:, 0], dtype=np.float64)
+
+
 DESCRIPTOR_DIGITS = 6
 """Decimals of a descriptor: files stay small, and a saved language decides as before saving."""
 

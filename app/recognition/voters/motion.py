@@ -11,7 +11,7 @@ from app.recognition.elastic import ElasticReferences
 from app.recognition.movement import LIMBS, Movement, sized
 from app.recognition.poses import FloatArray
 from app.recognition.step_distances import ROUNDING, StepReferences
-from app.recognition.voters.base import euclidean_distances
+from app.recognition.voters.base import absolute_differences, euclidean_distances
 from app.recognition.voters.wrist_bend import WristBend
 
 BAND = 8
@@ -226,7 +226,7 @@ class PathLength:
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(M,)``."""
-        return euclidean_distances(query, references)
+        return absolute_differences(query, references)
 
 
 class Tempo:
@@ -241,7 +241,7 @@ class Tempo:
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(M,)``."""
-        return euclidean_distances(query, references)
+        return absolute_differences(query, references)
 
 
 MOTION_VOTERS: tuple[MotionVoter, ...] = (

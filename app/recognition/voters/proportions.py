@@ -7,6 +7,7 @@ import numpy as np
 
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import Drawing
+from app.recognition.voters.base import absolute_differences
 
 
 class _Proportion(ABC):
@@ -26,7 +27,7 @@ class _Proportion(ABC):
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(G,)``."""
-        return np.asarray(np.abs(references - query)[:, 0], dtype=np.float64)
+        return absolute_differences(query, references)
 
 
 class AspectRatio(_Proportion):
