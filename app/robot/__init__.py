@@ -24,7 +24,7 @@ from app.robot.listener import Hearing, Listener
 from app.robot.opening import open_source
 from app.robot.phrase_listener import PhraseListener
 from app.robot.runtime import Runtime
-from app.robot.source import Frame, Lost, Notice, Quiet, Restored, Source, Warned
+from app.robot.source import Frame, Notice, Quiet, Source
 from app.robot.spoken_language import SpokenLanguage
 from app.robot.spotting_listener import SpottingListener
 
@@ -36,12 +36,10 @@ __all__ = [
     "LanguageChanged",
     "LanguageRefused",
     "Listener",
-    "Lost",
     "Notice",
     "PhraseHeard",
     "PhraseListener",
     "Quiet",
-    "Restored",
     "Runtime",
     "Source",
     "SourceEnded",
@@ -54,6 +52,5 @@ __all__ = [
     "StateChanged",
     "TakeRecognized",
     "TakeRejected",
-    "Warned",
     "open_source",
 ]

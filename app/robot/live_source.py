@@ -11,7 +11,8 @@ from typing import Final, Protocol
 
 from app.recognition.errors import SourceError
 from app.recognition.estimation.base import Image
-from app.robot.source import Frame, Lost, Notice, Quiet, Restored
+from app.robot.events import SourceLost, SourceRestored
+from app.robot.source import Frame, Notice, Quiet
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
 """Seconds before a lost camera is opened again, doubled with every attempt that fails: a loose plug
@@ -163,7 +164,7 @@ class LiveSource:
 
     def _reopened(self, reason: str) -> Camera | None:
         """Open the camera again, as often as it takes; None when the source is closed meanwhile."""
-        self._tell(Lost(self._now(), reason))
+        self._tell(SourceLost(self._now(), reason))
         attempts = 0
         while not self._closing.wait(self._wait):
             self._wait = min(2 * self._wait, LONGEST_WAIT)
@@ -173,7 +174,7 @@ class LiveSource:
             except SourceError:
                 continue
             now = self._now()
-            self._tell(Restored(now, now - self._stamp, attempts))
+            self._tell(SourceRestored(now, now - self._stamp, attempts))
             self._keep(image)
             return camera
         return None
@@ -186,7 +187,7 @@ class LiveSource:
             self._newest = Frame(self._stamp, image, self._dropped)
             self._news.notify_all()
 
-    def _tell(self, notice: Lost | Restored) -> None:
+    def _tell(self, notice: SourceLost | SourceRestored) -> None:
         """Put a notice behind the frame that nobody has taken, which it would be told too late."""
         with self._news:
             if self._newest is not None:

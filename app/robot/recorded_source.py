@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from app.recognition.video import FrameSource
-from app.robot.source import Frame, Notice, Warned
+from app.robot.events import SourceWarned
+from app.robot.source import Frame, Notice
 
 
 class RecordedSource:
@@ -49,7 +50,7 @@ class RecordedSource:
             time = frame.time
             yield Frame(time, frame.image)
         for warning in self._frames.warnings:
-            yield Warned(time, warning)
+            yield SourceWarned(time, warning)
 
     def close(self) -> None:
         """Close the recording; it must not be iterated any more."""

@@ -24,7 +24,7 @@ from app.robot.events import (
     SourceWarned,
 )
 from app.robot.listener import Hearing
-from app.robot.source import Frame, Lost, Notice, Quiet, Restored, Source, Warned
+from app.robot.source import Frame, Notice, Quiet, Source
 from app.robot.spoken_language import SpokenLanguage
 
 REPORT_SECONDS: Final = 10.0
@@ -144,14 +144,14 @@ class Runtime:
 
     def _heed(self, notice: Notice) -> Iterator[Event]:
         match notice:
-            case Lost(time, reason):
-                yield SourceLost(time, reason)
+            case SourceLost(time, reason):
+                yield notice
                 yield from self._listener.abandon(time, f"the source was lost: {reason}")
-            case Restored(time, missing, attempts):
+            case SourceRestored():
                 self._estimator.reset()
-                yield SourceRestored(time, missing, attempts)
-            case Warned(time, reason):
-                yield SourceWarned(time, reason)
+                yield notice
+            case SourceWarned():
+                yield notice
             case Quiet():
                 pass
 

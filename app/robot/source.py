@@ -8,6 +8,7 @@ from datetime import datetime
 from typing import Protocol
 
 from app.recognition.estimation.base import Image
+from app.robot.events import SourceLost, SourceRestored, SourceWarned
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,60 +34,6 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class Lost:
-    """A live source gives no frames any more, and is being opened again and again.
-
-    Attributes
-    ----------
-    time
-        Seconds in the source's clock.
-    reason
-        One sentence for a person.
-
-    """
-
-    time: float
-    reason: str
-
-
-@dataclass(frozen=True)
-class Restored:
-    """A lost source gives frames again.
-
-    Attributes
-    ----------
-    time
-        Seconds in the source's clock.
-    missing
-        Seconds without a frame.
-    attempts
-        How often opening was tried.
-
-    """
-
-    time: float
-    missing: float
-    attempts: int
-
-
-@dataclass(frozen=True)
-class Warned:
-    """Something about the source that a person should know, which does not stop it.
-
-    Attributes
-    ----------
-    time
-        Seconds in the source's clock.
-    reason
-        One sentence for a person.
-
-    """
-
-    time: float
-    reason: str
-
-
-@dataclass(frozen=True)
 class Quiet:
     """Nothing came for a moment: whoever iterates may look after other things.
 
@@ -100,8 +47,8 @@ class Quiet:
     time: float
 
 
-Notice = Lost | Restored | Warned | Quiet
-"""What a source may tell between two frames."""
+Notice = SourceLost | SourceRestored | SourceWarned | Quiet
+"""What a source may tell between two frames; but for `Quiet`, the runtime tells it on."""
 
 
 class Source(Protocol):
@@ -119,7 +66,7 @@ class Source(Protocol):
     began
         When the source's clock was 0, in UTC; None for a recording, whose past nobody knows.
     frame_size
-        Width and height in pixels of the first frame; later ones may differ after a `Restored`.
+        Width and height in pixels of the first frame; after a `SourceRestored` another may come.
 
     """
 

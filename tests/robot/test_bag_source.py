@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import BagError, TopicError
+from app.robot.events import SourceWarned
 from app.robot.opening import open_source
-from app.robot.source import Frame, Warned
+from app.robot.source import Frame
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import START, Row, published_rows, raw, write_bag
 from tests.recognition.damaged_clips import picture
@@ -45,7 +46,7 @@ def test_what_is_wrong_with_it_is_told_at_the_end(tmp_path: Path) -> None:
     rows: list[Row] = [("/camera", raw(picture(i), "rgb8", 0), START + i) for i in range(2)]
     source = open_source(str(write_bag(tmp_path / "dive", rows)))
     *_, last = source
-    assert isinstance(last, Warned)
+    assert isinstance(last, SourceWarned)
     assert "when they were received" in last.reason
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import time as clock
+import threading
 from collections.abc import Iterator
 from contextlib import closing
 from datetime import datetime, timezone
 from functools import partial
 from itertools import islice
+from queue import Queue
 
+import numpy as np
 import pytest
 
 from app.recognition.errors import SourceError
-from app.robot import Frame, Lost, Notice, Quiet, Restored
+from app.recognition.estimation.base import Image
+from app.robot import Frame, Notice, Quiet, SourceLost, SourceRestored
 from app.robot.cameras import SILENT_SECONDS, NetworkStream
 from app.robot.live_source import LiveSource
 from app.robot.opening import open_source
@@ -42,16 +45,61 @@ def test_frames_of_a_stream_come_in_order_at_growing_times() -> None:
     assert seen[0].image.mean() == pytest.approx(100, abs=2)
 
 
+class CameraOnDemand:
+    """A camera whose pictures come when the test sends them; a `Camera`.
+
+    Parameters
+    ----------
+    brightness
+        Of the first picture.
+
+    """
+
+    def __init__(self, brightness: int) -> None:
+        self._pictures: Queue[int | None] = Queue()
+        self._pictures.put(brightness)
+        self._sent, self._asked_for = 1, 0
+        self._asked = threading.Condition()
+
+    def send(self, *brightness: int) -> None:
+        """Send a picture of each brightness, and wait until the source has them."""
+        for each in brightness:
+            self._pictures.put(each)
+        self._sent += len(brightness)
+        with self._asked:
+            # Who asks for another picture has put away the one before.
+            assert self._asked.wait_for(lambda: self._asked_for > self._sent, timeout=60)
+
+    def unplug(self) -> None:
+        """Send nothing more."""
+        self._pictures.put(None)
+
+    def read(self) -> Image:
+        with self._asked:
+            self._asked_for += 1
+            self._asked.notify_all()
+        brightness = self._pictures.get()
+        if brightness is None:
+            raise SourceError("unplugged")
+        return np.full((4, 6, 3), brightness, np.uint8)
+
+    def close(self) -> None:
+        pass
+
+
 def test_a_slow_reader_gets_the_newest_frame_and_the_count_of_the_others() -> None:
-    with MjpegServer() as server, closing(open_source(server.address)) as source:
+    camera = CameraOnDemand(10)
+    with closing(LiveSource("camera", lambda: camera)) as source:
         given = frames(iter(source))
         first = next(given)
-        clock.sleep(0.5)
+        camera.send(20, 30, 40, 50)
         late = next(given)
+        camera.send(60)
         following = next(given)
-    assert late.dropped >= 3
-    assert late.time - first.time > 0.3  # a queue would have given the frame after the first
-    assert following.dropped <= 1
+        camera.unplug()
+    seen = [(int(each.image.mean()), each.dropped) for each in (first, late, following)]
+    assert seen == [(10, 0), (50, 3), (60, 0)]
+    assert first.time < late.time < following.time
 
 
 def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
@@ -60,13 +108,12 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
         given = iter(source)
         before = next(frames(given))
     with closing(source):
-        lost = next(each for each in given if isinstance(each, Lost))
+        lost = next(each for each in given if isinstance(each, SourceLost))
         meanwhile = list(islice(given, 2))  # several attempts fail in this time
         with MjpegServer(server.port, brightness=200):
-            after = [each for each in islice(given, 20) if not isinstance(each, Quiet)]
+            restored, frame = islice((each for each in given if not isinstance(each, Quiet)), 2)
     assert all(isinstance(each, Quiet) for each in meanwhile)
-    restored, frame = after[:2]
-    assert isinstance(restored, Restored)
+    assert isinstance(restored, SourceRestored)
     assert isinstance(frame, Frame)
     assert before.time < lost.time < restored.time <= frame.time
     assert restored.attempts >= 1
@@ -77,11 +124,11 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
 @pytest.mark.slow
 def test_a_stream_that_falls_silent_counts_as_lost_and_is_opened_again() -> None:
     with MjpegServer(pictures=20) as server, closing(quick_to_return(server.address)) as source:
-        told = (each for each in source if isinstance(each, Lost | Restored))
+        told = (each for each in source if isinstance(each, SourceLost | SourceRestored))
         lost, restored = islice(told, 2)
-    assert isinstance(lost, Lost)
+    assert isinstance(lost, SourceLost)
     assert f"no frame for {SILENT_SECONDS:g} s" in lost.reason
-    assert isinstance(restored, Restored)
+    assert isinstance(restored, SourceRestored)
     assert restored.missing > SILENT_SECONDS
 
 
