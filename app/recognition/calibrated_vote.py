@@ -23,9 +23,10 @@ from app.recognition.motion_references import (
 from app.recognition.poses import FloatArray
 from app.recognition.recognition_result import Recognition
 from app.recognition.rejection import (
+    VIEWS,
     calibrated_confidence,
     is_rejected,
-    novelty,
+    novelty_by_view,
     novelty_weights,
     thresholds_of,
 )
@@ -192,11 +193,11 @@ class CalibratedVote:
                 self._motions.readings[row] if row >= 0 else None for row in rows[chosen].tolist()
             ),
             mirrored=chosen >= len(self._labels),
-            novelty=(factors * self._novelty(distances))[chosen],
+            novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
         )
 
-    def _novelty(self, distances: FloatArray) -> FloatArray:
-        return novelty(distances, self._thresholds, self._weights * _NOVELTY_WEIGHTS)
+    def _novelty_by_view(self, distances: FloatArray) -> FloatArray:
+        return novelty_by_view(distances, self._thresholds, self._weights * _NOVELTY_WEIGHTS)
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
@@ -208,16 +209,16 @@ class CalibratedVote:
 
         One of the scores must be finite.
         """
-        distances, scores = compared.distances, compared.scores
+        distances, scores, novelty = compared.distances, compared.scores, compared.novelty
         winner = int(scores.argmin())
         able = np.flatnonzero(np.isfinite(distances).any(axis=1)).tolist()
         nearest_by_voter = distances.argmin(axis=1)
         nearest = self._labels[winner]
         return Recognition(
-            label=None if is_rejected(float(compared.novelty[winner])) else nearest,
+            label=None if is_rejected(float(novelty[winner])) else nearest,
             nearest=nearest,
             confidence=calibrated_confidence(
-                float(compared.novelty[winner]),
+                float(novelty[winner]),
                 float(scores[winner]),
                 float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
             ),
@@ -228,7 +229,8 @@ class CalibratedVote:
             votes={VOTERS[voter]: self._labels[nearest_by_voter[voter]] for voter in able},
             weights=self.weights,
             scores=scores,
-            novelty=compared.novelty,
+            novelty=novelty,
+            novelty_by_view=dict(zip(VIEWS, compared.novelty_by_view, strict=True)),
         )
 
     def _compared(

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading
+from app.recognition.rejection import largest_novelty
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,9 +32,10 @@ class Comparison:
         The order in which each gesture's steps fit best; None where only its image is compared.
     mirrored
         ``(G,)``: whether it is the gesture's mirror image that fits best.
-    novelty
-        ``(G,)``: how much farther than its thresholds allow the query lies from each gesture, above
-        1: rejected (`rejection`); NaN for a gesture without thresholds, all of profile ``paper``.
+    novelty_by_view
+        ``(K, G)``: how much farther than its thresholds allow the query lies from each gesture, in
+        each of `rejection.VIEWS` alone; NaN where a view has no thresholds or cannot compare, all
+        of profile ``paper``.
 
     """
 
@@ -43,7 +45,7 @@ class Comparison:
     turned: FloatArray
     readings: tuple[Reading | None, ...]
     mirrored: npt.NDArray[np.bool_]
-    novelty: FloatArray
+    novelty_by_view: FloatArray
 
     @property
     def scores(self) -> FloatArray:
@@ -53,3 +55,11 @@ class Comparison:
         distance, which decides among gestures with as many votes.
         """
         return np.asarray(self.contributions.sum(axis=0) + self.turned, dtype=np.float64)
+
+    @property
+    def novelty(self) -> FloatArray:
+        """``(G,)``: the largest of the views' novelties, above 1: rejected (`rejection`).
+
+        NaN for a gesture without thresholds, all of profile ``paper``.
+        """
+        return largest_novelty(self.novelty_by_view)

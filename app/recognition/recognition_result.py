@@ -56,6 +56,10 @@ class Recognition:
         ``(G,)``: how much farther than its thresholds allow the query lies from each gesture; when
         that of `nearest` is above 1, `label` is None (`rejection`). NaN for a gesture without
         thresholds, all of profile ``paper``.
+    novelty_by_view
+        Per view's name (`rejection.VIEWS`) the novelties ``(G,)`` in that view alone, of which
+        `novelty` is the largest; NaN where the view has no thresholds or cannot compare. Empty for
+        profile ``paper``, and where an earlier version did not tell.
 
     """
 
@@ -72,6 +76,7 @@ class Recognition:
     fault: str | None = None
     scores: FloatArray = field(default_factory=lambda: np.empty(0))
     novelty: FloatArray = field(default_factory=lambda: np.empty(0))
+    novelty_by_view: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
         """Freeze private copies of the arrays; voters without told weights weigh the same."""
@@ -79,9 +84,9 @@ class Recognition:
             equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
             object.__setattr__(self, "weights", MappingProxyType(equal))
         for name in ("distances", "scores", "novelty"):
-            values = getattr(self, name).copy()
-            values.setflags(write=False)
-            object.__setattr__(self, name, values)
+            object.__setattr__(self, name, _frozen(getattr(self, name)))
+        by_view = {view: _frozen(values) for view, values in self.novelty_by_view.items()}
+        object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
 
     @property
     def counted(self) -> dict[str, str]:
@@ -120,6 +125,10 @@ class Recognition:
             fault=content.get("fault"),
             scores=np.array(content.get("scores", []), dtype=np.float64),
             novelty=np.array(content.get("novelty", []), dtype=np.float64),
+            novelty_by_view={
+                view: np.array(values, dtype=np.float64)
+                for view, values in content.get("novelty_by_view", {}).items()
+            },
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -138,7 +147,17 @@ class Recognition:
             "distances": [_finite(row) for row in self.distances.tolist()],
             "scores": _finite(self.scores.tolist()),
             "novelty": _finite(self.novelty.tolist()),
+            "novelty_by_view": {
+                view: _finite(values.tolist()) for view, values in self.novelty_by_view.items()
+            },
         }
+
+
+def _frozen(values: FloatArray) -> FloatArray:
+    """Return a copy that nobody can change."""
+    frozen = values.copy()
+    frozen.setflags(write=False)
+    return frozen
 
 
 def _finite(values: list[float]) -> list[float | None]:

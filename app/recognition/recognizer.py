@@ -17,6 +17,7 @@ from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.quality import fault
 from app.recognition.recognition_result import Recognition
+from app.recognition.rejection import VIEWS
 from app.recognition.repair import Repair, repaired
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.switches import Counting
@@ -195,7 +196,7 @@ class Recognizer:
             turned=np.zeros(count),
             readings=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
-            novelty=np.full(count, np.nan),
+            novelty_by_view=np.full((len(VIEWS), count), np.nan),
         )
 
     def _counted(self, distances: FloatArray) -> Recognition:

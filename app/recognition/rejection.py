@@ -17,7 +17,7 @@ demonstration (`calibration`) and are kept in the language file.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
@@ -59,13 +59,33 @@ def thresholds_of(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatAr
     )
 
 
-def novelty_weights(voters: Sequence[str], views: Collection[str] = VIEWS.keys()) -> FloatArray:
+def novelty_weights(voters: Sequence[str]) -> FloatArray:
     """Return what each voter counts in each of the `VIEWS`, ``(K, V)``; 0: nothing."""
-    return np.array([[VIEWS[view].get(voter, 0.0) for voter in voters] for view in views])
+    return np.array([[view.get(voter, 0.0) for voter in voters] for view in VIEWS.values()])
 
 
 def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) -> FloatArray:
     """Measure how far a query lies from each gesture, where 1 is the farthest that is accepted.
+
+    Parameters as for `novelty_by_view`.
+
+    Returns
+    -------
+    ``(G,)``: the largest of the views' novelties; NaN where no view has one.
+
+    """
+    return largest_novelty(novelty_by_view(distances, thresholds, weights))
+
+
+def largest_novelty(by_view: FloatArray) -> FloatArray:
+    """Return the largest of novelties ``(K, G)`` by view: ``(G,)``; NaN where no view has one."""
+    return np.asarray(np.fmax.reduce(by_view, axis=0))
+
+
+def novelty_by_view(
+    distances: FloatArray, thresholds: FloatArray, weights: FloatArray
+) -> FloatArray:
+    """Measure how far a query lies from each gesture in each view alone.
 
     Parameters
     ----------
@@ -76,15 +96,15 @@ def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) 
 
     Returns
     -------
-    ``(G,)``: the largest of the views' weighted means of distances over thresholds; NaN where no
-    voter has both.
+    ``(K, G)``: the weighted means of distances over thresholds; NaN where no voter has both.
 
     """
     known = np.isfinite(distances) & np.isfinite(thresholds)
     relative = np.where(known, distances, 0.0) / np.where(known, thresholds, 1.0)
     total = weights @ known
-    means = np.divide(weights @ relative, total, out=np.full_like(total, np.nan), where=total > 0)
-    return np.asarray(np.fmax.reduce(means, axis=0))
+    means: FloatArray = np.full_like(total, np.nan)
+    np.divide(weights @ relative, total, out=means, where=total > 0)
+    return means
 
 
 def is_rejected(novelty: float) -> bool:

@@ -14,19 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.recognition.errors import PoseError, RecognitionError
-from app.recognition.gesture import Gesture
 from app.recognition.jumps import body_unit
 from app.recognition.landmarks import other_side
 from app.recognition.movement import followed_landmarks
 from app.recognition.poses import PoseSequence, joined
 from app.recognition.recognition_result import Recognition
 from app.recognition.recognizer import Recognizer
-from app.recognition.rejection import (
-    calibrated_confidence,
-    novelty,
-    novelty_weights,
-    thresholds_of,
-)
+from app.recognition.rejection import calibrated_confidence
 from app.recognition.salience import MIN_DISPLACEMENT, displacements
 from app.recognition.trajectory import Trajectory
 from app.recognition.transit import GRID_STEP, Motion, Span, motion_along, pieces_of
@@ -288,7 +282,7 @@ class Spotter:
         if result.label is None or result.confidence < self._confident:
             return False
         gesture = self._recognizer.language.gesture(result.label)
-        if gesture.trajectory is None or _familiarity(result, gesture) < FAMILIAR:
+        if gesture.trajectory is None or _familiarity(result) < FAMILIAR:
             return False
         usual = float(gesture.trajectory.time[-1])
         if not FASTER * usual <= spotted.end - spotted.start <= SLOWER * usual:
@@ -330,14 +324,8 @@ def strokes_in(motion: Motion) -> list[Span]:
     ]
 
 
-def _familiarity(result: Recognition, gesture: Gesture) -> float:
+def _familiarity(result: Recognition) -> float:
     """Return the confidence that the nearest gesture was shown rather than none."""
-    at = result.gestures.index(gesture.label)
-    thresholds = thresholds_of([gesture], result.voters)
-    asked, every = (
-        float(novelty(result.distances[:, [at]], thresholds, weights)[0])
-        for weights in (novelty_weights(result.voters, ASKED), novelty_weights(result.voters))
-    )
-    # What the reading costs is part of the novelty told, and of neither of these.
-    cost = result.novelty[at] / every if every > 0 else 1.0
-    return calibrated_confidence(cost * asked, result.scores[at], np.inf)
+    at = result.gestures.index(result.nearest)
+    asked = np.fmax.reduce([result.novelty_by_view[view][at] for view in ASKED])
+    return calibrated_confidence(float(asked), float(result.scores[at]), np.inf)

@@ -21,6 +21,7 @@ def result(label: str | None = "circle") -> Recognition:
         votes={"hu": "circle", "zernike": "circle"},
         scores=np.array([0.4, np.inf]),
         novelty=np.array([0.2, np.nan]),
+        novelty_by_view={"figure": np.array([0.2, np.nan]), "wrist": np.array([0.1, np.nan])},
     )
 
 
@@ -40,6 +41,7 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
         "distances": [[0.5, 2.0], [0.1, None]],
         "scores": [0.4, None],
         "novelty": [0.2, None],
+        "novelty_by_view": {"figure": [0.2, None], "wrist": [0.1, None]},
     }
 
 

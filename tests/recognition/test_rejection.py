@@ -15,6 +15,7 @@ from app.recognition.rejection import (
     novelty_weights,
     thresholds_of,
 )
+from app.recognition.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, line, recording
 
 TAUGHT = ("circle", "wedge", "infinity", "square")
@@ -52,6 +53,23 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
     result = Recognizer(recognizer.language, "paper").recognize(recording(zigzag))
     assert result.label == result.nearest
     assert np.isnan(result.novelty).all()
+
+
+def test_novelty_is_the_largest_of_what_each_view_tells(recognizer: Recognizer) -> None:
+    result = recognizer.recognize(recording(zigzag, jitter=0.01))
+    assert result.novelty_by_view.keys() == VIEWS.keys()
+    each = [*result.novelty_by_view.values()]
+    np.testing.assert_array_equal(result.novelty, np.fmax.reduce(each))
+
+
+def test_a_view_whose_voters_are_off_tells_nothing(recognizer: Recognizer) -> None:
+    off = Tuning(weights=dict.fromkeys(VIEWS["length"], 0.0))
+    query = recording(circle, frames=95, jitter=0.01)
+    before = recognizer.recognize(query).novelty_by_view
+    after = Recognizer(recognizer.language, tuning=off).recognize(query).novelty_by_view
+    assert np.isfinite(before["length"]).all()
+    assert np.isnan(after["length"]).all()
+    np.testing.assert_array_equal(after["figure"], before["figure"])
 
 
 def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_thresholds() -> None:
