@@ -82,11 +82,17 @@ function stage(upload) {
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
 }
 
-function draw(upload) {
+/** Draw an upload. Its bar moves on in place: a button must not be replaced under the pointer. */
+function draw(upload, element) {
   const failed = upload.status === "failed";
   const { key } = upload;
+  if (!failed && element?.dataset.status === upload.status) {
+    element.querySelector(".stage-text").textContent = stage(upload);
+    element.querySelector("progress").value = upload.loaded;
+    return element;
+  }
   const stop = () => (upload.status === "uploading" ? upload.cancel() : forget(key));
-  return h("li", { className: `clip${failed ? " failed" : ""}` },
+  return h("li", { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
     h("div", { className: "poster blank" }, icon("plus")),
     h("div", { className: "clip-text" },
       h("b", {}, upload.file.name),

@@ -7,8 +7,7 @@ import { listenToKeys } from "./keys.js";
 import { state } from "./state.js";
 import { complain } from "./toasts.js";
 
-const KEY = "osg-studio.workspace"; // sessionStorage: every tab is its own workspace.
-const ANSWER_LIMIT = 150; // ms. Tabs of one browser answer within a few.
+const KEY = "osg-studio.workspace"; // sessionStorage, over a reload: every tab is its own workspace.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.
 
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");
@@ -16,39 +15,21 @@ let opened = null; // promise of the workspace's id
 let wanted = null; // the view to show
 let shown = Promise.resolve();
 
-// A duplicated tab starts with a copy of the first one's sessionStorage: tabs ask each other.
-const tabs = new BroadcastChannel(KEY);
-let mine = null;
-tabs.addEventListener("message", ({ data }) => {
-  if (data.asked && data.asked === mine) tabs.postMessage({ held: mine });
-});
+// A duplicated tab begins with a copy of the first one's sessionStorage. So the workspace's id lies
+// there only while no page is there to hold it, and the copy has none.
+let mine = sessionStorage.getItem(KEY);
+sessionStorage.removeItem(KEY);
+addEventListener("pagehide", () => { if (mine) sessionStorage.setItem(KEY, mine); });
+addEventListener("pageshow", ({ persisted }) => { if (persisted) sessionStorage.removeItem(KEY); });
 
-function heldByAnotherTab(id) {
-  return new Promise((resolve) => {
-    const settle = (held) => {
-      clearTimeout(unanswered);
-      tabs.removeEventListener("message", hear);
-      resolve(held);
-    };
-    const hear = ({ data }) => { if (data.held === id) settle(true); };
-    const unanswered = setTimeout(() => settle(false), ANSWER_LIMIT);
-    tabs.addEventListener("message", hear);
-    tabs.postMessage({ asked: id });
-  });
-}
-
-async function remembered() {
-  const id = sessionStorage.getItem(KEY);
-  if (id && id !== mine && await heldByAnotherTab(id)) return null;
-  return id ? api.workspaces.find(id).catch((error) => { if (error.status === 404) return null; throw error; }) : null;
-}
+/** The workspace of this tab, where the server still knows it. */
+const remembered = async () => (mine ? api.workspaces.find(mine).catch((error) => { if (error.status === 404) return null; throw error; }) : null);
 
 async function open() {
   let workspace = await remembered();
   if (workspace) await api.workspaces.change(workspace.id, prefersDark.matches);
   else workspace = await api.workspaces.open(prefersDark.matches);
   mine = workspace.id;
-  sessionStorage.setItem(KEY, mine);
   followClock(mine);
   loadFrame(workspace.url);
   return workspace.id;

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import random
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
@@ -23,6 +25,19 @@ port = int(sys.argv[2]) if len(sys.argv) > 2 else 0
 run(Settings(data_dir=data, samples_dir=data / "none", port=port), open_browser=False)
 """
 """Serves a folder, on a free port unless one is told."""
+
+
+UNASSIGNED = range(20_000, 30_000)
+"""Ports that no system hands out by itself: Linux does from 32768 on, the others from 49152 on."""
+
+
+def lasting_port() -> int:
+    """Return a free port that nobody takes while a server is killed and started again."""
+    while True:
+        port = random.choice(UNASSIGNED)
+        with socket.socket() as tried, suppress(OSError):
+            tried.bind(("127.0.0.1", port))
+            return port
 
 
 @contextmanager

@@ -25,8 +25,8 @@ from tests.recognition.strategies import circle, line, square, wedge
 
 pytestmark = [pytest.mark.slow, linux]
 
-STOP_SECONDS = 10
-"""What a service manager waits for after SIGTERM, at the least."""
+STOP_SECONDS = 90
+"""What systemd waits for after SIGTERM; alone on a machine it takes one or two."""
 
 
 def working_on(clip: Path, process: subprocess.Popen[str], client: httpx.Client) -> tuple[str, int]:
@@ -75,7 +75,7 @@ def test_sigterm_ends_server_and_workers_soon_and_the_job_waits(tmp_path: Path) 
             next(stream.iter_lines())
             process.send_signal(signal.SIGTERM)
             process.wait(STOP_SECONDS)
-        assert not alive(worker)
+        until(lambda: not alive(worker))
     with served(data) as (process, client):
         until(finished(client, job_id))
 

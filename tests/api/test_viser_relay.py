@@ -31,8 +31,9 @@ async def first_message(url: str, origin: str | None) -> tuple[str | None, bytes
         subprotocols=[PROTOCOL],
         max_size=None,
         proxy=None,
+        open_timeout=60,
     ) as connection:
-        message = await asyncio.wait_for(connection.recv(), 20)
+        message = await asyncio.wait_for(connection.recv(), 60)
         return connection.subprotocol, message if isinstance(message, bytes) else message.encode()
 
 
@@ -71,12 +72,12 @@ def test_closing_the_workspace_closes_its_websocket(
     async def outlive() -> None:
         url = socket_of(server, workspace_id)
         async with websockets.connect(
-            url, subprotocols=[PROTOCOL], max_size=None, proxy=None
+            url, subprotocols=[PROTOCOL], max_size=None, proxy=None, open_timeout=60
         ) as connection:
-            await asyncio.wait_for(connection.recv(), 20)
+            await asyncio.wait_for(connection.recv(), 60)
             await asyncio.to_thread(client.delete, f"/api/v1/workspaces/{workspace_id}")
             while True:
-                await asyncio.wait_for(connection.recv(), 20)
+                await asyncio.wait_for(connection.recv(), 60)
 
     with pytest.raises(ConnectionClosed):
         asyncio.run(outlive())

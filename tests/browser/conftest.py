@@ -25,7 +25,7 @@ WEBGL = (
 )
 """Lets Chromium draw WebGL in software, also as root in a container."""
 
-PATIENCE_MS = 30_000
+PATIENCE_MS = 90_000
 """Longest wait for what must appear; a loaded machine is slow, a broken page never gets there."""
 
 IMAGES = ROOT / "docs" / "images"
@@ -49,7 +49,9 @@ def browser() -> Iterator[Browser]:
         pytest.skip("needs Chromium: apt-get install chromium")
     expect.set_options(timeout=PATIENCE_MS)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=executable, args=list(WEBGL))
+        browser = playwright.chromium.launch(
+            executable_path=executable, args=list(WEBGL), timeout=PATIENCE_MS
+        )
         yield browser
         browser.close()
 

@@ -32,7 +32,7 @@ from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 
-EXTRACTION_MS = 240_000
+EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of seven seconds on a loaded machine."""
 
 

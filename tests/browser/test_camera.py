@@ -10,7 +10,8 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 from tests.api.running import Running
-from tests.browser.conftest import WEBGL, OpenPage
+from tests.browser.camera import see_seconds
+from tests.browser.conftest import PATIENCE_MS, WEBGL, OpenPage
 
 pytestmark = pytest.mark.slow
 
@@ -20,7 +21,9 @@ def browser(browser: Browser) -> Iterator[Browser]:
     """Start a second Chromium, with a camera that a page must be allowed."""
     executable = shutil.which("chromium") or shutil.which("chromium-browser")
     args = [*WEBGL, "--use-fake-device-for-media-stream"]
-    started = browser.browser_type.launch(executable_path=executable, args=args)
+    started = browser.browser_type.launch(
+        executable_path=executable, args=args, timeout=PATIENCE_MS
+    )
     yield started
     started.close()
 
@@ -40,8 +43,7 @@ def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(
     expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
     page.keyboard.press("r")
     expect(page.get_by_role("button", name="Stop recording")).to_be_visible()
-    # What the browser keeps for the recorder, at the latest after a second.
-    page.wait_for_timeout(1500)
+    see_seconds(page, 1.5)
 
     page.context.clear_permissions()
     expect(problem).to_contain_text("The camera was lost")

@@ -97,7 +97,7 @@ def test_the_keyboard_reaches_every_command_of_a_card(
     page.keyboard.press("Enter")
     for text in ("Rename\u2026", "Duplicate", "History", "Export", "Delete"):
         page.keyboard.press("ArrowDown")
-        assert page.evaluate("document.activeElement.textContent") == text
+        expect(page.locator(":focus")).to_have_text(text)
     page.keyboard.press("Escape")
     expect(card(page, name).get_by_text("Duplicate")).to_be_hidden()
     page.keyboard.press("Enter")

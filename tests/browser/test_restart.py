@@ -14,7 +14,7 @@ from playwright.sync_api import Page, expect
 
 from app.settings import Settings
 from tests.api.running import running, until
-from tests.api.serving import served
+from tests.api.serving import lasting_port, served
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import library_of
@@ -78,23 +78,25 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
     open_page: OpenPage, server: Address, tmp_path: Path
 ) -> None:
     clip = padded(tmp_path / "long dive.mp4", 10_000_000)
-    data = tmp_path / "data"
-    with served(data) as (process, client):
+    data, port = tmp_path / "data", lasting_port()
+    with served(data, port=port) as (process, client):
         server.address = str(client.base_url).rstrip("/")
         page = open_page(scene=False)
         expect(page.get_by_text("Connected", exact=True)).to_be_visible()
         network = page.context.new_cdp_session(page)
         slow = {"offline": False, "latency": 0, "downloadThroughput": -1}
-        network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": 2_000_000})
+        network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": 500_000})
         drop(page, clip)
         uploads = page.get_by_role("list", name="Uploads")
         until(lambda: sum(path.stat().st_size for path in data.glob("uploads/*")) > 500_000)
         process.kill()
         expect(uploads).to_contain_text("goes on by itself")
     came = max(path.stat().st_size for path in data.glob("uploads/*"))
-    with served(data, port=client.base_url.port or 0) as (_, client):
+    network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
+    with ExitStack() as stack:
+        # The page may go on before this process hears that the server is there.
         with page.expect_request(lambda request: request.method == "PATCH") as going_on:
-            network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
+            _, client = stack.enter_context(served(data, port=port))
         assert int(going_on.value.headers["upload-offset"]) == came
         expect(page.get_by_role("button", name="Show long dive.mp4")).to_be_visible()
         expect(uploads.get_by_role("listitem")).to_have_count(0)
@@ -105,7 +107,8 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
 def test_every_view_survives_a_server_that_is_killed(
     open_page: OpenPage, server: Address, query: dict[str, str], tmp_path: Path
 ) -> None:
-    with served(tmp_path) as (process, client):
+    port = lasting_port()
+    with served(tmp_path, port=port) as (process, client):
         server.address = str(client.base_url).rstrip("/")
         pages = opened(open_page, query)
         process.kill()
@@ -114,8 +117,7 @@ def test_every_view_survives_a_server_that_is_killed(
             expect(page.get_by_role("status").get_by_text("Reconnecting")).to_be_visible()
     with ExitStack() as stack:
         with pages["studio"].expect_response(re.compile("/workspaces/.+/view")):
-            again = served(tmp_path, port=client.base_url.port or 0)
-            _, client = stack.enter_context(again)
+            _, client = stack.enter_context(served(tmp_path, port=port))
         for page in pages.values():
             expect(page.get_by_text("Connected", exact=True)).to_be_visible()
             expect(page.locator("#away")).to_be_hidden()

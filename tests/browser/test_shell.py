@@ -9,6 +9,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.api.recordings import recording_of
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
@@ -65,6 +66,7 @@ def test_undo_does_not_take_back_what_another_tab_did(
     card = elsewhere.get_by_role("list", name="Gestures").get_by_role("listitem")
     card.hover()
     card.get_by_role("button", name="Change circle", exact=True).click()
+    expect(elsewhere.get_by_label("Label")).to_have_value("circle")
     elsewhere.get_by_label("Label").fill("round")
     elsewhere.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
@@ -84,6 +86,9 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     ).to_be_visible()
     drawn = why.get_by_role("figure").filter(has_text="lineexpected")
     beside = drawn.get_by_text(re.compile(r"s of line: [\d.]+ %"))
+    # A key means something once the workspace shows the clip.
+    frames = len(recording_of("circle").poses)
+    expect(page.locator("#clock")).to_have_text(re.compile(f" of {frames}$"))
     before = beside.inner_text()
     page.keyboard.press("Shift+.")
     expect(beside).not_to_have_text(before)

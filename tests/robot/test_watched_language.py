@@ -13,7 +13,7 @@ from app.robot import SpokenLanguage
 from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
 from tests.robot.languages import language_of, spoken
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 """Seconds until a test gives up; what is awaited comes within two looks at the file."""
 
 

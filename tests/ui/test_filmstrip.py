@@ -13,7 +13,7 @@ from app.ui import filmstrip as module
 from app.ui.filmstrip import Filmstrip
 from tests.recognition.damaged_clips import write_clip
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 """Seconds that decoding a handful of frames may take on a loaded machine."""
 
 

@@ -50,7 +50,7 @@ def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> 
         url = f"ws://127.0.0.1:{server.get_port()}"
         with connect(url, subprotocols=[PROTOCOL], proxy=None) as client:
             client.send(request)
-            assert refused.wait(20)
+            assert refused.wait(60)
     finally:
         server.stop()
     assert tunnels == []

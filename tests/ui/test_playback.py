@@ -20,7 +20,7 @@ class Screen:
         self.gate.set()
 
     def draw(self, frame: int) -> None:
-        assert self.gate.wait(20)
+        assert self.gate.wait(60)
         self.drawn.append(frame)
 
 

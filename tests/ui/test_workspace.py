@@ -45,11 +45,11 @@ def test_a_range_without_frames_is_refused_with_its_seconds(tmp_path: Path) -> N
 
 
 def test_its_server_listens_on_loopback_only(workspace: Workspace) -> None:
-    with socket.create_connection(("127.0.0.1", workspace.port), timeout=5):
+    with socket.create_connection(("127.0.0.1", workspace.port), timeout=60):
         pass
     # Another address of this machine: a server on all addresses would answer here.
     with pytest.raises(ConnectionRefusedError):
-        socket.create_connection(("127.0.0.2", workspace.port), timeout=5)
+        socket.create_connection(("127.0.0.2", workspace.port), timeout=60)
 
 
 def test_showing_a_view_stands_where_past_and_future_are_seen(

@@ -11,6 +11,7 @@ import { confusionGrid } from "./grid.js";
 import { pairName, pairOf } from "./links.js";
 
 const REFUSED = "refused";
+const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.
 
 const labels = () => state.gestures?.labels ?? [];
 const readAs = ({ label }) => label ?? REFUSED;
@@ -29,19 +30,41 @@ function labelSelect(name, value, onchange) {
   return select;
 }
 
+const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded);
+
+/** What is not in the test yet, as `{ key, text, total, done }`: how far each is. */
+function advances() {
+  const uploads = uploadsHere().map(({ key, status, error, total, loaded }) => (
+    { key: `upload ${key}`, text: status === "failed" ? error : status === "waiting" ? "Waiting for the other uploads" : "Uploading", total: Math.max(1, total), done: loaded }));
+  const clips = waitingClips().map(({ clip, expected }) => {
+    const job = state.jobs.get(clip.job_id);
+    return { key: clip.id, text: clip.status === "done" ? (expected ? "Recognising" : "What does it show?") : statusText(clip, job), total: job?.total, done: job?.done };
+  });
+  return [...uploads, ...clips];
+}
+
+/** Move texts and bars on in the rows that are there: what is just being pressed stays where it is. */
+function advance(content) {
+  const rows = new Map([...content.querySelectorAll("tr.waiting")].map((row) => [row.dataset.key, row]));
+  for (const { key, text, total, done } of advances()) {
+    const row = rows.get(key);
+    if (!row) continue;
+    row.querySelector(".stage-text").textContent = text;
+    const bar = row.querySelector("progress");
+    if (bar && total) Object.assign(bar, { max: total, value: done });
+  }
+}
+
 function waitingRow({ clip, expected, busy }) {
-  const job = state.jobs.get(clip.job_id);
-  const text = clip.status === "done" ? (expected ? "Recognising" : "What does it show?") : statusText(clip, job);
-  return h("tr", { className: "waiting" },
+  return h("tr", { className: "waiting", "data-key": clip.id },
     h("td", {}, clip.name), h("td", {}, labelSelect(clip.name, expected, (label) => means(clip.id, label))),
-    h("td", { colSpan: 2 }, h("span", { className: "stage-text" }, text), busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...(job?.total ? { max: job.total, value: job.done } : {}) }) : null),
+    h("td", { colSpan: 2 }, h("span", { className: "stage-text" }), busy ? h("progress", { "aria-label": `Poses of ${clip.name}` }) : null),
     h("td", {}, iconButton("close", `Leave ${clip.name} out of the test`, () => forget(clip.id))));
 }
 
-function uploadRow({ file, status, loaded, total, error, cancel }) {
-  const text = status === "failed" ? error : status === "waiting" ? "Waiting for the other uploads" : "Uploading";
-  return h("tr", { className: "waiting" }, h("td", {}, file.name), h("td", {}),
-    h("td", { colSpan: 2 }, h("span", { className: "stage-text" }, text), status === "failed" ? null : h("progress", { max: Math.max(1, total), value: loaded, "aria-label": `Upload of ${file.name}` })),
+function uploadRow({ key, file, status, cancel }) {
+  return h("tr", { className: "waiting", "data-key": `upload ${key}` }, h("td", {}, file.name), h("td", {}),
+    h("td", { colSpan: 2 }, h("span", { className: "stage-text" }), status === "failed" ? null : h("progress", { "aria-label": `Upload of ${file.name}` })),
     h("td", {}, status === "uploading" ? iconButton("close", `Cancel ${file.name}`, cancel) : null));
 }
 
@@ -85,7 +108,7 @@ function matrix(takes) {
 function download(takes) {
   const url = URL.createObjectURL(new Blob([csvOf(takes)], { type: "text/csv" }));
   h("a", { href: url, download: `${state.gestures.name} test.csv` }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 0);
+  setTimeout(() => URL.revokeObjectURL(url), SAVED_BY);
 }
 
 function summary(takes) {
@@ -117,17 +140,23 @@ function list(takes, uploads) {
 /** Make the section, and keep it in step. */
 export function batchSection() {
   const content = h("div", { className: "test-content" });
+  const stages = () => uploadsHere().map(({ key, status }) => `${key} ${status}`).join();
+  let drawn = "";
   const draw = () => {
     if (content.contains(document.activeElement) && document.activeElement.matches("select")) document.activeElement.blur();
     const takes = testedOf(state.tested, state.clips);
-    const uploads = state.uploads.filter(({ uploaded }) => uploaded);
+    const uploads = uploadsHere();
     const empty = !takes.length && !waitingClips().length && !uploads.length;
     content.replaceChildren(...(empty || !state.gestures ? [] : [...(takes.length ? [summary(takes), matrix(takes)] : []), ...list(takes, uploads).filter(Boolean)]));
+    drawn = stages();
+    advance(content);
   };
   takeFilesIn("health", addTestClips);
   follow(["language", "recognised"], loadTested);
   follow(["pending", "clips", "gestures"], workOff);
-  follow(["tested", "pending", "clips", "jobs", "uploads", "gestures", "cell"], draw);
+  follow(["tested", "pending", "clips", "gestures", "cell"], draw);
+  // Progress comes many times a second.
+  follow(["jobs", "uploads"], () => { if (stages() === drawn) advance(content); else draw(); });
   return h("section", { className: "health-section", "aria-labelledby": "test-title" },
     h("div", { className: "section-head" }, h("h2", { id: "test-title" }, "Test with clips"), h("p", { className: "dim" }, "Clips whose gesture you know, by other divers if you can: what is predicted above is measured here. A cell opens its clips.")),
     drop(), content);

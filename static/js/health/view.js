@@ -27,18 +27,26 @@ function verdict({ ok, warnings }) {
     h("span", { className: "mark", "aria-hidden": "true" }, ok ? "\u2713" : "!"), h("b", {}, text), notes ? h("span", { className: "dim" }, plural(notes, "note")) : null);
 }
 
-/** How far the check is, while there is one; what to do when it was cancelled or failed. */
-function progress({ health, checking }) {
+/** What stands above the report while there is a check, or when it was cancelled or failed. */
+function progress({ health }) {
   if (!isCurrent(health) || health.status === "done") return null;
   const again = h("button", { type: "button", className: "primary", onclick: check }, "Check again");
   if (health.status === "cancelled") return h("div", { className: "checking" }, h("p", {}, h("b", {}, "The check was cancelled."), " What is shown below, if anything, is of an older revision."), again);
   if (health.status === "failed") return h("div", { className: "checking", role: "alert" }, h("p", {}, h("b", {}, "The check failed. "), health.error), again);
-  const mine = checking?.id === health.id && checking.revision === health.revision ? checking : null;
-  const words = mine ? `${STAGES[mine.stage] ?? mine.stage}, ${mine.total ? `${mine.done} of ${mine.total}` : `${mine.done} so far`}` : "Beginning";
   return h("div", { className: "checking" },
-    h("p", {}, h("b", {}, `Checking revision ${health.revision}`), h("span", { className: "dim num" }, words)),
-    h("progress", { "aria-label": "Progress of the check", ...(mine?.total ? { max: mine.total, value: mine.done } : {}) }),
+    h("p", {}, h("b", {}, `Checking revision ${health.revision}`), h("span", { className: "dim num" }, "Beginning")),
+    h("progress", { "aria-label": "Progress of the check" }),
     h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"));
+}
+
+/** Say how far the check is; the button beside it stays where it is, since it may just be pressed. */
+function advance(bar, { health, checking }) {
+  const running = bar.querySelector("progress");
+  if (!running || checking?.id !== health.id || checking.revision !== health.revision) return;
+  const { stage, done, total } = checking;
+  bar.querySelector(".num").textContent = `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
+  if (total) Object.assign(running, { max: total, value: done });
+  else running.removeAttribute("value");
 }
 
 function matrix(report) {
@@ -102,6 +110,7 @@ function overview() {
     about.textContent = report ? `Revision ${health.shown}, for another diver than the demonstrator, ${report.takes} rehearsed takes of each gesture` : "";
     says.replaceChildren(...(report && isCurrent(health) && health.status === "done" ? [verdict(report)] : []));
     bar.replaceChildren(...[gestures?.gestures.length ? progress(state) : null].filter(Boolean));
+    advance(bar, state);
   };
   let drawn = null;
   const draw = () => {
@@ -113,7 +122,8 @@ function overview() {
     drawn = now;
     body.replaceChildren(...(now === "nothing" ? [nothing()] : report ? drawReport(report) : []));
   };
-  follow(["gestures", "health", "checking"], head);
+  follow(["gestures", "health"], head);
+  follow(["checking"], () => advance(bar, state));
   follow(["gestures", "health", "loaded"], draw);
   return h("div", { className: "health-page" }, h("div", { className: "health-head" }, h("div", {}, name, about), says), bar, body, batchSection());
 }

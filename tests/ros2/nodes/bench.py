@@ -14,7 +14,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 from osg_ros.managed_node import ManagedNode
 
-PATIENCE = 60.0
+PATIENCE = 180.0
 """Seconds to wait for what must come; only a failing test takes so long."""
 
 RELIABLE = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)

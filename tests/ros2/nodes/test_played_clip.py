@@ -22,7 +22,7 @@ from app.recognition.video import read_frames
 from osg_ros.pictures import picture_message
 from osg_ros.stamps import nanoseconds_of, stamp_of
 from tests.ros2 import workspace
-from tests.ros2.nodes.bench import BEST_EFFORT, RELIABLE, Bench
+from tests.ros2.nodes.bench import BEST_EFFORT, PATIENCE, RELIABLE, Bench
 from tests.ros2.nodes.keypoint_messages import stamped
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("installed_models")]
@@ -91,7 +91,7 @@ def process(executable: str, environment: dict[str, str], parameters: Path) -> I
         yield
     finally:
         running.terminate()
-        assert running.wait(timeout=60) == 0
+        assert running.wait(timeout=PATIENCE) == 0
 
 
 @pytest.mark.parametrize("executables", [TOGETHER, SEPARATE], ids=["one process", "three"])
@@ -138,7 +138,7 @@ def test_the_robot_command_tells_ros_what_it_writes(
         text=True,
     )
     bench.wait(lambda: bool(said), "recognition")
-    written = [json.loads(line) for line in running.communicate(timeout=60)[0].splitlines()]
+    written = [json.loads(line) for line in running.communicate(timeout=PATIENCE)[0].splitlines()]
     assert running.returncode == 0
     (line,) = [line for line in written if line["event"] == "take_recognized"]
     (message,), (take,) = said, recognised
