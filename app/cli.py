@@ -45,6 +45,7 @@ from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.spotting import Spotter
 from app.robot_command import robot
+from app.ros_arguments import apart
 from app.session_file import named_recognitions, save_session
 from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
@@ -345,7 +346,10 @@ def take_report(
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and exit with its code; known errors become one line on stderr."""
     try:
-        command_line(args=arguments, prog_name="osg-studio")
+        given = sys.argv[1:] if arguments is None else arguments
+        # Every other command refuses ROS arguments as it does all that it does not know.
+        own, ros = apart(given) if given[:1] == ["robot"] else (given, [])
+        command_line(args=own, prog_name="osg-studio", obj=ros)
     except (RecognitionError, OSError) as error:
         sys.stderr.write(f"osg-studio: {describe(error)}\n")
         sys.exit(BAD_INPUT)

@@ -23,17 +23,13 @@ from app.recognition.estimation.base import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recognizer import PROFILES
-from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import (
     Event,
     Hearing,
-    Listener,
-    PhraseListener,
     Runtime,
     Source,
-    SpokenLanguage,
-    SpottingListener,
     TakeRecognized,
+    hearing_of,
     open_source,
 )
 from app.robot.messages import line_of
@@ -41,6 +37,7 @@ from app.robot.publishing import Network, open_publisher
 from app.robot.runtime import Observer
 from app.robot.watched_language import WatchedLanguage
 from app.robot_text import sentence_of
+from app.ros_arguments import BEGIN
 from app.terminal import people
 
 NOTHING_RECOGNISED = 1
@@ -48,6 +45,7 @@ NOTHING_RECOGNISED = 1
 
 
 def robot(
+    context: typer.Context,
     language: Annotated[Path, typer.Option(help="Language file; read again when it changes.")],
     source: Annotated[
         str,
@@ -63,7 +61,11 @@ def robot(
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
     ros2: Annotated[
-        bool, typer.Option("--ros2", help="Also publish to ROS 2; needs the packages in ros2/.")
+        bool,
+        typer.Option(
+            "--ros2",
+            help="Also publish to ROS 2, which takes --ros-args; needs the packages in ros2/.",
+        ),
     ] = False,
     publish: Annotated[
         Network | None,
@@ -79,6 +81,8 @@ def robot(
     A clip ends by itself, with exit code 1 when nothing was recognised in it; a camera is
     listened to until Ctrl-C or SIGTERM. SIGHUP reads the language file again.
     """
+    if context.obj and not ros2:
+        raise typer.BadParameter(f"{BEGIN} is for ROS 2: give --ros2 as well", context)
     with ExitStack() as opened:
         spoken = opened.enter_context(WatchedLanguage(language, profile))
         listener = hearing_of(spoken.first, without_salutes=without_salutes)
@@ -98,7 +102,7 @@ def robot(
         if ros2:
             from app.ros2_topics import ros2_topics
 
-            topics = opened.enter_context(ros2_topics())
+            topics = opened.enter_context(ros2_topics(context.obj))
             heard.append(lambda event: topics.hear(event, listener.language))
             observer = topics.look
         if publish:
@@ -110,13 +114,6 @@ def robot(
             recognised = told(runtime, heard)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
-
-
-def hearing_of(language: SpokenLanguage, *, without_salutes: bool) -> PhraseListener:
-    """Return what hears a language's gestures and phrases."""
-    if without_salutes:
-        return PhraseListener(SpottingListener(language), lag=LONGEST_MEMORY)
-    return PhraseListener(Listener(language))
 
 
 def told(events: Iterable[Event], listeners: Sequence[Callable[[Event], None]]) -> int:

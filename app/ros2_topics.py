@@ -5,6 +5,7 @@ The nodes and their messages are ROS packages (`ros2/`), which pip does not inst
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
@@ -25,8 +26,13 @@ class Topics(Protocol):
         ...
 
 
-def ros2_topics() -> AbstractContextManager[Topics]:
+def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
     """Return what publishes as a node of ROS 2 while it is entered.
+
+    Parameters
+    ----------
+    arguments
+        ROS 2's own, from ``--ros-args`` on: remapped names, parameters, the level of the log.
 
     Raises
     ------
@@ -41,4 +47,4 @@ def ros2_topics() -> AbstractContextManager[Topics]:
             f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "
             "build them with colcon and source the workspace in this shell"
         ) from error
-    return published()
+    return published(arguments)

@@ -20,6 +20,7 @@ from typer.main import get_command
 from app.cli import command_line
 from app.robot.messages import published_schema
 from app.robot.stage_profile import STAGES
+from app.ros_arguments import apart
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
@@ -29,7 +30,7 @@ from tests.test_layers import modules_of, requirements_of
 
 SHELL = re.findall(r"```sh\n(.*?)```", (ROOT / "docs" / "robots.md").read_text("utf-8"), re.DOTALL)
 DOCUMENTED = [
-    shlex.split(line)[1:]
+    apart(shlex.split(line)[1:])[0]
     for block in SHELL
     for line in block.splitlines()
     if line.startswith("osg-studio ")

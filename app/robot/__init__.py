@@ -20,6 +20,7 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
+from app.robot.hearing import hearing_of
 from app.robot.listener import Hearing, Listener
 from app.robot.opening import open_source
 from app.robot.phrase_listener import PhraseListener
@@ -52,5 +53,6 @@ __all__ = [
     "StateChanged",
     "TakeRecognized",
     "TakeRejected",
+    "hearing_of",
     "open_source",
 ]

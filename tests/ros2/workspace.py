@@ -22,6 +22,9 @@ MESSAGE_PACKAGES = (
     OTHERS / "vision_msgs",
 )
 NODES = PACKAGES / "osg_ros"
+CHECKED = {"ROS_PYTHON_CHECK_FIELDS": "1"}
+"""Lets messages refuse values of another type; Humble's always do, newer ones only if asked."""
+
 KEPT = ROOT / ".pytest_cache" / "ros2"
 """What was built is kept until a definition changes."""
 
@@ -38,7 +41,8 @@ def missing() -> str | None:
 
 
 def source() -> None:
-    """Build what is not built yet, and let this process import it."""
+    """Build what is not built yet, and let this process import it, before any message."""
+    os.environ.update(CHECKED)
     for place in paths():
         if str(place) not in sys.path:
             sys.path.insert(0, str(place))
@@ -55,6 +59,7 @@ def environment(domain: int) -> dict[str, str]:
     places = [*map(str, paths()), str(ROOT), *([kept] if kept else [])]
     return {
         **os.environ,
+        **CHECKED,
         "PYTHONPATH": os.pathsep.join(places),
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",

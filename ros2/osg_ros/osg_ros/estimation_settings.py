@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, get_args
 
 from app.recognition.estimation import Provider
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from osg_ros.settings import Setting
 
@@ -19,4 +20,14 @@ THREADS: Final = Setting(
 )
 PROVIDER: Final = Setting(
     "provider", "cpu", "Where ONNX Runtime runs the models.", choices=get_args(Provider)
+)
+ESTIMATOR: Final = Setting(
+    "estimator",
+    "onnx",
+    "Finds the body: onnx, mediapipe, or yolo-pose:FILE.onnx, an Ultralytics export.",
+)
+HANDS: Final = Setting(
+    "hands",
+    MEDIAPIPE_HANDS,
+    "Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
 )

@@ -11,12 +11,20 @@ from typing import Any
 
 from std_msgs.msg import Header
 
-from app.recognition.estimation import FrameLandmarks, PoseEstimator, create_estimator
-from app.robot import Event, Frame, SpokenLanguage
-from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
+from app.recognition.errors import EstimatorError
+from app.recognition.estimation import (
+    FrameLandmarks,
+    PoseEstimator,
+    create_estimator,
+    finds_hands,
+    landmarks_of,
+)
+from app.recognition.requirements import require_landmarks
+from app.robot import Event, Frame, PhraseListener, SpokenLanguage, hearing_of
+from osg_ros.estimation_settings import ESTIMATOR, HANDS, PROVIDER, THREADS, WATER
 from osg_ros.gesture_topics import GestureTopics
 from osg_ros.gesture_worker import GestureWorker
-from osg_ros.language_service import LANGUAGE, PROFILE, LanguageService
+from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
 from osg_ros.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.pictures import TRANSPORT, picture_topic
 from osg_ros.spinning import spin
@@ -27,18 +35,36 @@ class GestureNode(ManagedNode):
     """Recognises the gestures in a topic of pictures."""
 
     def __init__(self, **options: Any) -> None:
-        settings = (LANGUAGE, PROFILE, TRANSPORT, WATER, THREADS, PROVIDER)
-        super().__init__("gesture_node", settings, "image", **options)
+        listening = (LANGUAGE, PROFILE, WITHOUT_SALUTES)
+        looking = (TRANSPORT, WATER, ESTIMATOR, HANDS, THREADS, PROVIDER)
+        super().__init__("gesture_node", (*listening, *looking), "image", **options)
         self._worker: GestureWorker | None = None
         self._estimator: PoseEstimator | None = None
         self._service: LanguageService | None = None
 
     def prepare(self) -> None:
-        """Load the language and the models, and make the publishers."""
-        self._service = LanguageService(self, self._change_language)
+        """Load the models and the language, and make the publishers.
+
+        Raises
+        ------
+        EstimatorError
+            Also when no salute could be seen, and gestures are not heard without.
+
+        """
+        hands = self.settings["hands"]
         self._estimator = create_estimator(
-            threads=self.settings["threads"], provider=self.settings["provider"]
+            self.settings["estimator"],
+            hands=hands,
+            threads=self.settings["threads"],
+            provider=self.settings["provider"],
         )
+        self._without_salutes = self.settings["without_salutes"]
+        if not finds_hands(self._estimator) and not self._without_salutes:
+            raise EstimatorError(
+                f"parameter hands is {hands!r}, and without hands no salute is seen; set "
+                "without_salutes to true or hands to others"
+            )
+        self._service = LanguageService(self, self._hearing, self._change_language)
         self._water = self.settings["water"]
         self._topics = GestureTopics(self)
 
@@ -53,7 +79,8 @@ class GestureNode(ManagedNode):
         language = self._service.language
         # The worker tells it with the first picture, which may be long in coming.
         self._topics.recognitions.speaks(language)
-        self._worker = GestureWorker(source, self._estimator, language, self._water, self)
+        listener = self._hearing(language)
+        self._worker = GestureWorker(source, self._estimator, listener, self._water, self)
 
     def halt(self) -> None:
         """Stop after the picture that is looked at now."""
@@ -84,6 +111,12 @@ class GestureNode(ManagedNode):
     def hear(self, source: TopicSource, event: Event, language: SpokenLanguage) -> None:
         """Publish what happened."""
         self._topics.hear(event, language, source.stopwatch, source.frame_id)
+
+    def _hearing(self, language: SpokenLanguage) -> PhraseListener:
+        assert self._estimator is not None
+        landmarks = landmarks_of(self._estimator)
+        require_landmarks(language.recognizer.language, landmarks, "the pose estimator")
+        return hearing_of(language, without_salutes=self._without_salutes)
 
     def _change_language(self, language: SpokenLanguage) -> None:
         if self._worker is not None:

@@ -9,7 +9,7 @@ from typing import Protocol
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.robot import Event, Frame, Listener, PhraseListener, Runtime, SpokenLanguage
+from app.robot import Event, Frame, PhraseListener, Runtime, SpokenLanguage
 from osg_ros.topic_source import TopicSource
 
 LONGEST_FRAME = 10.0
@@ -41,8 +41,8 @@ class GestureWorker:
         Closed at the end.
     estimator
         Used by nobody else meanwhile.
-    language
-        To listen for.
+    listener
+        Hears the gestures.
     water
         Correction of the frames.
     watching
@@ -54,14 +54,14 @@ class GestureWorker:
         self,
         source: TopicSource,
         estimator: PoseEstimator,
-        language: SpokenLanguage,
+        listener: PhraseListener,
         water: WaterCorrection,
         watching: Watching,
     ) -> None:
         self._source = source
         self._watching = watching
         self._next: SpokenLanguage | None = None
-        self._listener = PhraseListener(Listener(language))
+        self._listener = listener
         self._runtime = Runtime(
             source,
             estimator,

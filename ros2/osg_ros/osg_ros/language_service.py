@@ -9,6 +9,7 @@ from osg_interfaces.srv import ReloadLanguage
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 
 from app.recognition.recognizer import PROFILES
+from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import SpokenLanguage
 from osg_ros.managed_node import ManagedNode
 from osg_ros.settings import Setting
@@ -16,6 +17,12 @@ from osg_ros.settings import Setting
 LANGUAGE: Final = Setting("language", "", "Path of the language file on the robot.")
 PROFILE: Final = Setting(
     "profile", "full", "The recogniser's set of voters.", choices=tuple(PROFILES)
+)
+
+WITHOUT_SALUTES: Final = Setting(
+    "without_salutes",
+    False,
+    f"Hear gestures that no salute announces; told up to {LONGEST_MEMORY:g} s after they end.",
 )
 
 
@@ -28,20 +35,29 @@ class LanguageService:
     ----------
     node
         Whose parameters `LANGUAGE` and `PROFILE` tell the first language.
+    heard
+        Called with every language before it is loaded, in any thread; raises what `Raises` lists
+        where the node could not hear it.
     taken
         Called with every language after the first, maybe in another thread.
 
     Raises
     ------
     ValueError
-        When the parameter is empty, or the file is no language.
+        When the parameter is empty, the file is no language, or one that cannot be heard.
     OSError
         When the file cannot be read.
 
     """
 
-    def __init__(self, node: ManagedNode, taken: Callable[[SpokenLanguage], None]) -> None:
+    def __init__(
+        self,
+        node: ManagedNode,
+        heard: Callable[[SpokenLanguage], object],
+        taken: Callable[[SpokenLanguage], None],
+    ) -> None:
         self._node = node
+        self._heard = heard
         self._taken = taken
         self._path: str = node.settings["language"]
         self._profile: str = node.settings["profile"]
@@ -50,7 +66,7 @@ class LanguageService:
                 "parameter language is empty; set it to a language file, exported from the studio "
                 "or made by osg-studio define"
             )
-        self.language = SpokenLanguage.load(self._path, self._profile)
+        self.language = self._loaded(self._path)
         self._service = node.create_service(
             ReloadLanguage,
             "reload_language",
@@ -70,12 +86,17 @@ class LanguageService:
         """Withdraw the service."""
         self._node.destroy_service(self._service)
 
+    def _loaded(self, path: str) -> SpokenLanguage:
+        language = SpokenLanguage.load(path, self._profile)
+        self._heard(language)
+        return language
+
     def _reload(
         self, request: ReloadLanguage.Request, response: ReloadLanguage.Response
     ) -> ReloadLanguage.Response:
         path = request.path or self._path
         try:
-            language = SpokenLanguage.load(path, self._profile)
+            language = self._loaded(path)
         except (ValueError, OSError) as error:
             response.message = f"{path} is refused, the language stays: {error}"
             self._node.complain(response.message)

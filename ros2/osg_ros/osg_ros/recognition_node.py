@@ -13,16 +13,16 @@ from app.recognition import PoseSequence
 from app.recognition.estimation.base import FrameLandmarks
 from app.recognition.extraction import moment_of
 from app.robot import (
-    Listener,
     PhraseHeard,
     PhraseListener,
     SpokenLanguage,
     StateChanged,
     TakeRecognized,
     TakeRejected,
+    hearing_of,
 )
 from osg_ros.bodies import body_in, published_moment
-from osg_ros.language_service import LANGUAGE, PROFILE, LanguageService
+from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
 from osg_ros.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.optional_messages import message_type
 from osg_ros.pairing import StampPairs
@@ -50,7 +50,7 @@ class RecognitionNode(ManagedNode):
     """Recognises the gestures in topics of keypoints."""
 
     def __init__(self, **options: Any) -> None:
-        settings = (LANGUAGE, PROFILE, INPUT, IMAGE_WIDTH, IMAGE_HEIGHT)
+        settings = (LANGUAGE, PROFILE, WITHOUT_SALUTES, INPUT, IMAGE_WIDTH, IMAGE_HEIGHT)
         super().__init__("recognition_node", settings, "keypoints", **options)
         self._service: LanguageService | None = None
         self._listener: PhraseListener | None = None
@@ -73,13 +73,14 @@ class RecognitionNode(ManagedNode):
                 "parameter input is 'published' and the package keypoints_interfaces is not "
                 "there; build it with this one and source the workspace"
             )
-        self._service = LanguageService(self, self._change_language)
+        self._without_salutes = self.settings["without_salutes"]
+        self._service = LanguageService(self, self._hearing, self._change_language)
         self._recognitions = RecognitionTopics(self)
 
     def begin(self) -> None:
         """Listen from now on, as to another camera."""
         assert self._service
-        self._listener = PhraseListener(Listener(self._service.language))
+        self._listener = self._hearing(self._service.language)
         self._stopwatch = None
         self._recognitions.active(True)
         self._recognitions.speaks(self._service.language)
@@ -108,6 +109,9 @@ class RecognitionNode(ManagedNode):
     def facts(self) -> Mapping[str, str]:
         """Tell the language."""
         return self._service.facts() if self._service else {}
+
+    def _hearing(self, language: SpokenLanguage) -> PhraseListener:
+        return hearing_of(language, without_salutes=self._without_salutes)
 
     def _take_body(self, body: BodyKeypoints) -> None:
         pair = self._pairs.first(nanoseconds_of(body.header.stamp), body)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -71,16 +71,26 @@ class RobotNode(ManagedNode):
 
 
 @contextmanager
-def published() -> Iterator[RobotNode]:
+def published(arguments: Sequence[str]) -> Iterator[RobotNode]:
     """Give a node that publishes, whose services are answered in a thread of their own.
+
+    Parameters
+    ----------
+    arguments
+        ROS 2's own, from ``--ros-args`` on.
 
     Raises
     ------
     RecognitionError
-        When the node cannot be started.
+        When ROS 2 does not understand an argument, or the node cannot be started.
 
     """
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:
+        raise RecognitionError(
+            f"ROS 2 does not understand {' '.join(arguments)}: {error}"
+        ) from error
     try:
         node = RobotNode()
         with running([node]) as executor:

@@ -71,6 +71,7 @@ def test_a_lifecycle_manager_does_it_by_service_in_the_nodes_namespace(
         (RecognitionNode, {"language": "nowhere.json"}, "nowhere.json"),
         (RecognitionNode, {"language": __file__}, "JSON"),
         (RecognitionNode, {"language": "x", "profile": "best"}, "profile is 'best'"),
+        (GestureNode, {"estimator": "openpose"}, "unknown backend 'openpose'"),
         (CommandNode, {"language": __file__}, "no language file with a seal"),
         (CommandNode, {"cancel": ["line"], "emergency": ["line"]}, "'line'"),
     ],

@@ -125,12 +125,13 @@ def test_label_by_label_and_stamp_by_stamp(
         assert nanoseconds_of(message.end) == stamped(take["end"])
 
 
-def test_the_robot_command_tells_ros_what_it_writes(
+def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
     bench: Bench, domain: int, clip: Path, language_file: Path, recognised: list[dict[str, Any]]
 ) -> None:
-    said = bench.heard(GestureRecognition, "recognition")
-    seen = bench.heard(Hands, "hands", BEST_EFFORT)
+    said = bench.heard(GestureRecognition, "/auv/gestures")
+    seen = bench.heard(Hands, "/auv/hands", BEST_EFFORT)
     asked = ["robot", "--ros2", "--source", str(clip), "--language", str(language_file)]
+    asked += ["--ros-args", "-r", "__ns:=/auv", "-r", "recognition:=gestures"]
     running = subprocess.Popen(
         [sys.executable, "-m", "app", *asked],
         env=workspace.environment(domain),

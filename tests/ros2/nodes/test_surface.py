@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import time
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,7 @@ from osg_ros.recognition_node import RecognitionNode
 from osg_ros.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.test_lifecycle import NODES
+from tests.ros2.workspace import ROOT
 
 TOPICS = {
     "/auv/body_keypoints": "osg_interfaces/msg/BodyKeypoints",
@@ -35,6 +38,10 @@ TOPICS = {
     "/auv/state": "osg_interfaces/msg/RecognizerState",
     "/auv/vulcan_salute_detected": "std_msgs/msg/Bool",
 }
+EXECUTABLES = {"command_node": (CommandNode,), "gesture_process": (GestureNode, CommandNode)}
+DOCUMENTED = re.findall(
+    r"^ros2 run osg_ros (.+)$", (ROOT / "docs" / "robots.md").read_text("utf-8"), re.MULTILINE
+)
 DROP_IN = ("pose_keypoints", "hand_keypoints", "vulcan_salute_detected", "recognized_gesture")
 
 
@@ -54,6 +61,20 @@ def test_all_topics_lie_in_the_nodes_namespace(bench: Bench, language_file: Path
     assert all(found[topic] == [kind] for topic, kind in TOPICS.items())
     listened = node.get_subscriber_names_and_types_by_node("gesture_node", "/auv")
     assert ("/auv/image", ["sensor_msgs/msg/Image"]) in listened
+
+
+@pytest.mark.usefixtures("installed_models")
+@pytest.mark.parametrize("line", DOCUMENTED)
+def test_a_documented_command_listens_where_it_says(
+    bench: Bench, line: str, language_file: Path
+) -> None:
+    executable, *arguments = shlex.split(line.replace("/data/pool.json", str(language_file)))
+    heard: set[str] = set()
+    for kind in EXECUTABLES[executable]:
+        node = bench.active(kind, arguments=arguments)
+        topics = node.get_subscriber_names_and_types_by_node(node.get_name(), "/")
+        heard |= {topic for topic, _ in topics}
+    assert set(re.findall(r":=(/\S+)", line)) - {"/data/pool.json"} <= heard
 
 
 def test_topics_can_be_remapped(bench: Bench) -> None:

@@ -1,0 +1,34 @@
+"""ROS arguments go to ROS 2 alone, and only where it is asked for."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.ros_arguments import apart
+from tests.command_line import OsgStudio
+
+
+@pytest.mark.parametrize(
+    ("given", "own", "ros"),
+    [
+        ("robot --ros2", "robot --ros2", ""),
+        ("robot --ros-args -r a:=b", "robot", "--ros-args -r a:=b"),
+        ("robot --ros-args -r a:=b -- --ros2", "robot --ros2", "--ros-args -r a:=b"),
+        ("--ros-args -r a:=b -- -x --ros-args", "-x", "--ros-args -r a:=b --ros-args"),
+        ("robot -- --ros2", "robot -- --ros2", ""),
+    ],
+)
+def test_they_go_from_where_they_begin_to_where_they_end(given: str, own: str, ros: str) -> None:
+    assert apart(given.split()) == (own.split(), ros.split())
+
+
+def test_a_robot_that_is_not_to_publish_refuses_them(osg_studio: OsgStudio) -> None:
+    ended = osg_studio("robot", "--language", "pool.json", "--ros-args", "-r", "__ns:=/auv")
+    assert ended.code == 2
+    assert "--ros-args is for ROS 2: give --ros2 as well" in " ".join(ended.error.split())
+
+
+def test_no_other_command_takes_them(osg_studio: OsgStudio) -> None:
+    ended = osg_studio("recognize", "clip.mp4", "--language", "pool.json", "--ros-args")
+    assert ended.code == 2
+    assert "No such option: --ros-args" in " ".join(ended.error.split())
