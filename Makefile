@@ -79,7 +79,7 @@ clean:  ## Remove the virtual environment, caches and build results
 # Stamp files: a second `make` finds them newer than the locks and starts at once.
 
 $(VENV)/.python:
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python %d.%d is too old: OSG Studio needs 3.11 or newer; run make PYTHON=/path/to/python3.11" % sys.version_info[:2])'
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python %d.%d is too old: the studio needs 3.11 or newer; run make PYTHON=/path/to/python3.11" % sys.version_info[:2])'
 	$(PYTHON) -m venv --without-pip $(VENV)
 	touch $@
 

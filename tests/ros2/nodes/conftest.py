@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import random
+import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -26,10 +29,30 @@ LAST_DOMAIN = 101
 
 
 @pytest.fixture
-def domain(monkeypatch: pytest.MonkeyPatch) -> int:
-    """Return a DDS domain of this machine alone, most likely used by nobody else now."""
+def domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    """Give a DDS domain of this machine alone, in which no other test is."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    return random.SystemRandom().randint(1, LAST_DOMAIN)
+    # In any order: what a test that was killed has left behind may still speak in the first ones.
+    for number in random.SystemRandom().sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
+        with alone_in(number) as alone:
+            if alone:
+                yield number
+                return
+    pytest.fail(f"all {LAST_DOMAIN} DDS domains are taken by other tests")
+
+
+@contextmanager
+def alone_in(domain: int) -> Iterator[bool]:
+    """Tell whether no test of this machine was in a DDS domain, and keep others out meanwhile."""
+    folder = Path(tempfile.gettempdir()) / "osg-studio-test-domains"
+    folder.mkdir(exist_ok=True)
+    with (folder / str(domain)).open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+        else:
+            yield True
 
 
 @pytest.fixture
