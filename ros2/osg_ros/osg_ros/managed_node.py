@@ -6,6 +6,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from copy import copy
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -135,7 +136,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         made = self.create_lifecycle_publisher(
             kind,
             topic,
-            profile,
+            copy(profile),  # an operator's overrides are written into it
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         self._publishers_made.append(made)
@@ -150,7 +151,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
                 kind,
                 topic,
                 heard,
-                profile,
+                copy(profile),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
         )

@@ -115,9 +115,11 @@ def test_sensor_data_is_best_effort_and_state_is_kept_for_those_who_come_later(
         assert profile_of(bench, node, topic).durability == QoSDurabilityPolicy.TRANSIENT_LOCAL
 
 
-def test_an_operator_can_ask_for_another_quality_of_service(bench: Bench) -> None:
+def test_an_operator_can_ask_for_another_quality_of_service_of_one_topic(bench: Bench) -> None:
     override = "qos_overrides./body_keypoints.subscription.reliability"
     node = bench.active(VisualisationNode, **{override: "reliable"})
+    other = profile_of(bench, node, "hands")  # subscribed to later
+    assert other.reliability == QoSReliabilityPolicy.BEST_EFFORT
     profile = profile_of(bench, node, "body_keypoints")
     assert profile.reliability == QoSReliabilityPolicy.RELIABLE
 
