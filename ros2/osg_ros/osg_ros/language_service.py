@@ -35,9 +35,9 @@ class LanguageService:
     ----------
     node
         Whose parameters `LANGUAGE` and `PROFILE` tell the first language.
-    heard
-        Called with every language before it is loaded, in any thread; raises what `Raises` lists
-        where the node could not hear it.
+    check
+        Called with every language before it is taken, maybe in another thread; raises a
+        `ValueError` that says why the node cannot hear it.
     taken
         Called with every language after the first, maybe in another thread.
 
@@ -53,11 +53,11 @@ class LanguageService:
     def __init__(
         self,
         node: ManagedNode,
-        heard: Callable[[SpokenLanguage], object],
+        check: Callable[[SpokenLanguage], object],
         taken: Callable[[SpokenLanguage], None],
     ) -> None:
         self._node = node
-        self._heard = heard
+        self._check = check
         self._taken = taken
         self._path: str = node.settings["language"]
         self._profile: str = node.settings["profile"]
@@ -88,7 +88,7 @@ class LanguageService:
 
     def _loaded(self, path: str) -> SpokenLanguage:
         language = SpokenLanguage.load(path, self._profile)
-        self._heard(language)
+        self._check(language)
         return language
 
     def _reload(

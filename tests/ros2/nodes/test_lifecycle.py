@@ -13,12 +13,14 @@ from lifecycle_msgs.srv import ChangeState, GetState
 from osg_interfaces.msg import RecognizerState
 from rclpy.lifecycle import TransitionCallbackReturn
 
+from app.recognition import RecognitionError
 from osg_ros.command_node import CommandNode
 from osg_ros.gesture_node import GestureNode
 from osg_ros.hand_node import HandNode
 from osg_ros.managed_node import ManagedNode
 from osg_ros.pose_node import PoseNode
 from osg_ros.recognition_node import RecognitionNode
+from osg_ros.robot_node import published
 from osg_ros.spinning import running
 from osg_ros.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench, state_of
@@ -110,6 +112,13 @@ def test_a_node_that_is_stopped_is_told_to_be_inactive(bench: Bench, language_fi
     assert node.trigger_deactivate() == SUCCESS
     bench.wait(lambda: len(states) == 2, "second state")
     assert [state.state for state in states] == [RecognizerState.IDLE, RecognizerState.INACTIVE]
+
+
+@pytest.mark.usefixtures("domain")
+def test_arguments_that_ros_does_not_understand_are_told() -> None:
+    arguments = ["--ros-args", "-r", "recognition"]
+    with pytest.raises(RecognitionError, match="does not understand --ros-args -r recognition"):
+        published(arguments).__enter__()
 
 
 def test_a_node_that_was_shut_down_by_a_manager_ends_with_its_process(domain: int) -> None:
