@@ -164,15 +164,21 @@ def _farthest_from_line(points: list[list[float]], first: int, last: int) -> tup
     (start_x, start_y), (end_x, end_y) = points[first], points[last]
     along_x, along_y = end_x - start_x, end_y - start_y
     length = along_x * along_x + along_y * along_y
-    farthest, largest = first, 0.0
-    for index, (x, y) in enumerate(points[first + 1 : last], first + 1):
-        x, y = x - start_x, y - start_y
-        # Before the start the nearest place of the segment is its start, beyond the end its end.
+    farthest, largest, index = first, 0.0, first
+    for x, y in points[first + 1 : last]:
+        index += 1
+        x -= start_x
+        y -= start_y
         passed = x * along_x + y * along_y
-        if passed > 0:
-            share = passed / length if passed < length else 1.0
-            x, y = x - share * along_x, y - share * along_y
-        square = x * x + y * y
+        if 0 < passed < length:
+            area = x * along_y - y * along_x
+            square = area * area / length
+        else:
+            # Before the start the segment's nearest place is its start, beyond the end its end.
+            if passed > 0:
+                x -= along_x
+                y -= along_y
+            square = x * x + y * y
         if square > largest:
             farthest, largest = index, square
     return farthest, math.sqrt(largest)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import Protocol
 
 import numpy as np
@@ -91,7 +92,7 @@ def describe(drawing: Drawing, voters: Sequence[Voter]) -> dict[str, FloatArray]
     described = [voter.describe(drawing) for voter in voters]
     # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
     rounded = np.round(np.concatenate([*described, []]), DESCRIPTOR_DIGITS) + 0.0
-    ends = np.cumsum([len(each) for each in described]).tolist()
+    ends = accumulate(len(each) for each in described)
     return {
         voter.name: rounded[end - len(each) : end]
         for voter, each, end in zip(voters, described, ends, strict=True)

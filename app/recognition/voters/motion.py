@@ -144,7 +144,7 @@ class HandAttitude(ElasticVoter):
         """Return ``(N, 2 B')`` vectors in sizes, NaN where not seen."""
         steps = len(movement.limbs)
         arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
-        hands = arms[:, :, HAND_BONES].reshape(steps, -1, 2)
+        hands = arms.take(HAND_BONES, axis=2).reshape(steps, -1, 2)
         return (sized(hands) * movement.under_way[:, None, None]).reshape(steps, -1)
 
 
