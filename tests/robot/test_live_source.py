@@ -20,6 +20,7 @@ from app.robot.cameras import SILENT_SECONDS, NetworkStream
 from app.robot.live_source import LiveSource
 from app.robot.opening import open_source
 from tests.robot.mjpeg_server import FRAME_SIZE, MjpegServer
+from tests.robot.rtsp_server import RtspServer
 
 
 def quick_to_return(address: str) -> LiveSource:
@@ -43,6 +44,19 @@ def test_frames_of_a_stream_come_in_order_at_growing_times() -> None:
     assert times == sorted(set(times))
     assert seen[0].image.shape == (FRAME_SIZE[1], FRAME_SIZE[0], 3)
     assert seen[0].image.mean() == pytest.approx(100, abs=2)
+
+
+def test_a_camera_that_speaks_rtsp_is_watched_until_it_is_gone() -> None:
+    with RtspServer(brightness=100) as server:
+        source = quick_to_return(server.address)
+        given = iter(source)
+        seen = list(islice(frames(given), 3))
+    with closing(source):
+        lost = next(each for each in given if isinstance(each, SourceLost))
+    assert source.frame_size == FRAME_SIZE
+    assert [frame.image.mean() for frame in seen] == pytest.approx([100] * 3, abs=2)
+    assert seen[0].time < seen[1].time < seen[2].time < lost.time
+    assert "rtsp://" in lost.reason
 
 
 class CameraOnDemand:
