@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,7 @@ class PoseSequence:
             raise PoseError(f"time has shape {time.shape}, expected ({len(xy)},), one per frame")
         if not np.isfinite(time).all():
             raise PoseError("time holds NaN or infinite values")
-        if (steps := np.diff(time)).size and steps.min() <= 0:
+        if (steps := time[1:] - time[:-1]).size and steps.min() <= 0:
             at = int(np.argmin(steps)) + 1
             raise PoseError(
                 f"time does not increase at frame {at} ({time[at - 1]:g} s, then {time[at]:g} s)"
@@ -234,15 +235,23 @@ def joined(moments: Sequence[PoseSequence]) -> PoseSequence:
 
 
 def _checked_names(names: Any) -> tuple[str, ...]:
-    if isinstance(names, str) or not all(isinstance(name, str) and name for name in names):
+    if not isinstance(names, str):
+        # What is no collection, or holds what cannot be hashed, is no set of names either.
+        with suppress(TypeError):
+            return _distinct_names(tuple(names))
+    raise PoseError(f"landmarks must be non-empty names, got {names!r}")
+
+
+@lru_cache(maxsize=16)  # every frame of a stream comes with the same ones
+def _distinct_names(names: tuple[Any, ...]) -> tuple[str, ...]:
+    if not all(isinstance(name, str) and name for name in names):
         raise PoseError(f"landmarks must be non-empty names, got {names!r}")
-    checked: tuple[str, ...] = tuple(names)
-    if not checked:
+    if not names:
         raise PoseError("landmarks is empty; at least one name is needed")
-    if len(set(checked)) < len(checked):
-        twice = sorted({name for name in checked if checked.count(name) > 1})
+    if len(set(names)) < len(names):
+        twice = sorted({name for name in names if names.count(name) > 1})
         raise PoseError(f"landmark names occur twice: {twice}")
-    return checked
+    return names
 
 
 def _frozen(values: Any, name: str) -> FloatArray:
