@@ -41,7 +41,8 @@ def profile_table(profile: StageProfile) -> Table:
     """Lay out what each stage leaves of the rate, a stage a row."""
     caption = (
         f"{profile.frames} frames, {profile.takes} takes; recognition lowers the rate of pose and "
-        f"hands by {profile.share:.1%}; energy: {profile.energy or 'this machine does not tell'}"
+        f"hands by {profile.share:.1%} and takes {profile.processor_share:.1%} of the processor's "
+        f"time; energy: {profile.energy or 'this machine does not tell'}"
     )
     table = Table("with", caption=caption, caption_justify="left", box=box.SIMPLE_HEAD)
     table.add_column("frames a second", justify="right")

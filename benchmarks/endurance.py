@@ -1,14 +1,19 @@
 """Whether the robot's runtime can listen for days: a clip over and over, as one stream.
 
 ``python -m benchmarks.endurance`` runs 30 minutes of stream time as fast as it goes, and states how
-memory grows, how many frames are remembered, and whether every loop says the same.
+memory grows, how many frames are remembered, and whether every loop says the same. What the process
+has of the system's memory is told apart from what is allocated in it: an allocator keeps pieces
+that are free, and takes more when several stages need theirs in the same moment.
 ``--models-once`` lets the models look at the first loop alone: all else is done for every frame.
 """
 
 from __future__ import annotations
 
 import argparse
+import ctypes
+import gc
 import re
+import sys
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import closing
@@ -107,6 +112,10 @@ class LoopedClip:
                 for frame in reader:
                     if frame.index % self._every == 0:
                         yield Frame(loop * self.period + frame.time, frame.image)
+            # PyAV's objects know each other: what every opening leaves waits for Python's next full
+            # collection, hours away. A camera is opened once.
+            del reader, frame
+            gc.collect()
 
     def close(self) -> None:
         """Do nothing: every loop closes its file."""
@@ -187,6 +196,10 @@ class Lap:
         Most frames that the listener remembered.
     memory
         Bytes at its end, see `own_bytes`.
+    allocated
+        Bytes at its end, see `allocated_bytes`.
+    objects
+        Blocks that Python has given out at its end, an object or two each.
     said
         What its takes were answered with.
 
@@ -195,6 +208,8 @@ class Lap:
     frames: int = 0
     remembered: int = 0
     memory: int = 0
+    allocated: int = 0
+    objects: int = 0
     said: list[Said] = field(default_factory=list)
 
 
@@ -209,7 +224,8 @@ def endure(
         lap.frames += 1
         lap.remembered = max(lap.remembered, len(listener))
         if lap.frames % STOCK_EVERY == 0:
-            lap.memory = own_bytes()
+            lap.memory, lap.allocated = own_bytes(), allocated_bytes()
+            lap.objects = sys.getallocatedblocks()
 
     for event in Runtime(source, estimator, listener, water=water, observer=take_stock):
         if isinstance(event, TakeRecognized | TakeRejected):
@@ -229,21 +245,46 @@ def own_bytes() -> int:
     return sum(int(kilobytes) for kilobytes in OWN.findall(status)) * 1024
 
 
-def slope_of(laps: Sequence[Lap], period: float) -> tuple[float, float]:
-    """Return bytes a minute of stream time, and half of the 95 % interval, by least squares."""
-    memory = np.array([lap.memory for lap in laps], dtype=np.float64)
-    minutes = np.arange(len(laps)) * period / 60
+class HeapStatistics(ctypes.Structure):
+    """What glibc tells of its heaps (``struct mallinfo2``)."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_size_t)
+        for name in (
+            *("arena", "ordblks", "smblks", "hblks", "hblkhd"),
+            *("usmblks", "fsmblks", "uordblks", "fordblks", "keepcost"),
+        )
+    )
+
+
+def allocated_bytes() -> int:
+    """Return what is allocated in this process and not freed (glibc), but for Python's objects."""
+    mallinfo2 = ctypes.CDLL(None).mallinfo2
+    mallinfo2.restype = HeapStatistics
+    heaps = mallinfo2()
+    return int(heaps.uordblks + heaps.hblkhd)
+
+
+def slope_of(values: Sequence[float], period: float) -> tuple[float, float]:
+    """Return the growth of a loop's value in a minute of stream time, by least squares.
+
+    Returns
+    -------
+    The slope, and half of its 95 % interval.
+
+    """
+    value = np.array(values, dtype=np.float64)
+    minutes = np.arange(len(value)) * period / 60
     centred = minutes - minutes.mean()
-    slope = float(centred @ memory / (centred @ centred))
-    left = memory - memory.mean() - slope * centred
-    error = float(np.sqrt(left @ left / max(1, len(laps) - 2) / (centred @ centred)))
+    slope = float(centred @ value / (centred @ centred))
+    left = value - value.mean() - slope * centred
+    error = float(np.sqrt(left @ left / max(1, len(value) - 2) / (centred @ centred)))
     return slope, 1.96 * error
 
 
 def report(laps: Sequence[Lap], period: float) -> None:
     """Print what was found; of more loops than it takes to settle."""
     settled = laps[int(SETTLING / period) :]
-    slope, half = slope_of(settled, period)
     first = settled[0].said
     same = sum(
         len(lap.said) == len(first)
@@ -253,8 +294,14 @@ def report(laps: Sequence[Lap], period: float) -> None:
     sure = [said.confidence for lap in laps for said in lap.said if said.confidence is not None]
     frames = sum(lap.frames for lap in laps)
     print(f"{len(laps)} loops, {len(laps) * period / 60:.1f} min of stream, {frames} frames")
-    print(f"memory: {settled[0].memory / 1e6:.1f} MB at first, {laps[-1].memory / 1e6:.1f} MB")
-    print(f"slope: {slope / 1e3:+.2f} kB a minute (95 %: {half / 1e3:.2f} more or less)")
+    for name, unit, values in (
+        ("memory", "kB", [lap.memory / 1e3 for lap in settled]),
+        ("allocated", "kB", [lap.allocated / 1e3 for lap in settled]),
+        ("Python's objects", "blocks", [lap.objects for lap in settled]),
+    ):
+        slope, half = slope_of(values, period)
+        print(f"{name}: {values[0]:.0f} {unit} at first, {values[-1]:.0f} at last, ", end="")
+        print(f"{slope:+.2f} a minute (95 %: {half:.2f} more or less)")
     print(f"most frames remembered in a loop: {laps[0].remembered} in the first, ", end="")
     print(f"{max(lap.remembered for lap in laps)} in any")
     print(f"loops that say {[said.label for said in first]}: {same} of {len(laps)}, ", end="")

@@ -39,17 +39,28 @@ class Cost:
         Of the clock on the wall.
     joules
         0 where nothing measures.
+    processor
+        Seconds of all processors together, of this process alone.
 
     """
 
     seconds: float = 0.0
     joules: float = 0.0
+    processor: float = 0.0
 
     def __add__(self, other: Cost) -> Cost:
-        return Cost(self.seconds + other.seconds, self.joules + other.joules)
+        return Cost(
+            self.seconds + other.seconds,
+            self.joules + other.joules,
+            self.processor + other.processor,
+        )
 
     def __sub__(self, other: Cost) -> Cost:
-        return Cost(self.seconds - other.seconds, self.joules - other.joules)
+        return Cost(
+            self.seconds - other.seconds,
+            self.joules - other.joules,
+            self.processor - other.processor,
+        )
 
 
 @dataclass
@@ -91,6 +102,16 @@ class StageProfile:
         before, after = self.frames_per_second("hands"), self.frames_per_second("recognition")
         return 1 - after / before if before else 0.0
 
+    @property
+    def processor_share(self) -> float:
+        """Share of the processors' time that goes to salutes and recognition, in [0, 1].
+
+        It hardly depends on what else the machine does, nor on which stages run side by side.
+        """
+        whole = sum(cost.processor for cost in self.costs.values())
+        ours = self.costs["salute"].processor + self.costs["recognition"].processor
+        return ours / whole if whole else 0.0
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
         return {
@@ -105,6 +126,7 @@ class StageProfile:
                 for stage in STAGES
             ],
             "share_of_recognition": self.share,
+            "share_of_processor_time": self.processor_share,
             "energy": self.energy,
         }
 
@@ -193,7 +215,8 @@ class StageProfiler:
 
     def _lap(self) -> Cost:
         """Return what was taken since the last call."""
-        now = Cost(clock.perf_counter(), self._meter.joules() if self._meter else 0.0)
+        joules = self._meter.joules() if self._meter else 0.0
+        now = Cost(clock.perf_counter(), joules, clock.process_time())
         taken, self._last = now - self._last, now
         return taken
 

@@ -19,16 +19,17 @@ from tests.robot.languages import spoken
 def test_rates_are_cumulative_and_the_share_is_what_recognition_takes_off() -> None:
     profile = StageProfile(frames=100, takes=1, energy="meter")
     for stage, seconds in zip(STAGES, (1.0, 3.0, 0.5, 0.25, 0.25), strict=True):
-        profile.costs[stage] += Cost(seconds, 10 * seconds)
+        profile.costs[stage] += Cost(seconds, 10 * seconds, 2 * seconds)
     rates = [profile.frames_per_second(stage) for stage in STAGES]
     assert rates == pytest.approx([100, 25, 100 / 4.5, 100 / 4.75, 20])
     assert profile.share == pytest.approx(1 - 4.5 / 5)
     assert profile.joules_per_frame("pose") == pytest.approx(0.4)
+    assert profile.processor_share == pytest.approx(2 * 0.5 / (2 * 5))
     assert json.loads(json.dumps(profile.to_dict()))["share_of_recognition"] == profile.share
 
 
 def test_a_profile_of_nothing_is_empty() -> None:
-    assert StageProfile().share == 0
+    assert StageProfile().share == StageProfile().processor_share == 0
     assert StageProfile().joules_per_frame("grab") is None
 
 
@@ -48,5 +49,6 @@ def test_every_frame_passes_every_stage(installed_models: None, tmp_path: Path) 
         profile = profiler.run(source, lambda: False)
     assert (profile.frames, profile.takes, len(listener)) == (5, 0, WARM_UP + 5)
     assert all(profile.costs[stage].seconds > 0 for stage in ("grab", "pose", "salute"))
+    assert 0 < profile.processor_share < 1
     assert profile.energy == "processor packages, RAPL"
     assert profile.joules_per_frame("recognition") == 0
