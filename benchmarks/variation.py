@@ -13,11 +13,13 @@ voters
     of their demonstration's variants.
 confusion
     Accuracy of the recogniser on real takes and on variants of the demonstrations.
+refused
+    Share of real takes, and of variants, that the demonstration as the only gesture refuses.
 scale
     Mean difference of the voters' distributions with our spreads scaled, and the scale that the
     other sets would choose for each.
 
-    python -m benchmarks.variation ../shared/data models voters confusion scale
+    python -m benchmarks.variation ../shared/data models voters confusion refused scale
 """
 
 from __future__ import annotations
@@ -32,8 +34,10 @@ import numpy.typing as npt
 
 from app.evaluation.share import Share
 from app.recognition.calibrated_vote import VOTERS, CalibratedVote
+from app.recognition.calibration import calibrated
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
+from app.recognition.rejection import is_rejected
 from app.recognition.trajectory import Trajectory
 from app.recognition.variation import Person
 from benchmarks.one_shot_draws import draws
@@ -207,6 +211,30 @@ def _named(vote: CalibratedVote, take: Trajectory, label: str) -> Share:
     return Share(int(result is not None and result.nearest == label), 1)
 
 
+def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
+    """Report how many real takes and variants lie beyond the demonstration's thresholds."""
+    random = np.random.default_rng(seed)
+    recordings = relation.recorded.recordings
+    real, varied = Share(0, 0), Share(0, 0)
+    for number in range(pairs):
+        first = int(random.integers(len(recordings)))
+        takes = random.permutation(relation.others(first))[:count]
+        gestures = calibrated(demonstrated(relation.recorded, [first]))
+        vote = CalibratedVote(gestures)
+        for take in takes:
+            real += _refused(vote, Trajectory.from_poses(recordings[take]))
+        # Other draws than the variants that the thresholds are made from.
+        drawn = ours(demonstration_of(gestures[0]), count, 1 + seed + number, relation.person)
+        for variant in drawn:
+            varied += _refused(vote, variant)
+    yield f"{relation} | real {real} of {real.asked} | variants {varied} of {varied.asked}"
+
+
+def _refused(vote: CalibratedVote, take: Trajectory) -> Share:
+    compared = vote.compare(condensed(take), drawn=False)
+    return Share(int(is_rejected(float(compared.novelty[0]))), 1)
+
+
 def scale(every: list[Relation], pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report the fit of scaled spreads, and the scale chosen without each set."""
     misfit = np.array(
@@ -232,7 +260,12 @@ def scale(every: list[Relation], pairs: int, count: int, seed: int) -> Iterator[
 
 
 Report = Callable[[Relation, int, int, int], Iterator[str]]
-REPORTS: dict[str, Report] = {"models": models, "voters": voters, "confusion": confusion}
+REPORTS: dict[str, Report] = {
+    "models": models,
+    "voters": voters,
+    "confusion": confusion,
+    "refused": refused,
+}
 
 
 def main() -> None:

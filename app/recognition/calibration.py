@@ -26,7 +26,7 @@ from app.recognition.poses import FloatArray
 from app.recognition.rejection import novelty, novelty_weights
 from app.recognition.trajectory import Trajectory
 from app.recognition.unforeseen import UNFORESEEN
-from app.recognition.variation import variants
+from app.recognition.variation import SPREADS, variants
 from app.recognition.voters.motion import MOTION_VOTERS
 
 TAKES = 12
@@ -82,7 +82,7 @@ of a typical take, 1 / `REACH`."""
 DIGITS = 4
 """Significant decimal digits kept of a threshold: far more than it is known to."""
 
-RULE = repr((*REACH.items(), OWN, LEAST_SHARE))
+RULE = repr((*REACH.items(), OWN, LEAST_SHARE, SPREADS["same"]))
 """What thresholds depend on beside the gestures: those by another rule are made anew."""
 
 

@@ -14,7 +14,7 @@ from app.recognition.errors import RecognitionError
 from app.recognition.gesture import condensed
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory import Trajectory, Unit
-from app.recognition.variation import SPREADS, Person, variants
+from app.recognition.variation import SPREADS, Person, Spread, variants, varied
 from tests.recognition.strategies import SHAPES, recording, recordings
 
 PEOPLE = tuple(SPREADS)
@@ -123,6 +123,34 @@ def test_somebody_elses_takes_differ_by_more_than_ones_own() -> None:
         doublings.append(float(np.std([np.log2(take.time[-1] / shown.time[-1]) for take in takes])))
     assert 0.1 < away[0] < 0.8 * away[1] < 0.6
     assert 0.1 < doublings[0] < 0.5 * doublings[1] < 0.5
+
+
+def direction_of_bone(trajectory: Trajectory, inner: str, outer: str) -> FloatArray:
+    ends = trajectory.select([inner, outer]).xy
+    return np.asarray(np.unwrap(np.arctan2(*(ends[:, 1] - ends[:, 0]).T)))
+
+
+def test_a_hand_turns_with_its_forearm() -> None:
+    """However it points in the demonstration: what turns the forearm turns the hand as far."""
+    swing = np.linspace(-0.7, 0.7, 40)
+    forearm = 0.5 * np.stack([np.sin(swing), -np.cos(swing)], axis=1)
+    elbow = np.full((40, 2), 0.2) + 0.1 * forearm
+    shown = Trajectory(
+        landmarks=("right_elbow", "right_wrist", "right_index"),
+        xy=np.stack([elbow, elbow + forearm, elbow + forearm + (0.15, 0)], axis=1),
+        time=np.linspace(0, 2, 40),
+        unit="torso_length",
+    )
+    wavering = Spread(
+        tempo=0, size=0, slant=0, stretch=0, shear=0, waver=0.3, care=0, sway=0
+    )  # without drifts of its own the hand does what the forearm makes it do
+    bones = ("right_elbow", "right_wrist"), ("right_wrist", "right_index")
+    for variant in varied(shown, 20, wavering):
+        arm, hand = (
+            direction_of_bone(variant, *bone) - direction_of_bone(shown, *bone) for bone in bones
+        )
+        assert np.abs(arm).max() > 0.05
+        assert np.abs(hand - arm).max() < 0.25 * np.abs(arm).max()
 
 
 def test_what_rests_stays_near_its_place() -> None:
