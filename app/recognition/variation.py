@@ -104,9 +104,9 @@ alignment: air-drawn digits, letters and commands for both, two-handed figures a
 marshalling, where people are not told apart, for the second. Waver and sway are chosen, and the
 habit enlarged by 1.3, such that the voters' distances between demonstration and variant are those
 between two takes: a fifth more or less fits worse (`docs/results.md`, Variants against people).
-Care is chosen such that as many variants as takes lie beyond the thresholds: 3.5 % of both, in the
-mean over the sets but other people's letters, who use other strokes; with 0.6 it is 6.0 % of the
-variants."""
+Care is chosen such that about as many variants as takes lie beyond the thresholds: 2.6 and 3.5 %,
+in the mean over the sets but other people's letters, who use other strokes. With 0.6 it is nearly
+twice as many variants as takes."""
 
 WAVES = 12
 """Cosines along the way: at the twelfth, real takes differ by 1.5 to 2.5 % of the size, and less
@@ -252,12 +252,12 @@ def _displaced(
 def _carried(
     xy: FloatArray, varied: FloatArray, landmarks: Sequence[str], wrists: npt.NDArray[np.intp]
 ) -> FloatArray:
-    """Turn hands as their forearms are turned; a hand whose elbow is not known goes its own way.
+    """Turn hands as their forearms are turned; a hand whose forearm is not seen goes its own way.
 
     Parameters
     ----------
     xy
-        ``(T, K, 2)``: the demonstration.
+        ``(T, K, 2)``: the demonstration, see `_bridged`.
     varied
         ``(count, T, K, 2)``: variants, each relative to its mean place in `xy`.
     landmarks, wrists
@@ -265,13 +265,14 @@ def _carried(
 
     """
     parts = [part_of(name) for name in landmarks]
+    seen = np.asarray(xy.any(axis=(0, 2)))
     centre = xy.mean(axis=0)
     carried = varied.copy()
     for wrist in np.unique(wrists[wrists != np.arange(len(landmarks))]):
         elbow_part = parts[wrist].removesuffix("wrist") + "elbow"
-        if elbow_part not in parts:
+        elbow = parts.index(elbow_part) if elbow_part in parts else wrist
+        if elbow == wrist or not (seen[wrist] and seen[elbow]):
             continue
-        elbow = parts.index(elbow_part)
         shown = _complex(xy[:, wrist] - xy[:, elbow])
         turned = _complex(
             varied[:, :, wrist] - varied[:, :, elbow] + (centre[wrist] - centre[elbow])

@@ -153,6 +153,20 @@ def test_a_hand_turns_with_its_forearm() -> None:
         assert np.abs(hand - arm).max() < 0.25 * np.abs(arm).max()
 
 
+def test_a_hand_whose_forearm_was_never_seen_goes_its_own_way() -> None:
+    turn = np.linspace(0, 6, 40)
+    hand = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    unseen = np.full((40, 2), np.nan)
+    shown = Trajectory(
+        landmarks=("right_elbow", "right_wrist", "right_index"),
+        xy=np.stack([unseen, unseen, hand], axis=1),
+        time=np.linspace(0, 2, 40),
+        unit="torso_length",
+    )
+    for variant in variants(shown, 10):
+        assert np.ptp(variant.select(["right_index"]).xy, axis=0).min() > 1
+
+
 def test_what_rests_stays_near_its_place() -> None:
     shown = demonstration(recording(SHAPES["circle"]))
     for variant in variants(shown, 20, person="another"):
