@@ -65,7 +65,8 @@ export const rangeOf = () => query();
 export async function recogniseWith(extra = {}) {
   const body = { ...query(), language_id: state.language, expected: byId("expected").value || null, ...extra };
   const result = await attempt("Recognition", () => api.recognitions.create(body));
-  if (result) update({ result, recognition: result.id });
+  if (!result || result.clip_id !== state.clip) return null; // Another clip is on display by now.
+  update({ result, recognition: result.id });
   return result;
 }
 
@@ -83,11 +84,14 @@ async function recognise() {
 
 /** Load the recognition that the URL names. */
 export async function loadResult() {
-  if (!state.recognition) return update({ result: null });
-  if (state.result?.id === state.recognition) return undefined;
+  const wanted = state.recognition;
+  if (!wanted) return update({ result: null });
+  if (state.result?.id === wanted) return undefined;
   try {
-    return update({ result: await api.recognitions.get(state.recognition) });
+    const result = await api.recognitions.get(wanted);
+    return state.recognition === wanted ? update({ result }) : undefined;
   } catch (error) {
+    if (state.recognition !== wanted) return undefined;
     complain(error, "Loading the recognition");
     return update(api.isAway(error) ? { result: null } : { result: null, recognition: null });
   }

@@ -19,7 +19,8 @@ export async function loadWhy({ result }) {
   if (!result || result.expected === null) return update({ why: null });
   if (state.why?.id === result.id) return undefined;
   const why = await attempt("Explaining", () => api.recognitions.explain(result.id));
-  return update({ why: state.result?.id === result.id ? why : null });
+  // Another recognition may be on display by now, whose own reasons must stay.
+  return state.result?.id === result.id ? update({ why }) : undefined;
 }
 
 /** What each step of the take costs, joint by joint, for the expected gesture's paths. */

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.api.recordings import recording_of
 from tests.api.running import Running
@@ -98,10 +98,19 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     joint = why.get_by_label("Joint whose paths are drawn")
     expect(joint).to_have_value("right_wrist")
     expect(drawn.get_by_role("img", name="The right wrist in this take")).to_be_visible()
+    # Why the trial comes out as it does is told only after it was taken back.
+    held: list[Route] = []
+    page.route("**/explanation", lambda route: held.append(route))
     why.get_by_role("listitem").first.get_by_role("button").click()
     trial = why.get_by_role("status")
     expect(trial).to_contain_text("It is read as line")
     expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
     trial.get_by_role("button", name=re.compile("Discard|Back to as it was")).click()
     expect(page.locator("#outcome")).to_contain_text("Taken for circle, expected line")
+    while not held:
+        page.wait_for_timeout(10)
+    with page.expect_response("**/explanation") as told:
+        held[0].continue_()
+    told.value.finished()
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
     expect(why).to_contain_text("instead of 'line'")
