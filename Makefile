@@ -19,7 +19,7 @@ ifeq ($(shell uname -s -m),Linux x86_64)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test lint format bench languages lock clean
+.PHONY: help run models test pytest lint format bench languages lock clean
 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -30,13 +30,16 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 	$(BIN)/osg-studio models install
 
-# By file: the tests of one file share a server, a database or a recording. Three at a time also on two
-# cores: those in the browser and with other processes wait a lot.
-test: lint models  ## Check and test everything
+test: lint pytest  ## Check and test everything
+
+# By file: the tests of one file share a server, a database or a recording. In the order of
+# tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
+# with other processes wait a lot.
+pytest: $(VENV)/.development models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
-	$(BIN)/python -m pytest -n 3 --dist loadfile --durations 25
+	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 25
 
 # What robots run has to run on Python 3.10 as well, ROS 2 Humble's. The NumPy that is installed here
 # describes its types for newer Pythons alone: what it returns is unknown in this check.

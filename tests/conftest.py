@@ -1,6 +1,7 @@
 """Fixtures that several parts of the suite share."""
 
 import os
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import get_args
@@ -14,6 +15,15 @@ from tests.command_line import OsgStudio
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files that take long, so that no worker is left alone with one in the end.
+
+    Those with a limit of their own take minutes; after them come the folders with most slow tests.
+    """
+    slow = Counter(item.path.parent for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: (not item.get_closest_marker("timeout"), -slow[item.path.parent]))
 
 
 @pytest.fixture(scope="session")

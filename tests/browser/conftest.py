@@ -5,11 +5,20 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, Route, expect, sync_playwright
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    BrowserType,
+    Page,
+    Route,
+    expect,
+    sync_playwright,
+)
 
 from app.recognition.models import installed_models
 from app.settings import Settings
@@ -24,6 +33,17 @@ WEBGL = (
     "--ignore-gpu-blocklist",
 )
 """Lets Chromium draw WebGL in software, also as root in a container."""
+
+WITHOUT_WINDOW = ("--disable-gpu-compositing",)
+"""Puts the page together as a picture in memory: where there is no graphics card, drawing it by a
+program that plays one takes several times as long."""
+
+WHOLE = ("chromium", "chromium-browser")
+"""Names of the browser that people use."""
+
+SHELL = "chromium-headless-shell"
+"""Debian's Chromium without all that is around a page: it takes a third of the processor's time,
+but cannot be asked for a camera."""
 
 PATIENCE_MS = 90_000
 """Longest wait for what must appear; a loaded machine is slow, a broken page never gets there."""
@@ -44,16 +64,22 @@ OpenPage = Callable[..., Page]
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     """Start Chromium; skip where there is none."""
-    executable = shutil.which("chromium") or shutil.which("chromium-browser")
-    if executable is None:
-        pytest.skip("needs Chromium: apt-get install chromium")
     expect.set_options(timeout=PATIENCE_MS)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=executable, args=list(WEBGL), timeout=PATIENCE_MS
-        )
+    with sync_playwright() as playwright, started(playwright.chromium) as browser:
         yield browser
-        browser.close()
+
+
+@contextmanager
+def started(kind: BrowserType, *more: str, whole: bool = False) -> Iterator[Browser]:
+    """Run Chromium with further arguments, all of it if need be; skip where there is none."""
+    names = WHOLE if whole else (SHELL, *WHOLE)
+    executable = next(filter(None, map(shutil.which, names)), None)
+    if executable is None:
+        pytest.skip(f"needs Chromium: apt-get install {names[0]}")
+    args = [*WEBGL, *WITHOUT_WINDOW, *more]
+    browser = kind.launch(executable_path=executable, args=args, timeout=PATIENCE_MS)
+    yield browser
+    browser.close()
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Iterator
 
 import pytest
@@ -11,7 +10,7 @@ from playwright.sync_api import Browser, expect
 
 from tests.api.running import Running
 from tests.browser.camera import see_seconds
-from tests.browser.conftest import PATIENCE_MS, WEBGL, OpenPage
+from tests.browser.conftest import OpenPage, started
 
 pytestmark = pytest.mark.slow
 
@@ -19,13 +18,9 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def browser(browser: Browser) -> Iterator[Browser]:
     """Start a second Chromium, with a camera that a page must be allowed."""
-    executable = shutil.which("chromium") or shutil.which("chromium-browser")
-    args = [*WEBGL, "--use-fake-device-for-media-stream"]
-    started = browser.browser_type.launch(
-        executable_path=executable, args=args, timeout=PATIENCE_MS
-    )
-    yield started
-    started.close()
+    camera = "--use-fake-device-for-media-stream"
+    with started(browser.browser_type, camera, whole=True) as another:
+        yield another
 
 
 def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from playwright.sync_api import Browser, Page, expect
 from app.settings import Settings
 from tests.api.running import Running
 from tests.browser.camera import see_seconds
-from tests.browser.conftest import PATIENCE_MS, WEBGL, OpenPage
+from tests.browser.conftest import OpenPage, started
 from tests.browser.library import add_clip
 
 pytestmark = pytest.mark.slow
@@ -66,12 +65,8 @@ def browser(browser: Browser, feed: Path) -> Iterator[Browser]:
         f"--use-file-for-fake-video-capture={feed}",
         f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1",
     )
-    executable = shutil.which("chromium") or shutil.which("chromium-browser")
-    started = browser.browser_type.launch(
-        executable_path=executable, args=[*WEBGL, *camera], timeout=PATIENCE_MS
-    )
-    yield started
-    started.close()
+    with started(browser.browser_type, *camera) as another:
+        yield another
 
 
 @pytest.fixture(scope="module")

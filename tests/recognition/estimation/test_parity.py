@@ -24,7 +24,8 @@ from tests.recognition.estimation.agreement import (
 )
 from tests.recognition.estimation.clip_frames import clip_frames
 
-pytestmark = pytest.mark.slow
+# Two libraries over a dozen clips: minutes, while the limit of the suite is meant for one.
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(1500)]
 
 BODY_TOLERANCE, HAND_TOLERANCE = 1.5e-3, 1e-3
 """Of the frame, the mean over upper-body landmarks and over hand landmarks."""
