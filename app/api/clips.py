@@ -18,6 +18,7 @@ from app.api.ranges import keep_single_range
 from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
 from app.api.still_pictures import sent_picture
 from app.api.studio import CurrentStudio, Studio
+from app.api.upload_fields import UploadFields
 from app.api.uploads import receive_file
 from app.recognition.poses import PoseSequence
 from app.recognition.takes import takes_in
@@ -42,10 +43,7 @@ _UPLOAD_FORM = {
                     "required": ["file"],
                     "properties": {
                         "file": {"type": "string", "format": "binary"},
-                        "topic": {
-                            "type": "string",
-                            "description": "Of a dive recording with several topics: which one",
-                        },
+                        **UploadFields.model_json_schema()["properties"],
                     },
                 }
             }
@@ -69,6 +67,10 @@ async def upload_clip(
 ) -> ClipAccepted:
     """Store a clip and queue the extraction of its poses.
 
+    Another program's keypoint file is taken too (CSV, JSON, SLEAP, OpenPose's folder as zip); its
+    video is the skeleton, drawn. What the file does not tell is refused as `frame_rate_needed` or
+    `frame_size_needed`.
+
     A dive recording (rosbag2) is taken too: of the topic named, or of the only one that can be
     used. Where there are several, the job fails with the code `topic_needed` and the clip lists
     them; choose by `POST /clips/{id}/topic`.
@@ -87,7 +89,7 @@ async def upload_clip(
     try:
         upload = await receive_file(request, partial, studio.settings)
         clip = await examined(
-            partial, studio, name=upload.name, size=upload.size, topic=upload.topic
+            partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         clip.idempotency_key = idempotency_key
         return await take_in(clip, partial, studio, client_of(request))
@@ -175,18 +177,18 @@ async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAc
 def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send the clip as it was uploaded, or a range of it.
 
-    Of a dive recording, the video that its job made of the topic.
+    Of a dive recording or a keypoint file, the video that its job made of it.
     """
     clip = studio.clips.get(clip_id).clip
     video = studio.clips.video(clip_id)
-    if clip.from_bag and not video.is_file():
+    if clip.video_is_made and not video.is_file():
         detail = "the video of this clip is made while its poses are found; wait for its job"
         raise ProblemError(409, "clip_not_ready", detail)
-    keep_single_range(request, video.stat().st_size if clip.from_bag else clip.size)
+    keep_single_range(request, video.stat().st_size if clip.video_is_made else clip.size)
     return FileResponse(
         video,
         media_type=clip.media_type,
-        filename=f"{clip.name}.mp4" if clip.from_bag else clip.name,
+        filename=f"{clip.name}.mp4" if clip.video_is_made else clip.name,
         content_disposition_type="inline",
         headers={"Cache-Control": "private, max-age=3600"},
     )
@@ -234,7 +236,8 @@ def clip_view(found: ClipWithJob) -> ClipView:
     """Return what to tell about a clip."""
     clip, job = found.clip, found.job
     return ClipView(
-        **clip.model_dump(exclude={"idempotency_key", "deleted", "topics"}),
+        **clip.model_dump(exclude={"idempotency_key", "deleted", "topics", "keypoints"}),
+        shows_pictures=clip.shows_pictures,
         topics=json.loads(clip.topics),
         status=JobStatus(job.status),
         error=job.error,

@@ -8,12 +8,15 @@ from pathlib import Path
 from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
+from app.api.extraction.keypoint_source import KeypointSource
 from app.api.extraction.messages import Failed
 from app.api.media_types import HEAD_BYTES, video_type
 from app.api.problems import ProblemError
 from app.api.schemas import ClipAccepted
 from app.api.studio import Studio
+from app.api.upload_fields import UploadFields
 from app.bags.kind import bag_kind
+from app.keypoint_files import Ending, keypoint_ending
 from app.store import Clip
 
 
@@ -35,7 +38,7 @@ async def require_place_in_queue(request: Request, studio: Studio) -> None:
 
 
 async def examined(
-    partial: Path, studio: Studio, *, name: str, size: int, topic: str | None = None
+    partial: Path, studio: Studio, *, name: str, size: int, fields: UploadFields | None = None
 ) -> Clip:
     """Look into a received file.
 
@@ -47,8 +50,9 @@ async def examined(
         What looks into it.
     name, size
         What to call it, and its bytes.
-    topic
-        Of a dive recording, which topic to make the clip of; None: the only one, or a choice later.
+    fields
+        What its sender tells of it. Of a dive recording without a topic the only one is meant, or
+        it is chosen later.
 
     Returns
     -------
@@ -57,26 +61,40 @@ async def examined(
     Raises
     ------
     ProblemError
-        415 when it is neither video nor dive recording, 422 when it is one that cannot be read, or
-        has no such topic.
+        415 when it is neither video, dive recording nor keypoint file, 422 when it is one that
+        cannot be read, has no such topic, or does not tell enough without `fields`.
 
     """
     if size == 0:
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
+    told = fields or UploadFields()
     head = await run_in_threadpool(_head, partial)
+    ending = keypoint_ending(head, name)
     if bag_kind(head) is not None:
-        return await _examined_bag(partial, studio, name, size, topic)
-    media_type = video_type(head)
+        clip = await _examined_bag(partial, studio, name, size, told.topic)
+        if isinstance(clip, Clip):
+            return clip
+        if ending is None:
+            raise _refused(clip, name)
+    if told.topic is not None:
+        raise ProblemError(
+            422, "topic_unusable", f"{name} is no dive recording and has no topics; leave it out"
+        )
+    if ending is not None:
+        return await _examined_keypoints(partial, studio, name, size, ending, told)
+    return await _examined_video(partial, studio, name, size, video_type(head))
+
+
+async def _examined_video(
+    partial: Path, studio: Studio, name: str, size: int, media_type: str | None
+) -> Clip:
     if media_type is None:
         raise ProblemError(
             415,
             "unsupported_media_type",
-            f"{name} is neither a video nor a dive recording this app knows, whatever its name "
-            "says; send MP4, MOV, WebM, MKV, AVI, MPEG-TS, or a rosbag2 (MCAP, sqlite3, zip)",
-        )
-    if topic is not None:
-        raise ProblemError(
-            422, "topic_unusable", f"{name} is a video and has no topics; leave out the topic"
+            f"{name} is neither a video, a dive recording nor a keypoint file this app knows, "
+            "whatever its name says; send MP4, MOV, WebM, MKV, AVI, MPEG-TS, a rosbag2 (MCAP, "
+            "sqlite3, zip), or keypoints (CSV, JSON, SLEAP, or OpenPose's folder as zip)",
         )
     probed = await studio.runner.probe(partial)
     if isinstance(probed, Failed):
@@ -94,11 +112,13 @@ async def examined(
 
 async def _examined_bag(
     partial: Path, studio: Studio, name: str, size: int, topic: str | None
-) -> Clip:
+) -> Clip | Failed:
+    """Look into a dive recording; an archive may turn out to hold none."""
     probed = await studio.runner.probe_bag(partial)
     if isinstance(probed, Failed):
-        status = 415 if probed.code == "unsupported_media_type" else 422
-        raise ProblemError(status, probed.code, f"{name}: {probed.detail}")
+        if probed.code == "unsupported_media_type":
+            return probed
+        raise _refused(probed, name)
     if topic is None and len(probed.topics) == 1:
         topic = probed.topics[0].name
     named = {each.name: each for each in probed.topics}
@@ -123,6 +143,29 @@ async def _examined_bag(
     )
 
 
+async def _examined_keypoints(
+    partial: Path, studio: Studio, name: str, size: int, ending: Ending, fields: UploadFields
+) -> Clip:
+    told = KeypointSource(
+        ending=ending,
+        frame_rate=fields.keypoints.frame_rate,
+        frame_size=fields.keypoints.frame_size,
+    )
+    probed = await studio.runner.probe_keypoints(partial, told)
+    if isinstance(probed, Failed):
+        raise _refused(probed, name)
+    return Clip(
+        name=name,
+        media_type="video/mp4",
+        size=size,
+        width=probed.width,
+        height=probed.height,
+        duration=probed.duration,
+        frames=probed.frames,
+        keypoints=told.model_dump_json(),
+    )
+
+
 async def take_in(clip: Clip, partial: Path, studio: Studio, client: str) -> ClipAccepted:
     """Store an examined file as `clip`, queue its job, and tell the open pages.
 
@@ -133,6 +176,11 @@ async def take_in(clip: Clip, partial: Path, studio: Studio, client: str) -> Cli
         await studio.runner.submit(added.job)
     studio.broadcast.publish("clips", id=added.clip.id)
     return ClipAccepted(id=added.clip.id, job_id=added.job.id)
+
+
+def _refused(probed: Failed, name: str) -> ProblemError:
+    status = 415 if probed.code == "unsupported_media_type" else 422
+    return ProblemError(status, probed.code, f"{name}: {probed.detail}")
 
 
 def _head(path: Path) -> bytes:

@@ -17,6 +17,7 @@ from starlette.exceptions import HTTPException
 from app.recognition.errors import (
     BagError,
     GestureError,
+    LandmarkError,
     LanguageError,
     ModelError,
     PoseError,
@@ -181,6 +182,7 @@ def _of_recognition(error: RecognitionError) -> ProblemError:
         BagError: "bag_unreadable",
         TopicError: "topic_unusable",
         PoseError: "poses_unusable",
+        LandmarkError: "landmark_missing",
     }
     return ProblemError(422, codes.get(type(error), "recognition"), str(error))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Query, Response
 
 from app.api.demonstrations import demonstration_in, surroundings_in
@@ -17,12 +18,13 @@ from app.api.schemas import (
     TuningChange,
 )
 from app.api.studio import CurrentStudio, Studio
-from app.recognition import Recognition, Recognizer
+from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation import explain
+from app.recognition.requirements import require_landmarks
 from app.recognition.situation import Situation
 from app.recognition.trajectory_image import SIMPLIFICATION
 from app.recognition.tuning import Tuning
-from app.store import RecognitionRecord
+from app.store import Clip, RecognitionRecord
 
 DEFAULT_PROFILE = "full"
 """Profile of whoever names none."""
@@ -39,6 +41,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     state = studio.languages.get(request.language_id)
     recording = studio.recording(request.clip_id)
     profile = request.profile or DEFAULT_PROFILE
+    require_given(studio.clips.get(request.clip_id).clip, recording.poses, studio.language(state))
     demonstration = demonstration_in(recording, request.start, request.end)
     recognizer = _tuned(studio.recognizer(state, profile), request.tuning)
     told = recognizer.recognize(demonstration.poses).to_dict()
@@ -99,6 +102,22 @@ def explain_recognition(
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
     return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
+
+
+def require_given(clip: Clip, poses: PoseSequence, language: Language) -> None:
+    """Refuse a clip that came as keypoints without those that a language follows.
+
+    What our models look at may show any landmark, and is judged when it is recognised.
+
+    Raises
+    ------
+    LandmarkError
+        Naming the landmark, and the gesture that follows it.
+
+    """
+    if not clip.shows_pictures:
+        given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
+        require_landmarks(language, given, clip.name)
 
 
 def situation_of(record: RecognitionRecord, studio: Studio) -> Situation:

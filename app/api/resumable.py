@@ -21,6 +21,7 @@ from app.api.body_limit import too_large
 from app.api.intake import client_of, examined, require_place_in_queue, take_in
 from app.api.problems import ProblemError, documented
 from app.api.studio import CurrentStudio, Studio
+from app.api.upload_fields import LONGEST, UploadFields
 from app.api.uploads import paced, require_space, shown_name
 from app.store import ClipWithJob, NotFound, Upload
 
@@ -58,7 +59,12 @@ async def begin_upload(
     studio: CurrentStudio,
     upload_length: Annotated[int, Header(ge=0, description="Bytes of the whole file")],
     upload_metadata: Annotated[
-        str, Header(max_length=4096, description="`filename` and its base64")
+        str,
+        Header(
+            max_length=4096,
+            description="Keys with their values in base64: `filename`, and the fields of "
+            "`POST /clips`",
+        ),
     ] = "",
 ) -> Response:
     """Begin an upload; `Location` is where its parts go."""
@@ -66,8 +72,12 @@ async def begin_upload(
         raise too_large(studio.settings.max_clip_bytes)
     await require_place_in_queue(request, studio)
     require_space(studio.clips.folder, upload_length, studio.settings)
-    name = shown_name(_file_name(upload_metadata))
-    upload = await run_in_threadpool(studio.uploads.create, name, upload_length)
+    told = _metadata(upload_metadata)
+    name = shown_name(told.get("filename", ""))
+    # Before the bytes come: whoever tells nonsense need not send a gigabyte to hear so.
+    fields = UploadFields.read(told).model_dump(exclude_none=True, mode="json")
+    texts = {key: str(value) for key, value in fields.items()}
+    upload = await run_in_threadpool(studio.uploads.create, name, upload_length, texts)
     location = f"{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
@@ -123,17 +133,26 @@ def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
     return Response(status_code=204, headers=_COMMON)
 
 
-def _file_name(metadata: str) -> str:
-    """Return the file name in ``Upload-Metadata``: pairs of a key and a value in base64."""
-    for pair in metadata.split(","):
+def _metadata(header: str) -> dict[str, str]:
+    """Return what ``Upload-Metadata`` tells that is read here, by key.
+
+    The header lists keys with their values in base64, and keys alone.
+    """
+    told: dict[str, str] = {}
+    for pair in header.split(","):
         key, _, value = pair.strip().partition(" ")
-        if key == "filename":
-            try:
-                return base64.b64decode(value, validate=True).decode("utf-8", "replace")
-            except binascii.Error as error:
-                detail = "the filename in Upload-Metadata is not base64"
-                raise ProblemError(400, "malformed_upload", detail) from error
-    return ""
+        if key not in ("filename", *LONGEST):
+            continue
+        try:
+            text = base64.b64decode(value, validate=True)
+        except binascii.Error as error:
+            detail = f"the {key} in Upload-Metadata is not base64"
+            raise ProblemError(400, "malformed_upload", detail) from error
+        if len(text) > LONGEST.get(key, len(text)):
+            detail = f"the field {key!r} is longer than {LONGEST[key]} bytes"
+            raise ProblemError(400, "malformed_upload", detail)
+        told[key] = text.decode("utf-8", "replace")
+    return told
 
 
 async def _written(request: Request, upload: Upload, studio: Studio) -> int:
@@ -162,7 +181,13 @@ async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[st
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
         if clip is None:
             try:
-                made = await examined(upload.path, studio, name=upload.name, size=upload.size)
+                made = await examined(
+                    upload.path,
+                    studio,
+                    name=upload.name,
+                    size=upload.size,
+                    fields=UploadFields.read(upload.fields),
+                )
                 made.idempotency_key = upload.id
                 await take_in(made, upload.path, studio, client_of(request))
             finally:

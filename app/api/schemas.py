@@ -59,6 +59,9 @@ class ClipView(BaseModel):
     topic: str | None = Field(
         description="Of a dive recording: what the clip is made of; null while nobody chose"
     )
+    shows_pictures: bool = Field(
+        description="Whether its video shows the diver; else it shows the keypoints that came"
+    )
     job_id: str
     created: datetime
 

@@ -74,15 +74,16 @@ def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> File
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
     """Return each wrist's speed ``(T,)``, and the unit of its lengths.
 
-    NaN where a wrist was not seen. Without anybody in view both are NaN throughout.
+    NaN where a wrist was not seen, throughout where nobody is in view or it is not given.
     """
     count = len(recording.poses)
     try:
         trajectory = Trajectory.from_poses(recording.poses)
     except PoseError:
         return {name: np.full(count, np.nan) for name in WRISTS}, "torso_length"
-    speeds = {}
-    for name in WRISTS:
+    speeds = {name: np.full(count, np.nan) for name in WRISTS}
+    # Other programs' keypoints may have no wrist.
+    for name in set(WRISTS) & set(trajectory.landmarks):
         path = trajectory.xy[:, trajectory.landmarks.index(name)]
         moves = (
             np.gradient(path, trajectory.time, axis=0) if count > 1 else np.full_like(path, np.nan)

@@ -18,6 +18,7 @@ from starlette.requests import ClientDisconnect, Request
 
 from app.api.body_limit import too_large
 from app.api.problems import ProblemError
+from app.api.upload_fields import LONGEST, UploadFields
 from app.settings import Settings
 
 FRAME_BYTES = 64 * 1024
@@ -28,9 +29,6 @@ MOST_PARTS = 16
 
 LONGEST_NAME = 200
 """Characters of a file name that are shown and kept."""
-
-LONGEST_TOPIC = 255
-"""Bytes of a topic's name: as long as ROS allows one to be."""
 
 _FLUSH_BYTES = 1024 * 1024
 
@@ -45,14 +43,14 @@ class Upload:
         What to show for it; see `shown_name`.
     size
         Bytes.
-    topic
-        What the form's field ``topic`` says; None: it has none.
+    fields
+        What the form's other fields say.
 
     """
 
     name: str
     size: int
-    topic: str | None = None
+    fields: UploadFields
 
 
 async def receive_file(request: Request, target: Path, settings: Settings) -> Upload:
@@ -64,7 +62,8 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
     ------
     ProblemError
         400 when the form is malformed or cut short, 408 when it comes too slowly, 413 when the
-        file is too large, 415 when the body is no multipart form, 507 when the disk is too full.
+        file is too large, 415 when the body is no multipart form, 422 when a field says what it
+        cannot, 507 when the disk is too full.
 
     """
     stated = request.headers.get("content-length", "")
@@ -103,7 +102,7 @@ def shown_name(name: str) -> str:
 
 
 class _FilePart:
-    """Picks the bytes of the part ``file``, and the field ``topic``, out of a multipart body."""
+    """Picks the bytes of the part ``file``, and the fields beside it, out of a multipart body."""
 
     def __init__(self, boundary: bytes, limit: int) -> None:
         self.pending = bytearray()
@@ -113,8 +112,8 @@ class _FilePart:
         self._parts = 0
         self._name: str | None = None
         self._in_file = False
-        self._in_topic = False
-        self._topic = bytearray()
+        self._field: str | None = None
+        self._fields: dict[str, bytearray] = {}
         self._ended = False
         self._header = bytearray()
         self._value = bytearray()
@@ -140,15 +139,15 @@ class _FilePart:
             raise _malformed("the form ends before its last boundary; send the clip again")
         if self._name is None:
             raise _malformed("the form has no part named 'file' with a file name; send one clip")
-        topic = bytes(self._topic).decode("utf-8", "replace").strip()
-        return Upload(shown_name(self._name), self._size, topic or None)
+        texts = {name: text.decode("utf-8", "replace") for name, text in self._fields.items()}
+        return Upload(shown_name(self._name), self._size, UploadFields.read(texts))
 
     def _on_part_begin(self) -> None:
         self._parts += 1
         if self._parts > MOST_PARTS:
             raise _malformed(f"the form has more than {MOST_PARTS} parts; send one clip")
         self._disposition = b""
-        self._in_file = self._in_topic = False
+        self._in_file, self._field = False, None
 
     def _on_header_field(self, data: bytes, start: int, end: int) -> None:
         self._header += data[start:end]
@@ -164,8 +163,10 @@ class _FilePart:
 
     def _on_headers_finished(self) -> None:
         _, options = parse_options_header(self._disposition)
-        self._in_topic = options.get(b"name") == b"topic" and b"filename" not in options
-        if options.get(b"name") != b"file" or b"filename" not in options:
+        name = options.get(b"name", b"").decode("utf-8", "replace")
+        if name in LONGEST and b"filename" not in options:
+            self._field, self._fields[name] = name, bytearray()
+        if name != "file" or b"filename" not in options:
             return
         if self._name is not None:
             raise _malformed("the form has several parts named 'file'; send one clip at a time")
@@ -173,10 +174,11 @@ class _FilePart:
         self._name = options[b"filename"].decode("utf-8", "replace")
 
     def _on_part_data(self, data: bytes, start: int, end: int) -> None:
-        if self._in_topic:
-            self._topic += data[start:end]
-            if len(self._topic) > LONGEST_TOPIC:
-                raise _malformed(f"the field 'topic' is longer than {LONGEST_TOPIC} bytes")
+        if self._field is not None:
+            text, most = self._fields[self._field], LONGEST[self._field]
+            text += data[start:end]
+            if len(text) > most:
+                raise _malformed(f"the field {self._field!r} is longer than {most} bytes")
         if not self._in_file:
             return
         self._size += end - start

@@ -8,9 +8,9 @@ from pathlib import Path
 from app.bags.bag import Bag, Topic, opened_bag
 from app.bags.frames import BagFrames
 from app.bags.keypoints import keypoint_recording
-from app.bags.skeleton_picture import skeleton_picture
+from app.bags.skeleton_video import show_recording
 from app.bags.video_file import VideoFile
-from app.recognition.estimation.base import Body, FrameLandmarks, PoseEstimator
+from app.recognition.estimation.base import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.extraction import Observer, Progress, record_frames
 from app.recognition.recording import Recording
@@ -61,7 +61,8 @@ def record_bag(
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
             recording = keypoint_recording(bag, chosen, limits)
-            return _shown(recording, video, progress, observer)
+            show_recording(recording, video, progress, observer)
+            return recording
         return _watched(bag, chosen, video, estimator, progress, observer, limits, water)
 
 
@@ -73,7 +74,7 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
     with opened_bag(path) as bag:
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
-            _shown(keypoint_recording(bag, chosen), video, None, None)
+            show_recording(keypoint_recording(bag, chosen), video)
             return
         frames = BagFrames(bag, chosen)
         with VideoFile(video, frames.info.width, frames.info.height) as file:
@@ -114,32 +115,3 @@ def _watched(
         return record_frames(
             frames, estimator=estimator, progress=progress, observer=observe, water=water
         )
-
-
-def _shown(
-    recording: Recording,
-    video: Path | None,
-    progress: Progress | None,
-    observer: Observer | None,
-) -> Recording:
-    """Draw the skeleton frame by frame where somebody wants to look at it."""
-    poses, confidence = recording.poses, recording.poses.confidence
-    assert confidence is not None
-    if video is None and observer is None:
-        return recording
-    with ExitStack() as open_files:
-        file = None
-        if video is not None:
-            file = open_files.enter_context(VideoFile(video, *poses.frame_size))
-        for index, time in enumerate(poses.time.tolist()):
-            image = skeleton_picture(poses.xy[index], poses.frame_size)
-            if file is not None:
-                file.add(image, time)
-            if observer is not None:
-                seen = bool(poses.seen[index].any())
-                body = Body(poses.xy[index], confidence[index], 1.0) if seen else None
-                frame = VideoFrame(index, time, image)
-                observer(frame, FrameLandmarks(body, recording.hands[index]))
-            if progress is not None:
-                progress(index + 1, len(poses))
-    return recording

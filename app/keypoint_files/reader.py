@@ -15,7 +15,7 @@ from app.keypoint_files.mediapipe_table import read_mediapipe_table
 from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.sleap import read_sleap
 from app.keypoint_files.table import KeypointOptions, KeypointTable
-from app.recognition.errors import KeypointFileError
+from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
 from app.recognition.estimation.base import Hand
 from app.recognition.landmark_sets import landmark_named, missing_from
 from app.recognition.poses import FloatArray, PoseSequence
@@ -80,8 +80,9 @@ def read_keypoints(
     Raises
     ------
     KeypointFileError
-        When the file cannot be read, no name in it is known, or it does not tell its frame rate or
-        frame size and the user does not either.
+        When the file cannot be read, or no name in it is known.
+    FrameRateError, FrameSizeError
+        When neither the file tells its frame rate or frame size nor the user.
     VideoError
         When the recording is longer than the limits.
 
@@ -152,7 +153,7 @@ def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> Floa
         return table.times.values
     rate = options.frame_rate or table.frame_rate
     if rate is None:
-        raise KeypointFileError(
+        raise FrameRateError(
             f"{path} counts frames and tells no time; give the video's frame rate, as in "
             f"--frame-rate 30"
         )
@@ -200,7 +201,7 @@ def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> t
     if size is not None:
         return size
     if table.in_fractions:
-        raise KeypointFileError(
+        raise FrameSizeError(
             f"{path} tells fractions of the picture, whose shape it does not tell; give the "
             f"video's size in pixels, as in --frame-size 1920x1080"
         )

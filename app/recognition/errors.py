@@ -34,6 +34,14 @@ class KeypointFileError(RecognitionError):
     """Raised when another program's keypoint file cannot be read, or does not tell enough."""
 
 
+class FrameRateError(KeypointFileError):
+    """Raised when a keypoint file counts frames and nobody tells how many make a second."""
+
+
+class FrameSizeError(KeypointFileError):
+    """Raised when a keypoint file tells fractions of a picture whose size nobody tells."""
+
+
 class VideoError(RecognitionError):
     """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
 

@@ -17,15 +17,16 @@ from app.store.errors import NotFound
 from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.models import Clip, Job, JobStatus, new_id, now
 
-BAG, VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
+BAG, KEYPOINTS, VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
     "bag",
+    "keypoints",
     "video",
     "recording.npz",
     "poster.jpg",
     "filmstrip.jpg",
 )
-"""The files of a clip; one from a dive recording has the recording, and its video once its job is
-done."""
+"""The files of a clip; one from a dive recording or a keypoint file has that, and its video once
+its job is done."""
 
 TOPIC_NEEDED = "topic_needed"
 """Why the job of a clip failed that needs somebody to choose a topic."""
@@ -68,7 +69,7 @@ class ClipStore:
         The file gets its place first: a row never refers to what is not on disk. When two
         uploads with one idempotency key race, the second one gets the first one's clip.
         """
-        target = self.bag(clip.id) if clip.from_bag else self.video(clip.id)
+        target = self._received(clip)
         target.parent.mkdir()
         job = Job(clip_id=clip.id, client=client)
         if clip.needs_topic:
@@ -207,8 +208,12 @@ class ClipStore:
         """Return where the dive recording is that a clip came as, if it did."""
         return self._home(clip_id) / BAG
 
+    def keypoints(self, clip_id: str) -> Path:
+        """Return where the keypoint file is that a clip came as, if it did."""
+        return self._home(clip_id) / KEYPOINTS
+
     def video(self, clip_id: str) -> Path:
-        """Return where the clip's video is: its own bytes, or the copy made of a topic."""
+        """Return where the clip's video is: its own bytes, or what its job made to look at."""
         return self._home(clip_id) / VIDEO
 
     def recording(self, clip_id: str) -> Path:
@@ -222,6 +227,12 @@ class ClipStore:
     def filmstrip(self, clip_id: str) -> Path:
         """Return where the thumbnails along the clip are, once its job is done."""
         return self._home(clip_id) / FILMSTRIP
+
+    def _received(self, clip: Clip) -> Path:
+        """Return where the file belongs that came."""
+        if clip.keypoints is not None:
+            return self.keypoints(clip.id)
+        return self.bag(clip.id) if clip.from_bag else self.video(clip.id)
 
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from enum import StrEnum
 from uuid import uuid4
@@ -52,7 +53,7 @@ class JobStatus(StrEnum):
 
 
 class Clip(SQLModel, table=True):
-    """One video, or topic of a dive recording, that the user gave us.
+    """One video, topic of a dive recording, or keypoint file that the user gave us.
 
     Its file and what was found in it lie under `id` in the clip folder.
     """
@@ -76,9 +77,22 @@ class Clip(SQLModel, table=True):
     """Of a dive recording: the topics that a clip can be made of, as a JSON array; else empty."""
     topic: str | None = Field(default=None, max_length=255)
     """Name of the topic that this clip is made of; ``None`` where nobody chose, or for a video."""
+    keypoints: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
+    """Of a keypoint file: how it is to be read, as a JSON object; else ``None``."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+    @property
+    def video_is_made(self) -> bool:
+        """Whether its video is made by its job, and is not the file that came."""
+        return self.from_bag or self.keypoints is not None
+
+    @property
+    def shows_pictures(self) -> bool:
+        """Whether its video shows the diver; else it shows the keypoints that came."""
+        used = {topic["name"]: topic["use"] for topic in json.loads(self.topics)}
+        return self.keypoints is None and used.get(self.topic) != "keypoints"
 
     @property
     def from_bag(self) -> bool:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from types import MappingProxyType
 
 from app.store.errors import NotFound
 from app.store.models import new_id
@@ -30,6 +32,8 @@ class Upload:
         Bytes of the whole file.
     path
         What has come of it so far.
+    fields
+        What its sender tells beside the bytes, by name.
 
     """
 
@@ -37,6 +41,7 @@ class Upload:
     name: str
     size: int
     path: Path
+    fields: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def offset(self) -> int:
@@ -59,13 +64,14 @@ class UploadStore:
         self._folder = folder
         folder.mkdir(parents=True, exist_ok=True)
 
-    def create(self, name: str, size: int) -> Upload:
-        """Begin an upload of `size` bytes."""
-        upload_id = new_id()
-        self._about(upload_id).write_text(json.dumps({"name": name, "size": size}))
+    def create(self, name: str, size: int, fields: Mapping[str, str] | None = None) -> Upload:
+        """Begin an upload of `size` bytes, with what its sender tells beside them."""
+        upload_id, told = new_id(), dict(fields or {})
+        about = {"name": name, "size": size, "fields": told}
+        self._about(upload_id).write_text(json.dumps(about))
         path = self._folder / upload_id
         path.touch()
-        return Upload(upload_id, name, size, path)
+        return Upload(upload_id, name, size, path, told)
 
     def get(self, upload_id: str) -> Upload:
         """Return an upload that is not finished.
@@ -81,7 +87,8 @@ class UploadStore:
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
         told = json.loads(self._about(upload_id).read_text())
-        return Upload(upload_id, told["name"], told["size"], path)
+        # An upload that was begun before there were fields has none.
+        return Upload(upload_id, told["name"], told["size"], path, told.get("fields", {}))
 
     def remove(self, upload_id: str) -> None:
         """Forget an upload and what came of it; does nothing where there is none."""

@@ -50,7 +50,7 @@ export function statusText(clip, job) {
     if (!job?.total || job.stage !== "poses") return stage;
     return `${stage}, ${job.done} of ${job.total} frames${job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`}`;
   }
-  return [clip.duration ? duration(clip.duration) : null, `${clip.width} \u00d7 ${clip.height}`, clip.frames ? plural(clip.frames, "frame") : null].filter(Boolean).join("  \u00b7  ");
+  return [clip.duration ? duration(clip.duration) : null, clip.frames ? plural(clip.frames, "frame") : null].filter(Boolean).join(" \u00b7 ");
 }
 
 async function remove(clip) {
@@ -104,7 +104,7 @@ function draw(clip, element) {
   drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
   const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
   drawn.replaceChildren(
-    h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },
+    h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },
       posterOf(clip, element),
       h("span", { className: "clip-text" },
         h("b", {}, clip.name),
@@ -123,13 +123,15 @@ export function drawClips({ clips }) {
 /** "circle_a_demonstration.mp4" as people read it. */
 const readable = (name) => name.replace(/\.\w+$/, "").replace(/[_-]+/g, " ");
 
-async function addSample(sample, button) {
+/** Add a sample clip and show it; resolves to its id, or null. */
+export async function addSample(sample, button) {
   button.disabled = true;
   const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
   button.disabled = false;
-  if (!accepted) return;
+  if (!accepted) return null;
   await reloadClips();
   select(accepted.id);
+  return accepted.id;
 }
 
 /** Make the list of sample clips, each a button that adds it. */

@@ -75,11 +75,17 @@ export function drawGestures({ gestures, result }) {
 
 let shown = { result: null, clip: null };
 
-/** A clip called "circle-2.mp4" is probably meant as a circle; anyone can say otherwise. */
+/** The words and numbers of a name, with a space around each. */
+const words = (name) => ` ${(name.toLowerCase().match(/\p{L}+|\p{N}+/gu) ?? []).join(" ")} `;
+
+/**
+ * A clip called "circle-2.mp4" is probably meant as a circle, "unfinished triangle" as a triangle;
+ * what its name begins with goes before what it mentions. Anyone can say otherwise.
+ */
 export function proposed(clip, members) {
-  const name = clip?.name.toLowerCase() ?? "";
-  const named = members.filter(({ label }) => name.startsWith(label.toLowerCase()) && !/^[a-z]/.test(name.slice(label.length)));
-  return named.sort((one, other) => other.label.length - one.label.length)[0]?.label ?? "";
+  const name = words(clip?.name ?? "");
+  const named = members.map(({ label }) => ({ label, at: words(label).trim() ? name.indexOf(words(label)) : -1 })).filter(({ at }) => at >= 0);
+  return named.sort((one, other) => one.at - other.at || other.label.length - one.label.length)[0]?.label ?? "";
 }
 
 /** Offer the labels as what was meant; a recognition that is opened says it itself. */

@@ -55,9 +55,16 @@ function pressed(event) {
 
 const keyCaps = (combination) => combination.split("+").map((key) => h("kbd", {}, key));
 
+let loadAll = async () => {};
+
+/** Let `load()` bring the modules that bind keys and were not needed so far, before all are told. */
+export const loadBeforeTelling = (load) => { loadAll = load; };
+
 /** Show all keys, by what they belong to. */
-export function showKeys() {
+export async function showKeys() {
+  await loadAll();
   const dialog = byId("dialog");
+  if (dialog.open) return;
   const groups = [...new Set(bound.map((each) => each.group))];
   dialog.replaceChildren(h("div", { className: "key-list" },
     h("h2", { id: "dialog-title" }, "Keys"),

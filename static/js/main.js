@@ -6,7 +6,7 @@ import { drawClips, drawSamples } from "./clips.js";
 import { byId, icon } from "./dom.js";
 import { drawGestures } from "./gestures.js";
 import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
-import { drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
+import { answerQuestion, drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
 import { listenToKeys, showKeys } from "./keys.js";
 import { rememberFrame } from "./playback.js";
 import { drawConnection, followServer } from "./server.js";
@@ -28,7 +28,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
   follow(["samples"], drawSamples);
-  follow(["samples", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
+  follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExport);
   follow(["gestures", "result", "clip"], drawGestures);
@@ -61,6 +61,7 @@ function loadWithSelection() {
     loadWhy(state);
   });
   follow(["clips", "clip", "takes", "take", "start", "end", "recognition"], showSelection);
+  follow(["question", "takes"], answerQuestion);
 }
 
 async function start() {

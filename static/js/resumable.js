@@ -41,23 +41,25 @@ async function ask(method, place, headers = {}) {
 
 const stand = (place, headers) => ({ place, offset: Number(headers.get("Upload-Offset")), clip: headers.get("Content-Location")?.split("/").at(-1) ?? null });
 
-async function begin(file) {
-  const name = btoa(String.fromCharCode(...new TextEncoder().encode(file.name)));
-  const headers = await ask("POST", PLACE, { "Upload-Length": String(file.size), "Upload-Metadata": `filename ${name}` });
+const base64 = (text) => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
+
+async function begin(file, fields) {
+  const told = Object.entries({ filename: file.name, ...fields }).map(([name, text]) => `${name} ${base64(text)}`);
+  const headers = await ask("POST", PLACE, { "Upload-Length": String(file.size), "Upload-Metadata": told.join(",") });
   const place = headers.get("Location");
   keep(file, place);
   return { place, offset: 0, clip: null };
 }
 
 /** Ask how much of a file the server has; begin anew where it knows nothing of it. */
-async function resume(file) {
+async function resume(file, fields) {
   const place = kept(file);
-  if (!place) return begin(file);
+  if (!place) return begin(file, fields);
   try {
     return stand(place, await ask("HEAD", place));
   } catch (error) {
     if (error.status !== 404) throw error;
-    return begin(file);
+    return begin(file, fields);
   }
 }
 
@@ -86,10 +88,11 @@ function send(call, file, { place, offset }, onProgress) {
 const mayGoOn = (error) => isAway(error) || [502, 503, 504].includes(error.status) || ["upload_offset", "upload_broken_off"].includes(error.code);
 
 /**
- * Upload a file. `onProgress(loaded, away)` hears of the bytes that came, and whether the server is
- * away at present. Returns `{ done, cancel }`; `done` resolves to the clip's id.
+ * Upload a file. `fields` are what is told of it beside its bytes, as the API names them.
+ * `onProgress(loaded, away)` hears of the bytes that came, and whether the server is away at
+ * present. Returns `{ done, cancel }`; `done` resolves to the clip's id.
  */
-export function upload(file, onProgress) {
+export function upload(file, fields, onProgress) {
   let call = null;
   let place = null;
   let came = 0; // bytes, as far as is known
@@ -102,7 +105,7 @@ export function upload(file, onProgress) {
     while (!at?.clip) {
       if (gone) throw cancelled();
       try {
-        at ??= await resume(file);
+        at ??= await resume(file, fields);
         ({ place } = at);
         came = at.offset;
         if (at.clip) break;

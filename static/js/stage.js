@@ -82,6 +82,13 @@ async function recognise() {
   button.disabled = false;
 }
 
+/** Recognise a clip that was asked about, as soon as its takes are there. */
+export async function answerQuestion({ question, takes, clip }) {
+  if (!question || question.clip !== clip || !takes) return;
+  update({ question: null });
+  await recogniseWith({ expected: question.expected });
+}
+
 /** Load the recognition that the URL names. */
 export async function loadResult() {
   const wanted = state.recognition;

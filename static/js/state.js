@@ -7,7 +7,7 @@ const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 // `returns` counts how often the server came back: what could not be asked meanwhile is asked then.
 const values = {
   view: null, source: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
-  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, connected: null, returns: 0, loaded: false, health: null, checking: null, recognised: null,
+  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, question: null, connected: null, returns: 0, loaded: false, health: null, checking: null, recognised: null,
   clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null, joint: null,
   panel: null, older: null, newer: null, pair: null, cell: null, phrase: null, shown: null, paused: null,
 };

@@ -4,10 +4,11 @@ import * as api from "./api.js";
 import { needsTopic, select } from "./clips.js";
 import { byId, h, icon, iconButton, reconcile } from "./dom.js";
 import { bytes, timeLeft } from "./format.js";
+import { askForVideo, kindOfJson, needsVideo } from "./keypoints.js";
 import { importLanguage } from "./languages.js";
 import { upload as send } from "./resumable.js";
 import { state, update } from "./state.js";
-import { complain } from "./toasts.js";
+import { complain, toast } from "./toasts.js";
 import { openTopics } from "./topics.js";
 
 const AT_ONCE = 2; // More only share the same line, and each would finish later.
@@ -16,18 +17,26 @@ let counter = 0;
 
 /** An upload that has not begun. */
 const waiting = (file, first, uploaded) => ({
-  key: String(counter++), file, first, uploaded, status: "waiting", loaded: 0, total: file.size, away: false, began: null, error: null, cancel: null,
+  key: String(counter++), file, first, uploaded, fields: {}, status: "waiting", loaded: 0, total: file.size, away: false, began: null, error: null, cancel: null,
 });
+
+/** Import a file ending in .json as a language where it is one; tells whether it is a clip instead. */
+async function isClip(file) {
+  const kind = await kindOfJson(file);
+  if (kind === "language") importLanguage(file);
+  else if (kind === "frame") toast("OpenPose\u2019s frames belong together", "Pack the folder that --write_json wrote as a .zip, and drop that.", { kind: "error" });
+  return kind === "keypoints";
+}
 
 /**
  * Take files in, whatever they are. `uploaded(id)` hears of each clip; without it the first clip
  * is shown.
  */
-export function addFiles(files, uploaded = null) {
+export async function addFiles(files, uploaded = null) {
   const added = [];
-  for (const file of files) {
-    if (/\.json$/i.test(file.name)) importLanguage(file);
-    else added.push(waiting(file, !added.length, uploaded));
+  // A list of its own: the browser empties the one of a drop, or of the field, meanwhile.
+  for (const file of [...files]) {
+    if (!/\.json$/i.test(file.name) || await isClip(file)) added.push(waiting(file, !added.length, uploaded));
   }
   if (added.length) update({ uploads: [...state.uploads, ...added] });
   startNext();
@@ -53,7 +62,7 @@ async function start(upload) {
     began = away ? null : began ?? { loaded, at: performance.now() };
     change(upload.key, { loaded, away, began });
   };
-  const call = send(upload.file, advanced);
+  const call = send(upload.file, upload.fields, advanced);
   change(upload.key, { status: "uploading", cancel: call.cancel, loaded: 0, away: false, began: null, error: null });
   try {
     const id = await call.done;
@@ -66,9 +75,26 @@ async function start(upload) {
     if (clip && needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
-    else change(upload.key, { status: "failed", error: error.message });
+    else change(upload.key, { status: "failed", error: error.message, refused: error });
+    if (needsVideo(error)) tellVideo(upload.key);
   }
   startNext();
+}
+
+/** Ask what a refused keypoint file does not tell, and send it again with that. */
+async function tellVideo(key) {
+  const { file, refused, fields } = state.uploads.find((each) => each.key === key) ?? {};
+  if (!refused || byId("dialog").open) return; // Retry asks again.
+  const told = await askForVideo(file.name, refused, fields);
+  if (!told) return;
+  change(key, { status: "waiting", fields: { ...fields, ...told } });
+  startNext();
+}
+
+function retry({ key, refused }) {
+  if (refused && needsVideo(refused)) return tellVideo(key);
+  change(key, { status: "waiting" });
+  return startNext();
 }
 
 function stage(upload) {
@@ -99,7 +125,7 @@ function draw(upload, element) {
       h("span", { className: "stage-text" }, stage(upload)),
       failed ? null : h("progress", { max: Math.max(1, upload.total), value: upload.loaded, "aria-label": `Upload of ${upload.file.name}` })),
     h("div", { className: "clip-buttons" },
-      failed ? iconButton("retry", `Retry ${upload.file.name}`, () => { change(key, { status: "waiting" }); startNext(); }) : null,
+      failed ? iconButton("retry", `Retry ${upload.file.name}`, () => retry(upload)) : null,
       iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop)));
 }
 
@@ -130,15 +156,12 @@ export function acceptFiles() {
     event.preventDefault();
     depth = 0;
     veil.hidden = true;
-    (takers.get(state.view) ?? addFiles)(event.dataTransfer.files);
+    const take = takers.get(state.view) ?? addFiles;
+    Promise.resolve(take(event.dataTransfer.files)).catch((error) => complain(error, "Adding the files"));
   });
   const input = byId("file");
   input.onchange = () => {
-    try {
-      addFiles(input.files);
-    } catch (error) {
-      complain(error, "Adding the files");
-    }
+    addFiles(input.files).catch((error) => complain(error, "Adding the files"));
     input.value = "";
   };
 }

@@ -1,7 +1,7 @@
 // The views of the page: one is shown at a time, named in the URL, and loaded when first shown.
 
 import { byId, h, reconcile } from "./dom.js";
-import { holdKeys } from "./keys.js";
+import { holdKeys, loadBeforeTelling } from "./keys.js";
 import { follow, state, update } from "./state.js";
 
 /** The view at the start, which the URL does not name. */
@@ -82,4 +82,6 @@ async function show() {
 /** Follow what is selected. A view's module exports `open(section)`, called when it is first shown. */
 export function followViews() {
   follow(["view"], show);
+  // Without the server what is here already is told.
+  loadBeforeTelling(() => Promise.allSettled(VIEWS.map(({ load }) => load?.())));
 }

@@ -1,10 +1,11 @@
 // What stands in the middle while there is nothing to show yet: the way to begin, or the progress.
 
 import * as api from "./api.js";
-import { BUSY, needsTopic, samplesList, statusText } from "./clips.js";
+import { addSample, BUSY, needsTopic, samplesList, statusText } from "./clips.js";
 import { byId, h } from "./dom.js";
+import { choose } from "./languages.js";
 import { drawPose, skeleton } from "./skeleton.js";
-import { selectedClip } from "./state.js";
+import { selectedClip, state, update } from "./state.js";
 import { topicsPanel } from "./topics.js";
 
 const STEPS = [
@@ -29,7 +30,27 @@ function offered(samples) {
   return [...kinds.values()];
 }
 
-function welcome(samples) {
+/** The sample that is misread, and what its diver meant: the shortest way to what this is about. */
+const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
+
+/** A button that shows why the misread sample is misread; null where it, or its language, is gone. */
+function question(samples, languages) {
+  const sample = samples.find(({ name }) => name === MISREAD.name);
+  const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
+  const language = languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
+  if (!sample || !language) return null;
+  const button = h("button", { type: "button", className: "question" },
+    h("b", {}, `Why was a ${MISREAD.expected} read as a ${MISREAD.read}?`),
+    h("span", {}, "A robot misread this sample clip. See which voters were wrong, when and why, and what would have helped."));
+  button.onclick = async () => {
+    await choose(language.id);
+    const clip = await addSample(sample, button);
+    if (clip) update({ question: { clip, expected: MISREAD.expected } });
+  };
+  return button;
+}
+
+function welcome(samples, languages) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
     h("ol", { className: "steps" }, STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text)))),
@@ -37,6 +58,7 @@ function welcome(samples) {
       h("button", { type: "button", className: "primary", onclick: () => byId("file").click() }, "Choose clips"),
       samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null),
     samples.length ? samplesList(offered(samples)) : null,
+    question(samples, languages),
   ];
 }
 
@@ -73,17 +95,17 @@ function showProgress(panel, clip, job) {
 }
 
 /** Draw it, or hide it when the frame has something to show. */
-export function drawWelcome({ clips, uploads, samples, jobs, loaded }) {
+export function drawWelcome({ clips, uploads, samples, languages, jobs, loaded }) {
   const box = byId("welcome");
   const clip = selectedClip();
   const busy = clip !== null && BUSY.has(clip.status);
   const nothing = loaded && !clips.length && !uploads.length;
   const asks = clip !== null && needsTopic(clip);
-  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : nothing ? `welcome ${samples.length}` : "";
+  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : nothing ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}` : "";
   box.hidden = !shows;
   if (box.dataset.shows !== shows) {
     box.dataset.shows = shows;
-    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : nothing ? [h("div", {}, welcome(samples))] : []));
+    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : nothing ? [h("div", {}, welcome(samples, languages))] : []));
   }
   if (busy) showProgress(box, clip, jobs.get(clip.job_id));
 }

@@ -131,6 +131,9 @@ const shares = (result, why) => h("p", { className: "share" },
   why ? shared(api.recognitions.analysisUrl(result.id), "Share as one file", "plays without a server") : null,
   shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"));
 
+/** The sentence that says why, with the voters' names as people read them. */
+const sentenceOf = ({ sentence }, { voters }) => voters.filter((name) => name.includes("_")).reduce((text, name) => text.replaceAll(name, readable(name)), sentence);
+
 /** Draw why, under the take. */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
@@ -143,7 +146,7 @@ export function drawWhy({ why, result, trial }) {
   const remedies = why && !why.right ? why.counterfactuals : [];
   const words = [
     trying,
-    why ? h("p", { className: "why-sentence" }, why.sentence) : null,
+    why ? h("p", { className: "why-sentence" }, sentenceOf(why, result)) : null,
     remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
     why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
     result ? shares(result, why) : null,

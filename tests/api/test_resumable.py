@@ -15,16 +15,21 @@ from app.settings import Settings
 from app.store import UploadStore
 from app.store.models import now
 from tests.api.running import Running, assert_problem, running, until
+from tests.api.test_bag_clips import two_divers
 from tests.api.test_clips import CLIPS, assert_nothing_kept
+from tests.bags.bag_files import file_of, write_bag
 
 UPLOADS = "/api/v1/uploads"
 TUS = {"Tus-Resumable": "1.0.0"}
 PART = TUS | {"Content-Type": "application/offset+octet-stream"}
 
 
-def begun(client: httpx.Client, size: int, name: str = "dive.mp4") -> str:
+def begun(client: httpx.Client, size: int, name: str = "dive.mp4", **fields: str) -> str:
     """Begin an upload, and return its path."""
-    metadata = f"filename {base64.b64encode(name.encode()).decode()},filetype dmlkZW8="
+    pairs = {"filename": name, "filetype": "video", **fields}
+    metadata = ",".join(
+        f"{key} {base64.b64encode(text.encode()).decode()}" for key, text in pairs.items()
+    )
     headers = TUS | {"Upload-Length": str(size), "Upload-Metadata": metadata}
     answer = client.post(UPLOADS, headers=headers)
     assert answer.status_code == 201, answer.text
@@ -87,6 +92,40 @@ def test_a_lost_connection_and_a_restart_lose_nothing_that_came(
         clip = sent(client, place, came, content[came:]).headers["content-location"]
         assert client.get(f"{clip}/video").content == content
         assert [each["name"] for each in client.get(CLIPS).json()] == ["dive.mp4"]
+
+
+def test_the_topic_of_a_dive_recording_comes_with_the_metadata(
+    settings: Settings, tmp_path: Path
+) -> None:
+    bag = file_of(write_bag(tmp_path / "dive", two_divers()))
+    content, half = bag.read_bytes(), bag.stat().st_size // 2
+    topic = "/leader/pose_keypoints"
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        place = begun(client, len(content), "dive.mcap", topic=topic)
+        assert sent(client, place, 0, content[:half]).status_code == 204
+    # It is remembered over a restart, as the bytes are.
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        clip = sent(client, place, half, content[half:]).headers["content-location"]
+        assert client.get(clip).json()["topic"] == topic
+        other = begun(client, len(content), "dive.mcap", topic="/nobody")
+        assert_problem(sent(client, other, 0, content), 422, "topic_unusable")
+        names = {each["name"] for each in client.get(CLIPS).json()}
+        assert names == {"dive.mcap"}
+
+
+@pytest.mark.parametrize(
+    ("pair", "status", "code"),
+    [
+        ("topic !!", 400, "malformed_upload"),
+        (f"topic {base64.b64encode(b'x' * 300).decode()}", 400, "malformed_upload"),
+        (f"frame_rate {base64.b64encode(b'fast').decode()}", 422, "field_invalid"),
+    ],
+)
+def test_metadata_that_cannot_be_is_refused_before_the_bytes_come(
+    client: httpx.Client, pair: str, status: int, code: str
+) -> None:
+    headers = TUS | {"Upload-Length": "3", "Upload-Metadata": pair}
+    assert_problem(client.post(UPLOADS, headers=headers), status, code)
 
 
 def test_what_is_no_video_is_refused_at_the_end_and_forgotten(

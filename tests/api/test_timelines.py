@@ -1,11 +1,14 @@
 """What lies along a clip's time: as many values as frames, and pictures."""
 
+from dataclasses import replace
+
 import httpx
 import numpy as np
 import pytest
 
 from app.api.studio import Studio
 from app.api.timelines import wrist_speeds
+from app.recognition import PoseSequence
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
 
@@ -34,6 +37,21 @@ def test_a_speed_is_in_torso_lengths_a_second() -> None:
     seconds = np.gradient(poses.time)
     assert (speeds["right_wrist"] * seconds).sum() == pytest.approx(way, rel=0.05)
     assert np.nanmax(speeds["left_wrist"]) < 0.1
+
+
+def test_without_wrists_there_is_no_speed() -> None:
+    recording = recording_of("circle")
+    poses = recording.poses
+    arms = [poses.landmarks.index(name) for name in ("left_shoulder", "right_elbow")]
+    only = PoseSequence(
+        landmarks=("left_shoulder", "right_elbow"),
+        xy=poses.xy[:, arms],
+        confidence=None,
+        time=poses.time,
+        frame_size=poses.frame_size,
+    )
+    speeds, _ = wrist_speeds(replace(recording, poses=only))
+    assert all(np.isnan(speed).all() for speed in speeds.values())
 
 
 def test_a_clip_that_is_not_read_yet_has_no_timeline(client: httpx.Client) -> None:

@@ -1,4 +1,4 @@
-"""A camera that is denied, allowed after all, and taken away while it records."""
+"""A camera that is denied, allowed after all, taken away while it records, or busy."""
 
 from __future__ import annotations
 
@@ -49,3 +49,30 @@ def test_a_camera_is_denied_then_allowed_and_lost_in_the_middle(
     expect(recorded.filter(has_text=re.compile(r"camera \d{4}-\d\d-\d\d"))).to_have_count(1)
     for each in server.studio.clips.all():
         server.studio.clips.delete(each.clip.id)
+
+
+BUSY = """
+const real = MediaDevices.prototype.getUserMedia;
+MediaDevices.prototype.getUserMedia = function (wanted) {
+  if (!window.cameraIsBusy) return real.call(this, wanted);
+  return Promise.reject(new DOMException("Could not start video source", "NotReadableError"));
+};
+window.cameraIsBusy = true;
+"""
+"""What Chromium answers while another program holds the camera. Its fake device can be held by any
+number of pages, so this one answer is given for it; all that the page does with it is real."""
+
+
+def test_a_camera_that_another_program_holds_is_told_and_tried_again(open_page: OpenPage) -> None:
+    page = open_page({"view": "live"}, scene=False)
+    page.context.grant_permissions(["camera"])
+    page.evaluate(BUSY)
+    page.get_by_role("button", name="Start the camera").click()
+    problem = page.locator("#live-problem")
+    expect(problem).to_contain_text("The camera does not answer")
+    expect(problem).to_contain_text("Another program or tab may be using it")
+    expect(page.get_by_role("button", name="Start the camera")).to_be_visible()
+    page.evaluate("window.cameraIsBusy = false")
+    problem.get_by_role("button", name="Try again").click()
+    expect(problem).to_be_hidden()
+    expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()

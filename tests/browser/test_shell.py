@@ -38,6 +38,9 @@ def test_a_question_mark_lists_all_keys_and_escape_closes_the_list(open_page: Op
     page.keyboard.press("?")
     listed = page.get_by_role("dialog", name="Keys")
     expect(listed.get_by_text("Undo", exact=True)).to_be_visible()
+    # Also those of views that were not opened so far.
+    for group in ("Playback", "Editing a gesture", "Two gestures side by side", "Live"):
+        expect(listed.get_by_role("heading", name=group, exact=True)).to_be_visible()
     page.keyboard.press("Escape")
     expect(listed).to_be_hidden()
 

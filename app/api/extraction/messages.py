@@ -50,6 +50,16 @@ class BagProbed(BaseModel):
     topics: tuple[TopicSeen, ...]
 
 
+class KeypointsProbed(BaseModel):
+    """What a keypoint file holds (`app.keypoint_files.read_keypoints`)."""
+
+    kind: Literal["keypoints_probed"] = "keypoints_probed"
+    width: int
+    height: int
+    duration: float
+    frames: int
+
+
 class Progressed(BaseModel):
     """How far the work is, and the newest pose.
 
@@ -90,7 +100,7 @@ class Failed(BaseModel):
     detail: str
 
 
-Message = Probed | BagProbed | Progressed | Finished | Failed
+Message = Probed | BagProbed | KeypointsProbed | Progressed | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 

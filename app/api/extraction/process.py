@@ -12,10 +12,12 @@ from contextlib import aclosing, asynccontextmanager
 from pathlib import Path
 
 from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.keypoint_source import KeypointSource
 from app.api.extraction.messages import (
     BagProbed,
     Failed,
     Finished,
+    KeypointsProbed,
     Message,
     Probed,
     Progressed,
@@ -42,6 +44,11 @@ _BAG_FAILED = Failed(
     code="bag_unreadable",
     detail="the process that read this dive recording broke off: the recording is damaged, or it "
     "needs more memory or time than a job may use; cut out the part with the gestures",
+)
+_KEYPOINTS_FAILED = Failed(
+    code="keypoints_unreadable",
+    detail="the process that read this keypoint file broke off: the file is damaged, or it needs "
+    "more memory or time than a job may use; cut out the part with the gestures",
 )
 _DECODER_HANGS = Failed(
     code="decoder",
@@ -70,6 +77,19 @@ async def probe_bag(bag: Path, settings: Settings) -> BagProbed | Failed:
     return _BAG_FAILED
 
 
+async def probe_keypoints(
+    file: Path, told: KeypointSource, settings: Settings
+) -> KeypointsProbed | Failed:
+    """Look into a keypoint file, in a process of its own."""
+    with _scratch(file.parent) as scratch:
+        command = [_place(scratch), "probe-keypoints", _how(told), str(file)]
+        async with aclosing(_messages(command, settings, PROBE_BAG_SECONDS)) as messages:
+            async for message in messages:
+                if isinstance(message, KeypointsProbed | Failed):
+                    return message
+    return _KEYPOINTS_FAILED
+
+
 async def extract(
     files: ClipFiles, settings: Settings
 ) -> AsyncGenerator[Progressed | Finished | Failed, None]:
@@ -88,6 +108,17 @@ async def extract_bag(
     with _scratch(bag.parent) as scratch:
         command = [_place(scratch), "extract-bag", f"--water={settings.water}", *chosen]
         command += [str(bag), *files.arguments]
+        async with aclosing(_extraction(command, settings)) as messages:
+            async for message in messages:
+                yield message
+
+
+async def extract_keypoints(
+    file: Path, told: KeypointSource, files: ClipFiles, settings: Settings
+) -> AsyncGenerator[Progressed | Finished | Failed, None]:
+    """Read a keypoint file, and write its recording and a video of the skeleton."""
+    with _scratch(file.parent) as scratch:
+        command = [_place(scratch), "extract-keypoints", _how(told), str(file), *files.arguments]
         async with aclosing(_extraction(command, settings)) as messages:
             async for message in messages:
                 yield message
@@ -127,6 +158,10 @@ def _scratch(folder: Path) -> Iterator[Path]:
     # Beside the recording: on the same disk, and swept at the next start if this process dies.
     with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=folder) as made:
         yield Path(made)
+
+
+def _how(told: KeypointSource) -> str:
+    return f"--told={told.model_dump_json()}"
 
 
 def _place(scratch: Path) -> str:

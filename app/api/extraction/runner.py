@@ -14,10 +14,12 @@ from starlette.concurrency import run_in_threadpool
 from app.api.broadcast import Broadcast
 from app.api.extraction import process
 from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.keypoint_source import KeypointSource
 from app.api.extraction.messages import (
     BagProbed,
     Failed,
     Finished,
+    KeypointsProbed,
     Pose,
     Probed,
     Progressed,
@@ -118,6 +120,11 @@ class ExtractionRunner:
         async with self._probing:
             return await process.probe_bag(bag, self._settings)
 
+    async def probe_keypoints(self, file: Path, told: KeypointSource) -> KeypointsProbed | Failed:
+        """Look into a received keypoint file, in a process of its own."""
+        async with self._probing:
+            return await process.probe_keypoints(file, told, self._settings)
+
     async def write_session(self, clip_id: str, wishes: bytes, session: Path) -> Finished | Failed:
         """Write a clip's session as MCAP, in a process of its own."""
         async with self._probing:
@@ -182,7 +189,11 @@ class ExtractionRunner:
         except NotFound:
             return  # Deleted meanwhile; its job is about to be cancelled.
         files = self._files(clip.id)
-        if clip.from_bag:
+        if clip.keypoints is not None:
+            told = KeypointSource.model_validate_json(clip.keypoints)
+            file = self._clips.keypoints(clip.id)
+            messages = process.extract_keypoints(file, told, files, self._settings)
+        elif clip.from_bag:
             bag = self._clips.bag(clip.id)
             messages = process.extract_bag(bag, clip.topic, files, self._settings)
         else:

@@ -23,6 +23,7 @@ from app.api.extraction.messages import (
     BagProbed,
     Failed,
     Finished,
+    KeypointsProbed,
     Message,
     Probed,
     Progressed,
@@ -32,6 +33,7 @@ from app.api.extraction.messages import (
 )
 
 if TYPE_CHECKING:
+    from app.api.extraction.keypoint_source import KeypointSource
     from app.recognition.estimation.base import Body, FrameLandmarks
     from app.recognition.estimation.water import WaterCorrection
     from app.recognition.recording import Recording
@@ -92,6 +94,43 @@ def extract_bag(
     )
     partial.replace(files.video)
     steps.save(recorded)
+
+
+def probe_keypoints(file: Path, told: KeypointSource, report: Report) -> None:
+    """Report what a keypoint file holds; all of it is read, as there is no other way to know."""
+    from app.api.extraction.keypoint_clip import read_recording
+    from app.keypoint_files import is_openpose_archive
+
+    if told.ending == ".zip" and not is_openpose_archive(file):
+        detail = (
+            "the archive holds neither a dive recording (no .mcap and no .db3 file) nor frames of "
+            "OpenPose (*_keypoints.json)"
+        )
+        report(Failed(code="unsupported_media_type", detail=detail))
+        return
+    read = read_recording(file, told)
+    if isinstance(read, Failed):
+        report(read)
+        return
+    poses = read.poses
+    width, height = poses.frame_size
+    report(KeypointsProbed(width=width, height=height, duration=poses.duration, frames=len(poses)))
+
+
+def extract_keypoints(file: Path, told: KeypointSource, files: ClipFiles, report: Report) -> None:
+    """Write the video of a keypoint file's skeleton, pictures and recording, as `extract` does."""
+    from app.api.extraction.keypoint_clip import read_recording
+    from app.bags import show_recording
+
+    read = read_recording(file, told)
+    if isinstance(read, Failed):
+        report(read)
+        return
+    steps = _Steps(files, report, poster=True)
+    partial = files.video.with_suffix(".part")
+    show_recording(read, partial, steps.progress, steps.observe)
+    partial.replace(files.video)
+    steps.save(read)
 
 
 def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report) -> None:
@@ -236,7 +275,7 @@ def main() -> None:
     except RecognitionError as error:
         codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
         # Our own name of the file means nothing to whoever sent it.
-        name = (chosen.bag if chosen.command.endswith("bag") else chosen.clip).name
+        name = _received(chosen).name
         detail = str(error).replace(name, "the clip")
         report(Failed(code=codes.get(type(error), "video_unreadable"), detail=detail))
     except OSError as error:
@@ -256,6 +295,8 @@ def _arguments() -> argparse.Namespace:
         "probe-bag": ("bag",),
         "extract": clip,
         "extract-bag": ("bag", *clip),
+        "probe-keypoints": ("keypoints",),
+        "extract-keypoints": ("keypoints", *clip),
         "session": ("wanted", "session", *clip),
     }.items():
         taking = commands.add_parser(command)
@@ -263,6 +304,7 @@ def _arguments() -> argparse.Namespace:
             taking.add_argument(name, type=Path)
         taking.add_argument("--water", default="auto")
         taking.add_argument("--topic")
+        taking.add_argument("--told", help="how a keypoint file is read, as JSON")
     return parser.parse_args()
 
 
@@ -276,8 +318,25 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
             extract(_files(chosen), chosen.water, report)
         case "extract-bag":
             extract_bag(chosen.bag, chosen.topic, _files(chosen), chosen.water, report)
+        case "probe-keypoints":
+            probe_keypoints(chosen.keypoints, _told(chosen), report)
+        case "extract-keypoints":
+            extract_keypoints(chosen.keypoints, _told(chosen), _files(chosen), report)
         case "session":
             write_session(chosen.wanted, chosen.session, _files(chosen), report)
+
+
+def _received(chosen: argparse.Namespace) -> Path:
+    """Return the file that somebody sent."""
+    named = vars(chosen)
+    received: Path = named.get("bag") or named.get("keypoints") or named["clip"]
+    return received
+
+
+def _told(chosen: argparse.Namespace) -> KeypointSource:
+    from app.api.extraction.keypoint_source import KeypointSource
+
+    return KeypointSource.model_validate_json(chosen.told)
 
 
 def _files(chosen: argparse.Namespace) -> ClipFiles:

@@ -184,15 +184,16 @@ export function open(section) {
   // What could not be asked while the server was away is asked now.
   follow(["returns"], () => editor?.changed());
   guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
-  const when = () => state.view === "gesture" && editor !== null;
-  const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
-  keys(["Ctrl+Z"], "Undo in the draft", undo);
-  keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
-  keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
-  for (const [key, by, text] of [[",", -1, "One frame back"], [".", 1, "One frame on"], ["Shift+,", -10, "Ten frames back"], ["Shift+.", 10, "Ten frames on"]]) keys([key], text, () => editor.take.step(by));
-  keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
-  keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
 }
+
+const when = () => state.view === "gesture" && editor !== null;
+const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
+keys(["Ctrl+Z"], "Undo in the draft", undo);
+keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
+keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
+for (const [key, by, text] of [[",", -1, "One frame back"], [".", 1, "One frame on"], ["Shift+,", -10, "Ten frames back"], ["Shift+.", 10, "Ten frames on"]]) keys([key], text, () => editor.take.step(by));
+keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
+keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
 
 /** The language has another revision: where this gesture stayed as it was, that one is changed. */
 function adopt(about) {

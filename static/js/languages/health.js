@@ -11,6 +11,14 @@ let asking = false;
 
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
+/** What the line says until the report is there. */
+function promise(line) {
+  line.hidden = false;
+  line.className = "health pending";
+  line.textContent = "Health is being checked";
+  line.removeAttribute("title");
+}
+
 /** The line under a card: what was found, in words and with a mark of its own. */
 function write(line, report) {
   if (!report) return;
@@ -32,6 +40,7 @@ async function next() {
     write(line, reports.get(keyOf(language)));
   } catch (error) {
     // A card without a report is no worse than before; one that is deleted is not shown any more.
+    line.hidden = true;
     if (error.status === 404) offered = false;
   }
   asking = false;
@@ -55,7 +64,8 @@ export function showHealth(card, language) {
   line.hidden = true;
   seen.unobserve(card);
   if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
-  if (!language.labels.length) return undefined;
+  if (!language.labels.length || !offered) return undefined;
+  promise(line);
   card.language = language;
   return seen.observe(card);
 }

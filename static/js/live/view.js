@@ -56,7 +56,8 @@ function drawControls() {
 
 function drawClipChoice() {
   const choice = byId("live-clips");
-  choice.replaceChildren(...state.clips.map((clip) => h("option", { value: clip.id, selected: clip.id === state.clip }, clip.name)));
+  // In a drawn skeleton the models find nobody.
+  choice.replaceChildren(...state.clips.filter((clip) => clip.shows_pictures).map((clip) => h("option", { value: clip.id, selected: clip.id === state.clip }, clip.name)));
   drawControls();
 }
 
@@ -217,10 +218,11 @@ function wire() {
   byId("live-cameras").onchange = start;
   byId("live-clips").onchange = ({ target }) => { stop(); update({ clip: target.value, take: null, start: null, end: null, frame: null, recognition: null }); };
   byId("live-clear").onclick = () => clearResults("Show a gesture between two salutes.");
-  const when = () => state.view === "live";
-  bind({ keys: ["Space"], text: "Start or stop watching", group: "Live", run: toggle, when });
-  bind({ keys: ["R"], text: "Record a clip from the camera, or stop", group: "Live", run: () => { if (!fromClip()) toggleRecording(); }, when });
 }
+
+const when = () => state.view === "live";
+bind({ keys: ["Space"], text: "Start or stop watching", group: "Live", run: toggle, when });
+bind({ keys: ["R"], text: "Record a clip from the camera, or stop", group: "Live", run: () => { if (!fromClip()) toggleRecording(); }, when });
 
 /** Called once, when the view is first shown. */
 export function open(section) {

@@ -1,0 +1,76 @@
+"""What a sender tells about a file beside its bytes: as fields of a form, or as tus metadata."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Final
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+
+from app.api.problems import Fault, ProblemError
+from app.keypoint_files import KeypointOptions
+
+LONGEST_TOPIC: Final = 255
+"""Bytes of a topic's name: as long as ROS allows one to be."""
+
+_LONGEST_NUMBER: Final = 32
+"""Bytes of a rate or a size: more digits than any has."""
+
+LONGEST: Final[Mapping[str, int]] = {
+    "topic": LONGEST_TOPIC,
+    "frame_rate": _LONGEST_NUMBER,
+    "frame_size": _LONGEST_NUMBER,
+}
+"""The names of the fields, and the bytes that each may have."""
+
+FASTEST: Final = 1000.0
+"""Frames per second: no camera under water takes more."""
+
+Size = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,4}\s*[xX]\s*[1-9]\d{0,4}$")]
+
+
+class UploadFields(BaseModel):
+    """What the fields say; each is None where there is none, or an empty one."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", str_strip_whitespace=True)
+
+    topic: str | None = Field(
+        default=None, description="Of a dive recording with several topics: which one"
+    )
+    frame_rate: Annotated[float, Field(gt=0, le=FASTEST)] | None = Field(
+        default=None, description="Of a keypoint file that counts frames: its video's, a second"
+    )
+    frame_size: Size | None = Field(
+        default=None,
+        description="Of a keypoint file that tells fractions of the picture: pixels, as 1920x1080",
+    )
+
+    @classmethod
+    def read(cls, texts: Mapping[str, str]) -> UploadFields:
+        """Read the fields; unknown ones are passed over, as both protocols have it.
+
+        Raises
+        ------
+        ProblemError
+            422 when one says what it cannot.
+
+        """
+        told = {name: texts[name] for name in LONGEST if texts.get(name, "").strip()}
+        try:
+            return cls.model_validate(told)
+        except ValidationError as error:
+            faults = [
+                Fault(pointer="", parameter=str(fault["loc"][0]), detail=fault["msg"])
+                for fault in error.errors(include_url=False)
+            ]
+            detail = "; ".join(f"the field {fault.parameter}: {fault.detail}" for fault in faults)
+            raise ProblemError(422, "field_invalid", detail, errors=faults) from error
+
+    @property
+    def keypoints(self) -> KeypointOptions:
+        """What they say of a keypoint file."""
+        size = None
+        if self.frame_size is not None:
+            width, height = self.frame_size.lower().split("x")
+            size = int(width), int(height)
+        return KeypointOptions(self.frame_rate, size)

@@ -1,0 +1,78 @@
+"""A recording of landmarks as a video to look at: the skeleton on black, frame by frame."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+
+from app.bags.keypoints import even
+from app.bags.skeleton_picture import skeleton_picture
+from app.bags.video_file import VideoFile
+from app.recognition.estimation.base import Body, FrameLandmarks
+from app.recognition.extraction import Observer, Progress
+from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.recording import Recording
+from app.recognition.video import VideoFrame
+from app.recognition.video_limits import VideoLimits
+
+
+def show_recording(
+    recording: Recording,
+    video: Path | None,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
+) -> None:
+    """Draw a recording's frames one by one where somebody wants to look at them.
+
+    Parameters
+    ----------
+    recording
+        Of any landmarks; those of `POSE_LANDMARKS` are drawn.
+    video
+        Where to write them as a video (`VideoFile`); None: nowhere.
+    progress, observer
+        See `app.recognition.extraction.record`.
+
+    Raises
+    ------
+    VideoError
+        When its pictures would be larger than those of a clip may be.
+
+    """
+    poses = recording.poses
+    if video is None and observer is None:
+        return
+    size = even(poses.frame_size)
+    VideoLimits().require_pixels(*size)
+    xy, confidence = _whole_body(poses)
+    with ExitStack() as open_files:
+        file = None
+        if video is not None:
+            file = open_files.enter_context(VideoFile(video, *size))
+        for index, time in enumerate(poses.time.tolist()):
+            image = skeleton_picture(xy[index], size)
+            if file is not None:
+                file.add(image, time)
+            if observer is not None:
+                seen = bool(np.isfinite(xy[index]).any())
+                body = Body(xy[index], confidence[index], 1.0) if seen else None
+                frame = VideoFrame(index, time, image)
+                observer(frame, FrameLandmarks(body, recording.hands[index]))
+            if progress is not None:
+                progress(index + 1, len(poses))
+
+
+def _whole_body(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:
+    """Return ``(T, 33, 2)`` and ``(T, 33)`` of `POSE_LANDMARKS`; what is not given is not seen."""
+    xy = np.full((len(poses), len(POSE_LANDMARKS), 2), np.nan)
+    confidence = np.zeros(xy.shape[:2])
+    known = [name for name in poses.landmarks if name in POSE_LANDMARKS]
+    rows = [poses.landmarks.index(name) for name in known]
+    places = [POSE_LANDMARKS.index(name) for name in known]
+    xy[:, places] = poses.xy[:, rows]
+    given = poses.seen if poses.confidence is None else poses.confidence
+    confidence[:, places] = given[:, rows]
+    return xy, confidence

@@ -1,0 +1,76 @@
+"""A keypoint file's place while it is read: archives that lie are refused."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from app.keypoint_files import keypoint_ending, placed
+from app.recognition.errors import KeypointFileError, VideoError
+from app.recognition.video_limits import VideoLimits
+
+
+def archive_of(path: Path, **entries: str) -> Path:
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in entries.items():
+            archive.writestr(name, content)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("head", "name", "ending"),
+    [
+        (b"PK\x03\x04", "dive.csv", ".zip"),
+        (b"\x89HDF\r\n\x1a\n", "dive.SLP", ".slp"),
+        (b"\x89HDF\r\n\x1a\n", "dive", ".h5"),
+        (b"frame,x0", "Dive.CSV", ".csv"),
+        (b"[]", "dive.json", ".json"),
+        (b"[]", "dive.slp", None),
+        (b"a\0b", "dive.csv", None),
+        (b"frame,x0", "dive.txt", None),
+    ],
+)
+def test_what_a_file_is_read_as_follows_from_its_bytes_first(
+    head: bytes, name: str, ending: str | None
+) -> None:
+    assert keypoint_ending(head, name) == ending
+
+
+def test_a_file_gets_its_ending_back_and_stays_where_it_is(tmp_path: Path) -> None:
+    file = tmp_path / "received"
+    file.write_text("x")
+    with placed(file, ".csv") as place:
+        assert (place.suffix, place.read_text()) == (".csv", "x")
+    assert not place.exists()
+    assert file.read_text() == "x"
+
+
+def test_only_frames_are_unpacked_and_no_name_becomes_a_path(tmp_path: Path) -> None:
+    entries = {"../../a_1_keypoints.json": "{}", "__MACOSX/._a.json": "", "notes.txt": "x"}
+    with placed(archive_of(tmp_path / "z", **entries), ".zip") as place:
+        assert [each.name for each in place.iterdir()] == ["a_1_keypoints.json"]
+
+
+@pytest.mark.parametrize(
+    ("entries", "words"),
+    [
+        ({"notes.txt": "x"}, "no frames of OpenPose"),
+        ({"one/1.json": "{}", "two/1.json": "{}"}, "'1.json' twice"),
+        ({"1.json": " " * 5_000_000}, "more than frames of OpenPose can be"),
+    ],
+)
+def test_other_archives_are_refused(tmp_path: Path, entries: dict[str, str], words: str) -> None:
+    path = archive_of(tmp_path / "z", **entries)
+    with pytest.raises(KeypointFileError, match=words), placed(path, ".zip"):
+        pytest.fail("it was unpacked")
+
+
+def test_damaged_archives_and_those_of_too_many_frames_are_refused(tmp_path: Path) -> None:
+    path = archive_of(tmp_path / "z", **{f"{n}.json": "{}" for n in range(3)})
+    with pytest.raises(VideoError, match="limit of 2"), placed(path, ".zip", VideoLimits(frames=2)):
+        pytest.fail("it was unpacked")
+    path.write_bytes(path.read_bytes()[:-30])
+    with pytest.raises(KeypointFileError, match="damaged"), placed(path, ".zip"):
+        pytest.fail("it was unpacked")
