@@ -99,7 +99,7 @@ function figure(alignment, part, box, why) {
     other.setAttribute("d", they.map(dot).join(""));
     words.textContent = `${moment(time[step])} with ${moment(theirs[pairs[here[0]][1]])} of ${label}: ${percent(sum(here.map((index) => shares[index])))}`;
   };
-  const caption = h("figcaption", {}, h("i", { className: kind }), h("b", { className: kind }, label), h("span", { className: "dim" }, [role, asCompared(alignment)].filter(Boolean).join(", ")), h("span", { className: "num" }, `distance ${alignment.distance.toFixed(3)}`));
+  const caption = h("figcaption", {}, h("i", { className: kind }), h("b", { className: kind, title: label }, label), h("span", { className: "dim" }, [role, asCompared(alignment)].filter(Boolean).join(", ")), h("span", { className: "num" }, `distance ${alignment.distance.toFixed(3)}`));
   return { element: h("figure", {}, caption, drawing, words), show };
 }
 

@@ -60,17 +60,23 @@ let loadAll = async () => {};
 /** Let `load()` bring the modules that bind keys and were not needed so far, before all are told. */
 export const loadBeforeTelling = (load) => { loadAll = load; };
 
-/** Show all keys, by what they belong to. */
-export async function showKeys() {
-  await loadAll();
-  const dialog = byId("dialog");
-  if (dialog.open) return;
+/** Write the keys that are bound by now, by what they belong to. */
+function drawKeys(list) {
   const groups = [...new Set(bound.map((each) => each.group))];
+  list.replaceChildren(...groups.map((group) => h("section", {},
+    h("h3", {}, group),
+    h("dl", {}, bound.filter((each) => each.group === group).map((each) => h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)))))));
+}
+
+/** Show all keys: those known here at once, and those of views that were not opened as they come. */
+export function showKeys() {
+  const dialog = byId("dialog");
+  const list = h("div", { className: "key-groups" });
+  drawKeys(list);
+  loadAll().then(() => drawKeys(list));
   dialog.replaceChildren(h("div", { className: "key-list" },
     h("h2", { id: "dialog-title" }, "Keys"),
-    groups.map((group) => h("section", {},
-      h("h3", {}, group),
-      h("dl", {}, bound.filter((each) => each.group === group).map((each) => h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)))))),
+    list,
     h("div", { className: "dialog-actions" },
       h("button", { type: "button", onclick: () => { dialog.close(); import("./tour.js").then(({ startTour }) => startTour()); } }, "Tour"),
       h("button", { type: "button", className: "primary", onclick: () => dialog.close() }, "Close"))));

@@ -2,6 +2,7 @@
 
 import { h } from "../dom.js";
 
+const MANY = 12; // Columns; more fit into a page only when their names are written upwards.
 const STRONGEST = 55; // Per cent of the accent in a full cell: the number on it stays readable.
 
 const STEPS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0], Home: [0, -Infinity], End: [0, Infinity] };
@@ -41,7 +42,7 @@ const head = (role, { label, image }) => h("th", { role, scope: role === "rowhea
  * and returns `{ text, amount, label, className, open }`, `amount` in [0, 1].
  */
 export function confusionGrid({ label, corner, rows, columns, cell }) {
-  const table = h("table", { role: "grid", className: "confusion", "aria-label": label },
+  const table = h("table", { role: "grid", className: `confusion${columns.length > MANY ? " many" : ""}`, "aria-label": label },
     h("thead", {}, h("tr", { role: "row" }, h("th", { role: "columnheader", className: "corner" }, corner), columns.map((column) => head("columnheader", column)))),
     h("tbody", {}, rows.map((row, index) => h("tr", { role: "row" }, head("rowheader", row), columns.map((_, column) => drawCell(cell(index, column)))))));
   const first = table.querySelector("td.opens") ?? table.querySelector("td");

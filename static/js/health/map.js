@@ -6,6 +6,7 @@ const WIDTH = 600;
 const HEIGHT = 420;
 const ROUNDS = 300; // Of moving apart; thirty thumbnails come to rest within a hundred.
 const LABEL = 18; // Height of the line under a thumbnail.
+const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
 
 /** A size of which all fit with room to spare. */
 const sizeOf = (count) => Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
@@ -36,7 +37,8 @@ export function apart(places, size) {
   for (let round = 0; round < ROUNDS; round += 1) {
     moved.forEach((one, index) => moved.slice(index + 1).forEach((other) => pushApart(one, other, index, width, height)));
     for (const place of moved) {
-      place.x = Math.max(width / 2, Math.min(WIDTH - width / 2, place.x));
+      const side = Math.max(width, WIDEST * size + 4) / 2;
+      place.x = Math.max(side, Math.min(WIDTH - side, place.x));
       place.y = Math.max(height / 2, Math.min(HEIGHT - height / 2, place.y));
     }
   }

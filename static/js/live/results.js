@@ -39,6 +39,12 @@ export function addResult(result, clip) {
   byId("live-clear").hidden = false;
 }
 
+/** Say that a clip was played to its end in vain; `rate` is how many frames a second were looked at. */
+export function nothingHeard(clip, rate) {
+  const looked = rate === null ? "No frame of it could be looked at in time" : `${rate.toFixed(1)} frames a second of it were looked at`;
+  byId("live-result").replaceChildren(h("p", {}, `Nothing was recognised in ${clip.name}. ${looked}; tick \u201cEvery frame\u201d and play it again to miss none.`));
+}
+
 /** Forget what was recognised. */
 export function clearResults(text) {
   byId("live-heard").replaceChildren();

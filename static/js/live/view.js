@@ -11,7 +11,7 @@ import { panel } from "./layout.js";
 import { openLink } from "./link.js";
 import { drawSeen, overlay } from "./overlay.js";
 import { countDown, record } from "./recording.js";
-import { addResult, clearResults } from "./results.js";
+import { addResult, clearResults, nothingHeard } from "./results.js";
 import { sayState, saySpeed } from "./saying.js";
 import { CAMERA_LOST, cameraPossible, cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./source.js";
 
@@ -26,10 +26,14 @@ let drawing = null;
 let recording = null;
 let counting = null;
 let ending = 0; // timer of a recording's end
+let heard = 0; // takes that were recognised since the source was started
+let rate = null; // frames a second that were looked at of late
 
 const video = () => byId("live-video");
 const fromClip = () => state.source === "clip";
-const chosenClip = () => state.clips.find((clip) => clip.id === state.clip) ?? null;
+// In a drawn skeleton the models find nobody.
+const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
+const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
 
 function problem(trouble) {
   const box = byId("live-problem");
@@ -56,8 +60,8 @@ function drawControls() {
 
 function drawClipChoice() {
   const choice = byId("live-clips");
-  // In a drawn skeleton the models find nobody.
-  choice.replaceChildren(...state.clips.filter((clip) => clip.shows_pictures).map((clip) => h("option", { value: clip.id, selected: clip.id === state.clip }, clip.name)));
+  const chosen = chosenClip();
+  choice.replaceChildren(...pictured().map((clip) => h("option", { value: clip.id, selected: clip === chosen }, clip.name)));
   drawControls();
 }
 
@@ -103,12 +107,19 @@ function seen(answer, seconds) {
   drawSeen(drawing, answer);
   sayState(answer);
   saySpeed(answer, seconds);
+  rate = answer.frames_per_second;
   if (recording && answer.state === "done" && byId("live-autostop").checked && !ending) ending = setTimeout(endRecording, AFTER_SALUTE);
 }
 
 function lost(trouble) {
   stop();
   problem(trouble);
+}
+
+/** A clip was played to its end; a machine too slow to look at it must not look like a blind one. */
+function clipEnded(clip) {
+  stop();
+  if (!heard) nothingHeard(clip, rate);
 }
 
 const ended = (reason) => lost({ title: "The live view ended", text: reason });
@@ -132,6 +143,7 @@ async function showSource() {
 /** Show the camera or the clip, and begin to look at its frames. */
 async function start() {
   stop();
+  [heard, rate] = [0, null];
   problem(null);
   const clip = fromClip() ? chosenClip() : null;
   const button = byId("live-start");
@@ -151,7 +163,7 @@ async function start() {
     stop();
     return false;
   }
-  const opened = openLink({ seen, listening, ended, recognized: (result) => addResult(result, clip) });
+  const opened = openLink({ seen, listening, ended, recognized: (result) => { heard += 1; addResult(result, clip); } });
   link = opened;
   link.listen(state.language);
   drawControls();
@@ -159,7 +171,7 @@ async function start() {
   await opened.opened;
   if (link !== opened) return false;
   const every = clip && byId("live-every").checked;
-  video().onended = () => { if (clip) stop(); };
+  video().onended = () => { if (clip) clipEnded(clip); };
   if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
   stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
   if (clip && !every) await video().play();
