@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
@@ -79,7 +80,7 @@ def test_undo_does_not_take_back_what_another_tab_did(
 
 
 def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
-    open_page: OpenPage, library: Library
+    open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
     page = open_page({**library.address, "recognition": library.recognise("line")}, scene=False)
     why = page.get_by_role("region", name="Why")
@@ -117,3 +118,16 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     told.value.finished()
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
     expect(why).to_contain_text("instead of 'line'")
+
+    # The reasons leave as a file that plays where there is neither server nor network.
+    with page.expect_download() as download:
+        why.get_by_role("link", name="Share as one file").click()
+    analysis = tmp_path / "analysis.html"
+    download.value.save_as(analysis)
+    page.context.set_offline(True)
+    page.goto(analysis.as_uri())
+    expect(page.get_by_text("instead of 'line'")).to_be_visible()
+    frame = page.get_by_label("Frame", exact=True)
+    expect(frame).to_have_value("0")
+    page.get_by_role("button", name="Play", exact=True).click()
+    expect(frame).not_to_have_value("0")

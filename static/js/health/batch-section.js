@@ -6,7 +6,7 @@ import { plural } from "../format.js";
 import { follow, state, update } from "../state.js";
 import { takeFilesIn } from "../uploads.js";
 import { address, go, here } from "../views.js";
-import { addTestClips, correct, csvOf, forget, loadTested, means, repeat, testedOf, waitingClips, workOff } from "./batch.js";
+import { addTestClips, correct, csvOf, leaveOut, leaveWaiting, loadTested, means, repeat, testedOf, waitingClips, workOff } from "./batch.js";
 import { confusionGrid } from "./grid.js";
 import { pairName, pairOf } from "./links.js";
 
@@ -59,7 +59,7 @@ function waitingRow({ clip, expected, busy }) {
   return h("tr", { className: "waiting", "data-key": clip.id },
     h("td", {}, clip.name), h("td", {}, labelSelect(clip.name, expected, (label) => means(clip.id, label))),
     h("td", { colSpan: 2 }, h("span", { className: "stage-text" }), busy ? h("progress", { "aria-label": `Poses of ${clip.name}` }) : null),
-    h("td", {}, iconButton("close", `Leave ${clip.name} out of the test`, () => forget(clip.id))));
+    h("td", {}, iconButton("close", `Leave ${clip.name} out of the test`, () => leaveWaiting(clip))));
 }
 
 function uploadRow({ key, file, status, cancel }) {
@@ -84,7 +84,7 @@ function takeRow(take, takes) {
     h("td", {}, h("span", { className: "outcome-sign", "aria-hidden": "true" }, take.right ? "\u2713" : "\u2260"), h("span", {}, take.right ? "right: " : "wrong: "), h("b", {}, readAs(take)),
       take.label === null ? h("small", { className: "dim" }, `, nearest ${take.nearest}`) : null),
     h("td", { className: "num" }, `${Math.round(100 * take.confidence)} %`),
-    h("td", {}, iconButton("close", `Leave ${name} out of the test`, () => correct(take, null))));
+    h("td", {}, iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name))));
 }
 
 /** The counts, meant by read; a cell opens its clip, or the list of its clips. */

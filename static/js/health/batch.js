@@ -7,7 +7,7 @@ import * as api from "../api.js";
 import { BUSY } from "../clips.js";
 import { proposed } from "../gestures.js";
 import { state, update } from "../state.js";
-import { attempt, complain } from "../toasts.js";
+import { attempt, complain, toast } from "../toasts.js";
 import { addFiles } from "../uploads.js";
 
 const KEY = "osg-studio.batch"; // sessionStorage: clips whose poses are still being found, over a reload.
@@ -59,8 +59,23 @@ export const meantBy = ({ clip, expected }) => expected ?? proposed(state.clips.
 /** Say what a clip that was not recognised yet shows. */
 export const means = (clip, expected) => setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
 
+/** A clip that was waiting is recognised, or is no part of the test any more. */
+const forget = (clip) => setPending(state.pending.filter((each) => each.clip !== clip));
+
+const leftOut = (name, run) => toast("Left out of the test", `${name} stays among the clips.`, { action: { label: "Undo", run } });
+
 /** Leave a clip out of the test that was not recognised yet. */
-export const forget = (clip) => setPending(state.pending.filter((each) => each.clip !== clip));
+export function leaveWaiting({ id, name }) {
+  const kept = state.pending.find(({ clip }) => clip === id);
+  forget(id);
+  leftOut(name, () => setPending([...state.pending, kept]));
+}
+
+/** Leave a take out of the test; `name` is what it is called. */
+export async function leaveOut(take, name) {
+  await correct(take, null);
+  leftOut(name, () => correct(take, take.expected));
+}
 
 let working = false;
 
