@@ -98,7 +98,7 @@ async def _examined_video(
         )
     probed = await studio.runner.probe(partial)
     if isinstance(probed, Failed):
-        raise ProblemError(422, probed.code, f"{name}: {probed.detail}")
+        raise _refused(probed, name)
     return Clip(
         name=name,
         media_type=media_type,

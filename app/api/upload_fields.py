@@ -28,6 +28,8 @@ FASTEST: Final = 1000.0
 
 Size = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,4}\s*[xX]\s*[1-9]\d{0,4}$")]
 
+"""Width and height in pixels, as ``1920x1080``."""
+
 
 class UploadFields(BaseModel):
     """What the fields say; each is None where there is none, or an empty one."""

@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 
 from app.recognition.landmark_sets import BODY_25
-from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.video import probe
 from app.settings import Settings
 from tests.api.running import assert_problem
 from tests.api.test_bag_clips import CLIPS, assert_nothing_kept, finished, upload
 from tests.keypoint_files.files import (
     renamed,
-    write_deeplabcut,
     write_named,
     write_numbered,
     write_openpose,
@@ -42,21 +40,6 @@ def packed(folder: Path, *, prefix: str = "dive/") -> Path:
     return path
 
 
-def written(folder: Path, form: str) -> Path:
-    """Write a circle the way another program would."""
-    poses, arms = (
-        recording(circle, frames=FRAMES, landmarks=names) for names in (POSE_LANDMARKS, tuple(BODY))
-    )
-    match form:
-        case "openpose":
-            return packed(write_openpose(folder / "json", arms, BODY_25))
-        case "deeplabcut":
-            return write_deeplabcut(folder / "dive.csv", {"diver": arms})
-        case "numbered":
-            return write_numbered(folder / "dive.csv", poses)
-    return write_named(folder / "dive.csv", poses)
-
-
 @pytest.fixture
 def language(client: httpx.Client, tmp_path: Path) -> str:
     """Import a language of a circle and a line, and return its id."""
@@ -78,11 +61,11 @@ def added(client: httpx.Client, path: Path, **fields: str) -> dict[str, Any]:
     return finished(client, answer.json()["id"])
 
 
-@pytest.mark.parametrize("form", ["openpose", "deeplabcut"])
 def test_a_keypoint_file_becomes_a_clip_that_is_recognised(
-    client: httpx.Client, language: str, tmp_path: Path, form: str
+    client: httpx.Client, language: str, tmp_path: Path
 ) -> None:
-    path = written(tmp_path, form)
+    arms = recording(circle, frames=FRAMES, landmarks=tuple(BODY))
+    path = packed(write_openpose(tmp_path / "json", arms, BODY_25))
     clip = added(client, path, **BOTH)
     assert (clip["status"], clip["name"], clip["frames"]) == ("done", path.name, FRAMES)
     assert clip["shows_pictures"] is False
@@ -99,30 +82,18 @@ def test_a_keypoint_file_becomes_a_clip_that_is_recognised(
     assert poses["time"][-1] == pytest.approx(clip["duration"], abs=1e-6)
     column = poses["landmarks"].index("right_wrist")
     wrist = np.array([frame[column] for frame in poses["xy"]], dtype=np.float64)
-    shown_at = recording(circle, frames=FRAMES, landmarks=tuple(BODY)).column("right_wrist")
-    assert np.allclose(wrist, shown_at, atol=0.01)
+    assert np.allclose(wrist, arms.column("right_wrist"), atol=0.01)
     answer = recognised(client, clip["id"], language)
     assert answer.status_code == 201, answer.text
     assert answer.json()["label"] == "circle"
 
 
-def test_a_keypoint_clip_can_become_a_gesture(client: httpx.Client, tmp_path: Path) -> None:
-    clip = added(client, written(tmp_path, "openpose"), frame_rate="30")
-    language = client.post("/api/v1/languages", json={"name": "theirs"}).json()["id"]
-    body = {"label": "ring", "clip_id": clip["id"], "start": 0.2, "end": 1.1}
-    answer = client.post(f"/api/v1/languages/{language}/gestures", json=body)
-    assert answer.status_code == 201, answer.text
-    assert recognised(client, clip["id"], language).json()["nearest"] == "ring"
-
-
-def test_what_a_file_does_not_tell_is_asked_for_by_name(
+def test_what_a_file_does_not_tell_is_asked_for_and_taken_with_it(
     client: httpx.Client, settings: Settings, tmp_path: Path
 ) -> None:
-    path = written(tmp_path, "numbered")
+    path = write_numbered(tmp_path / "dive.csv", recording(circle, frames=FRAMES))
     problem = assert_problem(upload(client, path, "dive.csv"), 422, "frame_rate_needed")
-    assert "field frame_rate" in str(problem["detail"])
-    answer = upload(client, path, "dive.csv", frame_rate="25")
-    assert_problem(answer, 422, "frame_size_needed")
+    assert "dive.csv: the file counts frames" in str(problem["detail"])
     assert_nothing_kept(client, settings)
     clip = added(client, path, frame_rate="25", frame_size="1280 x 720")
     assert (clip["width"], clip["height"]) == (1280, 720)
@@ -132,7 +103,7 @@ def test_what_a_file_does_not_tell_is_asked_for_by_name(
 def test_fields_that_say_what_they_cannot_are_refused(
     client: httpx.Client, settings: Settings, tmp_path: Path
 ) -> None:
-    path = written(tmp_path, "numbered")
+    path = write_numbered(tmp_path / "dive.csv", recording(circle, frames=FRAMES))
     for name, text in (("frame_rate", "fast"), ("frame_rate", "0"), ("frame_size", "wide")):
         problem = assert_problem(upload(client, path, "dive.csv", **{name: text}), 422, INVALID)
         assert name in str(problem["detail"])
@@ -149,21 +120,12 @@ def test_a_language_that_needs_other_landmarks_is_refused_by_their_name(
     assert "paws.csv gives no landmark 'right_wrist'" in str(problem["detail"])
 
 
-def test_what_is_no_keypoint_file_is_refused_and_nothing_is_kept(
+def test_what_is_no_text_or_has_another_name_is_no_keypoint_file(
     client: httpx.Client, settings: Settings, tmp_path: Path
 ) -> None:
-    unreadable, unknown = "keypoints_unreadable", "unsupported_media_type"
-    for name, content, code, words in (
-        ("table.csv", b"a,b\n1,2\n", unreadable, "table.csv"),
-        ("notes.json", b'{"notes": []}', unreadable, "list of frames"),
-        ("notes.txt", b"x0,y0\n1,2\n", unknown, "OpenPose's folder as zip"),
-        ("zeros.csv", bytes(100), unknown, "neither a video"),
-    ):
+    for name, content in (("notes.txt", b"x0,y0\n1,2\n"), ("zeros.csv", bytes(100))):
         path = tmp_path / name
         path.write_bytes(content)
-        status = 415 if code == unknown else 422
-        problem = assert_problem(upload(client, path, name, **BOTH), status, code)
-        assert words in str(problem["detail"])
-        # Our own name of the file means nothing to whoever sent it.
-        assert "keypoints-" not in str(problem["detail"])
+        problem = assert_problem(upload(client, path, name), 415, "unsupported_media_type")
+        assert "OpenPose's folder as zip" in str(problem["detail"])
     assert_nothing_kept(client, settings)

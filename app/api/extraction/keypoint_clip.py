@@ -15,6 +15,7 @@ from app.recognition.errors import (
     RecognitionError,
 )
 from app.recognition.recording import Recording
+from app.recognition.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
 NO_HANDS = (
@@ -29,6 +30,8 @@ def read_recording(file: Path, source: KeypointSource) -> Recording | Failed:
     try:
         with placed(file, source.ending) as place:
             read = read_keypoints(place, source.options)
+        # The skeleton is drawn in pictures of this size.
+        VideoLimits().require_pixels(*read.recording.poses.frame_size)
     except RecognitionError as error:
         return Failed(code=_code(error), detail=_detail(error, place))
     notes = [_in_senders_words(note, place) for note in read.recording.warnings]
