@@ -54,11 +54,11 @@ function welcome(samples, languages) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
     h("ol", { className: "steps" }, STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text)))),
+    question(samples, languages),
     h("div", { className: "welcome-actions" },
       h("button", { type: "button", className: "primary", onclick: () => byId("file").click() }, "Choose clips"),
       samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null),
     samples.length ? samplesList(offered(samples)) : null,
-    question(samples, languages),
   ];
 }
 
