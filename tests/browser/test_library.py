@@ -9,7 +9,7 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.api.running import Running
+from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, library_of
@@ -262,7 +262,10 @@ def test_pictures_of_the_library(
     change = {"label": "surface", "command": "come up"}
     library.client.patch(f"{place}/gestures/circle", json=change)
     page = open_page({"view": "languages"}, scene=False)
-    expect(card(page, "Reef survey").get_by_text("Health")).to_be_visible()
+    expect(card(page, "Reef survey").get_by_text("Healthy")).to_be_visible()
+    # Pictures are loaded when they come into view.
+    images = "[...document.querySelectorAll('#view-languages img')]"
+    until(lambda: page.evaluate(f"{images}.every((image) => image.naturalWidth > 0)"))
     picture(page, "library")
     compared = {"language": library.language, "older": "3", "newer": "6"}
     page = open_page({"view": "languages", "panel": "history", **compared}, scene=False)
