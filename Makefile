@@ -18,6 +18,10 @@ ifeq ($(shell uname -s -m),Linux x86_64)
   MEDIAPIPE_LOCK := requirements-mediapipe.txt
 endif
 
+# Compiled modules are kept, whatever the shell says: the tests start some hundred processes, each of
+# which would compile ours anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help run models test pytest lint format bench languages lock clean
 
