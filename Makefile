@@ -34,7 +34,9 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 	$(BIN)/osg-studio models install
 
-test: lint pytest  ## Check and test everything
+# Style and types beside the tests, which leave the processor idle at times.
+test: $(VENV)/.development models  ## Check and test everything
+	@$(MAKE) --jobs 2 lint pytest
 
 # By file: the tests of one file share a server, a database or a recording. In the order of
 # tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
