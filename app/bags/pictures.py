@@ -41,6 +41,9 @@ _CHANNELS: dict[str, tuple[int, int | None]] = {
 }
 """Of each encoding with 8 bits: bytes a pixel, and OpenCV's conversion to RGB; None: it is RGB."""
 
+_SHARED_COLOUR = ("yuv422", "uyvy", "yuv422_yuy2", "yuyv")
+"""Encodings in which two neighbours share a colour, so that rows have an even number of pixels."""
+
 _DEEP = {"rgb16": "rgb8", "bgr16": "bgr8", "mono16": "mono8", "16UC1": "mono8"}
 """Encodings with 16 bits, and what they are once the upper 8 are kept."""
 
@@ -56,7 +59,7 @@ def raw_image(message: Any, limits: VideoLimits) -> Image:
     Raises
     ------
     BagError
-        When its encoding is not known, or its data is not as large as it says.
+        When its encoding is not known, or its data is not as large as it says or cannot be.
     VideoError
         When it is larger than `limits` allow.
 
@@ -81,7 +84,8 @@ def _pixels(message: Any, channels: int, depth: int) -> Image:
     height, width, step = int(message.height), int(message.width), int(message.step)
     row = width * channels * depth
     data = np.asarray(message.data, dtype=np.uint8)
-    if not row or not height or step < row or data.size < step * (height - 1) + row:
+    odd = width % 2 == 1 and str(message.encoding) in _SHARED_COLOUR
+    if not row or not height or odd or step < row or data.size < step * (height - 1) + row:
         raise BagError(
             f"a picture says {width} x {height} of {message.encoding}, {step} bytes a row, and "
             f"holds {data.size} bytes; the recording is damaged"

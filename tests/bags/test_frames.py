@@ -10,7 +10,7 @@ import av
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from app.bags.bag import opened_bag
@@ -251,6 +251,7 @@ def test_unknown_compression_is_refused(tmp_path: Path, stated: str) -> None:
 
 
 @settings(max_examples=60, deadline=None)
+@example(height=1, width=1, step=2, size=2, encoding="yuv422")
 @given(
     height=st.integers(0, 40),
     width=st.integers(0, 40),

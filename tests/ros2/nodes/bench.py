@@ -82,10 +82,14 @@ class Bench:
 
     def wait(self, condition: Callable[[], bool], what: str) -> None:
         """Run the nodes until a condition holds."""
-        end = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < end, f"no {what} within {PATIENCE:g} s"
+        assert self.comes(condition, PATIENCE), f"no {what} within {PATIENCE:g} s"
+
+    def comes(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Run the nodes until a condition holds, or that long; tell whether it holds."""
+        end = time.monotonic() + seconds
+        while not condition() and time.monotonic() < end:
             self._executor.spin_once(timeout_sec=0.02)
+        return condition()
 
     def ask(self, kind: Any, service: str, request: Any) -> Any:
         """Call a service and return its response."""

@@ -33,6 +33,13 @@ BEGIN, END = 1.0, 5.4
 SEPARATE = ("pose_node", "hand_node", "recognition_node")
 TOGETHER = ("gesture_process",)
 
+ATTEMPTS = 5
+"""A robot that plays a clip waits for no listener: on a busy machine the clip may be over before
+two processes have found each other."""
+
+ARRIVAL = 5.0
+"""Seconds for what was acknowledged before the robot ended to come through the listener's queue."""
+
 PARAMETERS = """
 /**:
   ros__parameters:
@@ -132,14 +139,17 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
     seen = bench.heard(Hands, "/auv/hands", BEST_EFFORT)
     asked = ["robot", "--ros2", "--source", str(clip), "--language", str(language_file)]
     asked += ["--ros-args", "-r", "__ns:=/auv", "-r", "recognition:=gestures"]
-    running = subprocess.Popen(
-        [sys.executable, "-m", "app", *asked],
-        env=workspace.environment(domain),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    bench.wait(lambda: bool(said), "recognition")
-    written = [json.loads(line) for line in running.communicate(timeout=PATIENCE)[0].splitlines()]
+    for _ in range(ATTEMPTS):
+        running = subprocess.Popen(
+            [sys.executable, "-m", "app", *asked],
+            env=workspace.environment(domain),
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        bench.wait(lambda: running.poll() is not None, "end of the robot")  # noqa: B023
+        if bench.comes(lambda: bool(said), ARRIVAL):
+            break
+    written = [json.loads(line) for line in running.communicate()[0].splitlines()]
     assert running.returncode == 0
     (line,) = [line for line in written if line["event"] == "take_recognized"]
     (message,), (take,) = said, recognised
