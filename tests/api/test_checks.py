@@ -67,6 +67,8 @@ def test_a_check_tells_its_progress_and_can_be_cancelled_and_begun_anew(
     # Of eight gestures: long enough for both to wait before it is done.
     document = (ROOT / "languages" / "osg-table-2.json").read_bytes()
     language = client.post(f"{LANGUAGES}/import", content=document).json()["id"]
+    # By a name of its own: the report of the sample itself may be at hand in this process.
+    client.patch(f"{LANGUAGES}/{language}", json={"name": "checked for the first time"})
     check = f"{LANGUAGES}/{language}/check"
     with ThreadPoolExecutor() as pool, client.stream("GET", "/api/v1/events") as events:
         lines = events.iter_lines()
