@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from types import TracebackType
 
 import cv2
 import numpy as np
-from typing_extensions import Self
+
+from tests.robot.camera_server import CameraServer
 
 FRAME_SIZE = (64, 48)
 BOUNDARY = "picture"
@@ -22,8 +22,8 @@ def picture(brightness: int) -> bytes:
     return cv2.imencode(".jpg", grey)[1].tobytes()
 
 
-class MjpegServer:
-    """Sends pictures until it is left; then its connections break, as when a plug is pulled.
+class MjpegServer(CameraServer):
+    """Sends pictures to each who watches.
 
     Parameters
     ----------
@@ -46,8 +46,7 @@ class MjpegServer:
         brightness: int = 100,
         pictures: float = math.inf,
     ) -> None:
-        self._off = threading.Event()
-        jpeg, off = picture(brightness), self._off
+        jpeg, off = picture(brightness), threading.Event()
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self) -> None:
@@ -68,33 +67,9 @@ class MjpegServer:
             def log_message(self, format: str, *args: object) -> None:
                 """Say nothing on stderr."""
 
-        class Server(ThreadingHTTPServer):
-            daemon_threads = True
-
-        self._server = Server(("127.0.0.1", port), Handler)
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.02,))
-
-    @property
-    def port(self) -> int:
-        """Where it listens."""
-        return self._server.server_port
+        super().__init__(ThreadingHTTPServer(("127.0.0.1", port), Handler), off)
 
     @property
     def address(self) -> str:
         """What a source is called that watches it, with a password."""
         return f"http://diver:secret@127.0.0.1:{self.port}/"
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._off.set()
-        self._server.shutdown()
-        self._thread.join()
-        self._server.server_close()

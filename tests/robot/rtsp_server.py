@@ -12,12 +12,11 @@ import threading
 from collections.abc import Generator
 from contextlib import closing, suppress
 from fractions import Fraction
-from types import TracebackType
 
 import av
 import numpy as np
-from typing_extensions import Self
 
+from tests.robot.camera_server import CameraServer
 from tests.robot.mjpeg_server import FRAME_SIZE
 
 LARGEST_PACKET = 65535
@@ -38,8 +37,8 @@ a=control:trackID=0
 """
 
 
-class RtspServer:
-    """Sends pictures to each who watches, until it is left; then its connections break.
+class RtspServer(CameraServer):
+    """Sends pictures to each who watches.
 
     Parameters
     ----------
@@ -49,8 +48,7 @@ class RtspServer:
     """
 
     def __init__(self, brightness: int = 100) -> None:
-        self._off = threading.Event()
-        off = self._off
+        off = threading.Event()
 
         class Handler(socketserver.StreamRequestHandler):
             def handle(self) -> None:
@@ -90,28 +88,12 @@ class RtspServer:
         class Server(socketserver.ThreadingTCPServer):
             daemon_threads = True
 
-        self._server = Server(("127.0.0.1", 0), Handler)
-        self._thread = threading.Thread(target=self._server.serve_forever, args=(0.02,))
+        super().__init__(Server(("127.0.0.1", 0), Handler), off)
 
     @property
     def address(self) -> str:
         """What a source is called that watches it."""
-        return f"rtsp://127.0.0.1:{self._server.server_address[1]}/reef"
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._off.set()
-        self._server.shutdown()
-        self._thread.join()
-        self._server.server_close()
+        return f"rtsp://127.0.0.1:{self.port}/reef"
 
 
 def rtp_packets(brightness: int) -> Generator[bytes]:
