@@ -16,7 +16,21 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
-from app.recognition.step_distances import ROUNDING, for_query, for_references, squared_distances
+from app.recognition.step_distances import (
+    ROUNDING,
+    Precision,
+    for_query,
+    for_references,
+    squared_distances,
+)
+
+StepCosts = npt.NDArray[np.float32]
+"""Costs of prepared references: half the memory of doubles, through which most of the time goes.
+Of descriptors, whose mean square is about 1, the distances are right to a millionth."""
+
+ROUNDING_OF_STEP_COSTS = 4e-6
+"""Distances below it are 0 where costs are in single precision: rounding leaves about a millionth
+of the mean square, and two takes of a gesture lie ten thousand times as far apart."""
 
 
 def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
@@ -70,8 +84,8 @@ class ElasticReferences:
         self,
         query: FloatArray,
         rows: npt.NDArray[np.intp] | None = None,
-        out: FloatArray | None = None,
-    ) -> FloatArray:
+        out: StepCosts | None = None,
+    ) -> StepCosts:
         """Compare the steps of a query with those of some references, from both ends.
 
         Parameters
@@ -91,21 +105,23 @@ class ElasticReferences:
 
         """
         count = half_of(len(query), self.band)
+        pairs = len(self.sequences) if rows is None else len(rows)
+        if out is None:
+            out = np.empty((2, count, count, pairs), dtype=np.float32)
         if self.complete and np.isfinite(query[:, self.known]).all():
-            left = for_query(_from_both_ends(query[:, self.known], count))
-            right = self._sides_of(rows)
-            pairs = right.shape[-1]
-            out = np.empty((2, count, count, pairs)) if out is None else out
-            columns = count * pairs
-            np.matmul(left, right.reshape(2, -1, columns), out=out.reshape(2, count, columns))
+            known_steps = query[:, self.known].astype(np.float32)
+            left = for_query(_from_both_ends(known_steps, count))
+            right = self._sides_of(rows).reshape(2, -1, count * pairs)
+            np.matmul(left, right, out=out.reshape(2, count, count * pairs))
             return out
         references = self.sequences if rows is None else self.sequences[rows]
         known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
-        return squared_distances(
+        squared_distances(
             _from_both_ends(query[:, known], count),
             _from_both_ends(references[..., known], count),
             out,
         )
+        return out
 
     @cached_property
     def known(self) -> npt.NDArray[np.intp]:
@@ -117,19 +133,20 @@ class ElasticReferences:
         """Whether all references know these components throughout."""
         return bool(len(self.known) and np.isfinite(self.sequences[..., self.known]).all())
 
-    def _sides_of(self, rows: npt.NDArray[np.intp] | None) -> FloatArray:
+    def _sides_of(self, rows: npt.NDArray[np.intp] | None) -> StepCosts:
         """Return one side of the matrix products that give the costs, ``(2, D' + 2, H, M)``."""
         if rows is None:
             return self._sides
         return np.ascontiguousarray(np.moveaxis(self.sides_by_row[rows], 0, -1))
 
     @cached_property
-    def _sides(self) -> FloatArray:
+    def _sides(self) -> StepCosts:
         count = half_of(self.sequences.shape[1], self.band)
-        return for_references(_from_both_ends(self.sequences[..., self.known], count))
+        known_steps = self.sequences[..., self.known].astype(np.float32)
+        return for_references(_from_both_ends(known_steps, count))
 
     @cached_property
-    def sides_by_row(self) -> FloatArray:
+    def sides_by_row(self) -> StepCosts:
         """The same with the references first, ``(R, 2, D' + 2, H)``.
 
         A few of them are then gathered from few places.
@@ -152,7 +169,7 @@ class ElasticViews:
 
     def step_costs(
         self, queries: Sequence[FloatArray], rows: npt.NDArray[np.intp] | None = None
-    ) -> FloatArray:
+    ) -> StepCosts:
         """Compare the steps of a query with those of some references, from both ends.
 
         What lies side by side is prepared and gathered at once: each view alone is so small that
@@ -173,37 +190,61 @@ class ElasticViews:
         references, steps, _ = self.views[0].sequences.shape
         count = half_of(steps, self.views[0].band)
         pairs = references if rows is None else len(rows)
-        costs = np.empty((2, len(self.views), count, count, pairs))
+        costs = np.empty((2, len(self.views), count, count, pairs), dtype=np.float32)
         alone = set(range(len(self.views)))
         if self._joined:
-            known = np.concatenate(
-                [queries[i].take(self.views[i].known, axis=1) for i in self._joined], axis=1
-            )
+            known = np.concatenate(queries, axis=1).take(self._known, axis=1)
             if np.isfinite(known).all():
-                self._joined_costs(_from_both_ends(known, count), rows, costs)
+                self._joined_costs(known, rows, costs)
                 alone -= self._joined.keys()
         for index in alone:
             self.views[index].step_costs(queries[index], rows, costs[:, index])
         return costs
 
     def _joined_costs(
-        self, query: FloatArray, rows: npt.NDArray[np.intp] | None, costs: FloatArray
+        self, query: FloatArray, rows: npt.NDArray[np.intp] | None, costs: StepCosts
     ) -> None:
-        """Fill in the costs of the joined views; the query ``(2, H, D)``, all side by side."""
+        """Fill in the costs of the joined views; the query ``(N, D)``, all side by side."""
         _, _, _, count, pairs = costs.shape
-        sides = self._sides_by_row if rows is None else self._sides_by_row[rows]
+        sides = self._sides_by_row if rows is None else self._sides_by_row.take(rows, axis=0)
         right = np.ascontiguousarray(sides.transpose(1, 2, 3, 0))
-        left = np.empty((2, count, right.shape[1]))
-        start = 0
+        size = query.shape[1]
+        powers = np.ones((2, count, 2 * size + 1), dtype=np.float32)
+        steps, squares = powers[..., :size], powers[..., size:-1]
+        steps[0], steps[1] = query[:count], query[: -count - 1 : -1]
+        np.multiply(steps, steps, out=squares)
+        left = powers @ self._left_of_powers
         for index, part in self._joined.items():
-            size = part.stop - part.start - 2
-            for_query(query[..., start : start + size], left[..., part])
-            start += size
             np.matmul(
                 left[..., part],
-                right[:, part].reshape(2, size + 2, count * pairs),
+                right[:, part].reshape(2, -1, count * pairs),
                 out=costs[:, index].reshape(2, count, count * pairs),
             )
+
+    @cached_property
+    def _known(self) -> npt.NDArray[np.intp]:
+        """Which components of all views side by side the joined ones know."""
+        widths = [view.sequences.shape[-1] for view in self.views]
+        starts = np.cumsum([0, *widths])
+        return np.concatenate([starts[index] + self.views[index].known for index in self._joined])
+
+    @cached_property
+    def _left_of_powers(self) -> StepCosts:
+        """``(2 D + 1, P)``: turns what is known of a step, its squares and 1 into the left sides.
+
+        Those of all joined views, side by side, by one product: each alone is a few numbers.
+        """
+        size = len(self._known)
+        turned = np.zeros((2 * size + 1, self._sides_by_row.shape[2]), dtype=np.float32)
+        start = 0
+        for part in self._joined.values():
+            norm, one = part.stop - 2, part.stop - 1
+            stop = start + norm - part.start
+            turned[start:stop, part.start : norm] = -2.0 * np.eye(stop - start)
+            turned[size + start : size + stop, norm] = 1.0
+            turned[2 * size, one] = 1.0
+            start = stop
+        return turned
 
     @cached_property
     def _joined(self) -> dict[int, slice]:
@@ -216,7 +257,7 @@ class ElasticViews:
         return joined
 
     @cached_property
-    def _sides_by_row(self) -> FloatArray:
+    def _sides_by_row(self) -> StepCosts:
         """The right sides of the joined views, one below the other."""
         return np.concatenate([self.views[index].sides_by_row for index in self._joined], axis=2)
 
@@ -226,14 +267,17 @@ def half_of(steps: int, band: int) -> int:
     return (steps - 1 + min(band, steps - 1)) // 2 + 1
 
 
-def _from_both_ends(sequences: FloatArray, count: int) -> FloatArray:
+def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArray[Precision]:
     """Take the first steps of ``(..., N, D)``, and the last ones backwards: ``(2, ..., H, D)``."""
-    ends = np.empty((2, *sequences.shape[:-2], count, sequences.shape[-1]))
+    shape = (2, *sequences.shape[:-2], count, sequences.shape[-1])
+    ends = np.empty(shape, dtype=sequences.dtype)
     ends[0], ends[1] = sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]
     return ends
 
 
-def alignment_costs(costs: FloatArray, steps: int, band: int) -> FloatArray:
+def alignment_costs(
+    costs: npt.NDArray[np.float32 | np.float64], steps: int, band: int
+) -> FloatArray:
     """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
 
     Parameters
@@ -254,9 +298,12 @@ def alignment_costs(costs: FloatArray, steps: int, band: int) -> FloatArray:
     cells = costs.reshape(2 * views, count * count, pairs).transpose(1, 0, 2)
     # Cells of one diagonal do not depend on each other, but on those of the diagonal before, whose
     # offsets i - j are odd where these are even: kept apart, either lie side by side in memory.
-    totals = [np.full((outer + 1, 2 * views, pairs), np.inf) for outer in _outer_offsets(band)]
+    totals = [
+        np.full((outer + 1, 2 * views, pairs), np.inf, dtype=costs.dtype)
+        for outer in _outer_offsets(band)
+    ]
     totals[0][len(totals[0]) // 2] = 0.0  # before the first steps
-    best = np.empty((band + 1, 2 * views, pairs))
+    best = np.empty((band + 1, 2 * views, pairs), dtype=costs.dtype)
     for diagonal in _diagonals(steps, band):
         parity = diagonal.number % 2
         own, others = totals[parity][diagonal.own], totals[1 - parity]
@@ -267,8 +314,8 @@ def alignment_costs(costs: FloatArray, steps: int, band: int) -> FloatArray:
         if diagonal.number == steps - 1:
             own[:, :views] = before[:, :views]  # where the halves meet, a cell counts once
     met = [(each[:, :views] + each[::-1, views:]).min(axis=0) for each in totals]
-    found = np.minimum(*met).reshape(*points_of_view, pairs) / steps
-    found[found < ROUNDING] = 0.0
+    found = np.asarray(np.minimum(*met), dtype=np.float64).reshape(*points_of_view, pairs) / steps
+    found[found < (ROUNDING if costs.dtype == np.float64 else ROUNDING_OF_STEP_COSTS)] = 0.0
     return np.asarray(found)
 
 

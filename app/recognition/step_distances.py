@@ -8,18 +8,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
+
+Precision = TypeVar("Precision", np.float32, np.float64)
 
 ROUNDING = 1e-12
 """Squared distances below it are what rounding leaves of differences of nearly equal sums: 0."""
 
 
 def squared_distances(
-    query: FloatArray, references: FloatArray, out: FloatArray | None = None
-) -> FloatArray:
+    query: FloatArray,
+    references: FloatArray,
+    out: npt.NDArray[np.float32 | np.float64] | None = None,
+) -> npt.NDArray[np.float32 | np.float64]:
     """Measure the squared distance of every step of the query to every step of the references.
 
     Parameters
@@ -28,7 +34,7 @@ def squared_distances(
         ``(..., N, D)`` and ``(..., M, N, D)``. NaN: this component is not known; it is left out,
         and what is known of two vectors stands for the whole.
     out
-        Where to write the answer; the last three axes contiguous.
+        Where to write the answer, rounded as it must be; the last three axes contiguous.
 
     Returns
     -------
@@ -66,7 +72,7 @@ class StepReferences:
         if self._complete and np.isfinite(query).all():
             squares = for_query(query) @ self._side
             return squares.reshape(len(query), *self.sequences.shape[1::-1])
-        return squared_distances(query, self.sequences)
+        return np.asarray(squared_distances(query, self.sequences), dtype=np.float64)
 
     @cached_property
     def _complete(self) -> bool:
@@ -77,26 +83,28 @@ class StepReferences:
         return _flat(for_references(self.sequences))
 
 
-def for_query(query: FloatArray, out: FloatArray | None = None) -> FloatArray:
+def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:
     """Return the left side of the product, ``(..., N, D + 2)``, of ``(..., N, D)``."""
     *leading, size = query.shape
-    left = np.empty((*leading, size + 2)) if out is None else out
+    left = np.empty((*leading, size + 2), dtype=query.dtype)
     left[..., size + 1] = 1.0
     np.multiply(query, -2.0, out=left[..., :size])
     np.einsum("...d,...d->...", query, query, out=left[..., size])
     return left
 
 
-def for_references(references: FloatArray) -> FloatArray:
+def for_references(references: npt.NDArray[Precision]) -> npt.NDArray[Precision]:
     """Return its right side, ``(..., D + 2, N, M)``, of ``(..., M, N, D)``."""
     *leading, count, steps, size = references.shape
-    right = np.ones((*leading, size + 2, steps, count))
+    right = np.ones((*leading, size + 2, steps, count), dtype=references.dtype)
     right[..., :size, :, :] = np.moveaxis(references, (-1, -2, -3), (-3, -2, -1))
     np.einsum("...mnd,...mnd->...nm", references, references, out=right[..., size + 1, :, :])
     return right
 
 
-def _of_what_is_known(query: FloatArray, references: FloatArray, out: FloatArray) -> None:
+def _of_what_is_known(
+    query: FloatArray, references: FloatArray, out: npt.NDArray[np.float32 | np.float64]
+) -> None:
     """Write the squares, ``(..., N, N M)``, for vectors with components that are not known."""
     known, others_known = np.isfinite(query), np.isfinite(references)
     left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
