@@ -8,11 +8,10 @@ or crash a decoder: run this where a crash does no harm and time is limited (a j
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
 from typing import Protocol
 
 import av
@@ -158,13 +157,14 @@ class FrameReader(Iterator[VideoFrame]):
         self._ended = False
         self._time = 0.0
         self._reformatter = VideoReformatter()
+        self._first: DecodedFrame | None = None
         self._container = _opened(self._path, self._limits)
+        self._decoded = self._decode()
         try:
             self._stream = _video_stream(self._container, self._path)
             self._check_statement()
             self._clock = FrameClock(step=_nominal_step(self._stream))
-            self._decoded = self._decode()
-            self._first: DecodedFrame | None = next(self._decoded, None)
+            self._first = next(self._decoded, None)
             if self._first is None:
                 raise VideoError(
                     f"{self._path.name}: no frame of its {_codec(self._stream)} video can be "
@@ -173,7 +173,7 @@ class FrameReader(Iterator[VideoFrame]):
             self.info = _info(self._container, self._stream, self._first)
             self._limits.require_pixels(self.info.width, self.info.height)
         except BaseException:
-            self._container.close()
+            self.close()
             raise
 
     def __next__(self) -> VideoFrame:
@@ -189,7 +189,6 @@ class FrameReader(Iterator[VideoFrame]):
         if frame is None:
             frame = next(self._decoded, None)
         if frame is None:
-            self._ended = True
             self.close()
             raise StopIteration
         self._limits.require_pixels(frame.width, frame.height)
@@ -203,16 +202,14 @@ class FrameReader(Iterator[VideoFrame]):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
         """Close the file; the reader gives no more frames."""
+        # It knows the reader: together they would keep the pictures until Python collects.
+        self._decoded.close()
+        self._first = None
         self._container.close()
 
     @property
@@ -242,7 +239,7 @@ class FrameReader(Iterator[VideoFrame]):
         self._limits.require_frames(self._stream.frames)
         self._limits.require_seconds(_stated_seconds(self._container, self._stream) or 0.0)
 
-    def _decode(self) -> Iterator[DecodedFrame]:
+    def _decode(self) -> Generator[DecodedFrame, None, None]:
         """Decode what can be decoded, counting what cannot."""
         packets = self._container.demux(self._stream)
         while True:
@@ -252,6 +249,7 @@ class FrameReader(Iterator[VideoFrame]):
                 self._broken = True
                 return
             if packet is None:
+                self._ended = True
                 return
             self._faults += packet.is_corrupt
             try:

@@ -1,5 +1,8 @@
 """Reading clips: right time and right way up from odd ones, a plain refusal of bad ones."""
 
+import gc
+import weakref
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -9,7 +12,14 @@ import pytest
 
 from app.recognition.errors import VideoError
 from app.recognition.estimation.base import Image
-from app.recognition.video import VideoFrame, VideoLimits, over_background, probe, read_frames
+from app.recognition.video import (
+    FrameReader,
+    VideoFrame,
+    VideoLimits,
+    over_background,
+    probe,
+    read_frames,
+)
 from tests.recognition.damaged_clips import (
     HEIGHT,
     IMPOSTORS,
@@ -253,6 +263,46 @@ def test_reading_stops_where_the_reader_is_closed(tmp_path: Path) -> None:
     with read_frames(clip) as reader:
         assert next(reader).index == 0
     clip.unlink()
+    assert list(reader) == []
+    assert reader.warnings == ()
+
+
+@pytest.fixture
+def no_collection() -> Iterator[None]:
+    """Let Python free only what nothing refers to any more."""
+    gc.disable()
+    yield
+    gc.enable()
+
+
+@pytest.mark.usefixtures("no_collection")
+@pytest.mark.parametrize("read_before", [0, 1, 5, 12])
+def test_a_closed_reader_keeps_no_pictures_until_python_collects(
+    tmp_path: Path, read_before: int
+) -> None:
+    reader = read_frames(write_clip(tmp_path / "clip.mp4", frames=12))
+    for _ in range(read_before):
+        next(reader)
+    reader.close()
+    alive = weakref.ref(reader)
+    del reader
+    assert alive() is None
+
+
+@pytest.mark.usefixtures("no_collection")
+def test_neither_does_one_that_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[weakref.ref[FrameReader]] = []
+
+    class Watched(FrameReader):
+        def __init__(self, path: Path, limits: VideoLimits) -> None:
+            opened.append(weakref.ref(self))
+            super().__init__(path, limits)
+
+    # Only the first picture shows that it is too wide once its pixels are square.
+    clip = write_clip(tmp_path / "clip.mp4", pixel_aspect=Fraction(2, 1))
+    with pytest.raises(VideoError, match="pixels"):
+        Watched(clip, VideoLimits(pixels=WIDTH * HEIGHT))
+    assert [alive() for alive in opened] == [None]
 
 
 @pytest.mark.parametrize(

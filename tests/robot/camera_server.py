@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from socketserver import TCPServer
-from types import TracebackType
 
 from typing_extensions import Self
 
@@ -35,12 +34,7 @@ class CameraServer:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._off.set()
         self._server.shutdown()
         self._thread.join()
