@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 from app.recognition.gesture import Gesture
 from app.recognition.situation import Situation
 from app.recognition.switches import Switch
+from app.recognition.wording import all_readable, listed, readable
 
 SwitchName = Literal["direction", "tempo", "mirror"]
 
@@ -91,8 +92,8 @@ class VoterWeight(Change):
     def words(self) -> str:
         """See `Change`."""
         if self.factor == 0:
-            return f"without the voter {self.voter}"
-        return f"with {self.factor:g} times the weight on the voter {self.voter}"
+            return f"without the voter {readable(self.voter)}"
+        return f"with {self.factor:g} times the weight on the voter {readable(self.voter)}"
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
@@ -169,7 +170,8 @@ class SalientKeypoints(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        return f"with {_listed(self.salient)} as the salient keypoints of {self.label!r}"
+        followed = listed(all_readable(self.salient))
+        return f"with {followed} as the salient keypoints of {self.label!r}"
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
@@ -222,7 +224,3 @@ class NewDemonstration(Change):
             command=before.command,
         )
         return situation.with_gesture(replace(made, switches=before.switches))
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return " and ".join(name.replace("_", " ") for name in names)

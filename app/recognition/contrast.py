@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 from app.recognition.alignment import Alignment, align
 from app.recognition.course import course_of
-from app.recognition.difference import differences, spoken
+from app.recognition.difference import differences
 from app.recognition.gesture import condensed
 from app.recognition.pairing import Pairing
 from app.recognition.recognizer import Recognizer
+from app.recognition.wording import readable
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,7 @@ def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
     named = differences(pairing, sees_direction=True)
     little = (
         f"little, and most from {parted.start:.1f} to {parted.end:.1f} s, when the "
-        f"{spoken(parted.landmark)} {parted.shown}"
+        f"{readable(parted.landmark)} {parted.shown}"
     )
     words = named[0].words if named else little
     return Contrast(words, (parted.start, parted.end), alignment)

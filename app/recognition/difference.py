@@ -23,6 +23,7 @@ from app.recognition.sides import exchanged_back, mistaken_sides
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
 from app.recognition.trajectory_image import MIN_EXTENT
 from app.recognition.voters.wrist_bend import WristBend
+from app.recognition.wording import readable
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
@@ -120,11 +121,6 @@ def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, 
     if sees_direction:
         beside += [*_read_backwards(pairing), *_bent_otherwise(pairing)]
     return (*found, *beside, *_paced(pairing))
-
-
-def spoken(landmark: str) -> str:
-    """Return a landmark's name as people say it."""
-    return landmark.replace("_", " ")
 
 
 def _exchanged(pairing: Pairing) -> Iterator[Difference]:
@@ -271,7 +267,7 @@ def _bent(pairing: Pairing) -> Difference:
         start=parted.start,
         end=parted.end,
         words=(
-            f"from {parted.start:.1f} to {parted.end:.1f} s the {spoken(parted.landmark)} "
+            f"from {parted.start:.1f} to {parted.end:.1f} s the {readable(parted.landmark)} "
             f"{parted.shown} {where}"
         ),
     )
@@ -294,7 +290,7 @@ def _unseen(pairing: Pairing) -> Iterator[Difference]:
         gap = int(np.diff(known).argmax())
         start, end = known[gap] + pairing.start, known[gap + 1] + pairing.start
         if end - start > MAX_GAP_SECONDS:
-            words = f"the {spoken(name)} was not seen from {start:.1f} to {end:.1f} s"
+            words = f"the {readable(name)} was not seen from {start:.1f} to {end:.1f} s"
             yield _beside("unseen", name, float(start), float(end), words)
 
 
@@ -352,7 +348,7 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
             bends = np.degrees(np.arcsin(np.clip([here[0, 0], there[0, 0]], -1, 1)))
             apart = float(bends[0] - bends[1])
             words = (
-                f"the {spoken(wrist)} is bent {abs(apart):.0f} degrees farther "
+                f"the {readable(wrist)} is bent {abs(apart):.0f} degrees farther "
                 f"{'clockwise' if apart > 0 else 'counter-clockwise'} than for "
                 f"{pairing.example.label!r}"
             )

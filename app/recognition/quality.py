@@ -13,6 +13,7 @@ import numpy as np
 from app.recognition.jumps import body_unit
 from app.recognition.poses import PoseSequence
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.wording import readable
 
 FEWEST_FRAMES = 5
 """Frames of a recording, at least: a corner takes three, and the simplest gestures have two strokes
@@ -64,7 +65,6 @@ def fault(
     for name in landmarks:
         if name not in poses.landmarks:
             continue
-        spoken = name.replace("_", " ")
         path = trajectory.xy[:, trajectory.landmarks.index(name)] / unit
         finite = np.isfinite(path)
         seen = (finite[:, 0] & finite[:, 1]).nonzero()[0]
@@ -73,10 +73,11 @@ def fault(
         bridged = (lasts <= MAX_GAP_SECONDS) | (seen[1:] - seen[:-1] == 1)
         followed = lasts[bridged].sum() / poses.duration
         if followed < LEAST_FOLLOWED:
-            return f"the {spoken} is followed for only {followed:.0%} of its {poses.duration:.1f} s"
+            only = f"only {followed:.0%} of its {poses.duration:.1f} s"
+            return f"the {readable(name)} is followed for {only}"
         steps = places[1:] - places[:-1]
         lengths = np.sqrt(np.einsum("td,td->t", steps, steps))
         leaps = float(((lengths > LEAP) & (lasts <= LEAP_SECONDS)).mean())
         if leaps > MOST_LEAPS:
-            return f"the {spoken} leaps over a torso length in {leaps:.0%} of its frames"
+            return f"the {readable(name)} leaps over a torso length in {leaps:.0%} of its frames"
     return None

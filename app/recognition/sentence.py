@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from app.recognition.difference import Difference
+from app.recognition.wording import all_readable, listed
 
 if TYPE_CHECKING:
     from app.recognition.explanation import Explanation
@@ -27,7 +28,7 @@ def in_words(explanation: Explanation) -> str:
     parts = [_outcome(explanation) + _reason(explanation)]
     beside = [each.words for each in explanation.differences if each.share == 0]
     if beside:
-        parts.append(f"Besides, {_listed(beside)}.")
+        parts.append(f"Besides, {listed(beside)}.")
     parts.append(_remedy(explanation))
     return " ".join(part for part in parts if part)
 
@@ -77,11 +78,16 @@ def _reason(explanation: Explanation) -> str:
     if not math.isfinite(explanation.score):
         return f": a keypoint that {explanation.expected!r} needs is missing or does not move."
     cause = _cause(explanation)
-    named = _listed(_witnesses(explanation)[:MOST_VOTERS_NAMED])
-    spoke = f"{named} spoke most against {explanation.expected!r}" if named else ""
+    spoke = _testimony(explanation)
     if cause is not None:
         return f" because {cause.words}" + (f" ({spoke})." if spoke else ".")
     return f"; {spoke}." if spoke else "."
+
+
+def _testimony(explanation: Explanation) -> str:
+    """Name the voters that spoke most against the expected gesture, if any did."""
+    loudest = all_readable(_witnesses(explanation)[:MOST_VOTERS_NAMED])
+    return f"{listed(loudest)} spoke most against {explanation.expected!r}" if loudest else ""
 
 
 def _witnesses(explanation: Explanation) -> list[str]:
@@ -114,7 +120,3 @@ def _remedy(explanation: Explanation) -> str:
         return f"It would have been read as {explanation.expected!r} {found[0].change.words}."
     tried = explanation.counterfactuals.tried
     return f"None of {tried} changes tried would have turned it right." if tried else ""
-
-
-def _listed(words: list[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from app.recognition import Recognition
 from app.recognition.poses import FloatArray
+from app.recognition.wording import readable
 
 MAX_COLUMNS = 40
 """Gestures shown in the vote table; the farthest of a larger language say nothing about why."""
@@ -262,11 +263,6 @@ def line_chart(
 def cursor(share: float) -> str:
     """Move the cursor of every chart to `share` (0 .. 1) of its time axis."""
     return f"<style>:root {{ --osg-now: {100 * min(max(share, 0.0), 1.0):.2f}% }}</style>"
-
-
-def readable(name: str) -> str:
-    """Turn an identifier such as ``aspect_ratio`` into words."""
-    return name.replace("_", " ")
 
 
 def short_number(value: float) -> str:

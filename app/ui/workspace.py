@@ -18,7 +18,7 @@ from app.recognition.poses import FloatArray
 from app.recognition.salience import salient_landmarks
 from app.recognition.trajectory import Trajectory
 from app.recognition.trajectory_image import draw
-from app.ui.charts import readable
+from app.recognition.wording import all_readable
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback import quiet, start_server
@@ -299,7 +299,7 @@ def compared_images(
 
 
 def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
-    return "this take" if len(sets) == 1 else f"this take, {', '.join(map(readable, names))}"
+    return "this take" if len(sets) == 1 else f"this take, {', '.join(all_readable(names))}"
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:

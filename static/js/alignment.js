@@ -1,7 +1,7 @@
 // The take beside the gestures it is held against: both paths, and which of their moments correspond.
 
 import { h, svg } from "./dom.js";
-import { moment } from "./format.js";
+import { moment, readable } from "./format.js";
 import { nearestFrame } from "./frames.js";
 import { seek } from "./playback.js";
 import { state, update } from "./state.js";
@@ -9,7 +9,6 @@ import { state, update } from "./state.js";
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it
 
-const readable = (name) => name.replaceAll("_", " ");
 const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
 

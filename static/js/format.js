@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Numbers and names as people read them.
 
 export function bytes(count) {
   if (count < 1000) return `${count} B`;
@@ -34,5 +34,8 @@ export function ago(moment) {
 
 /** A moment in full, as the reader's own system writes it. */
 export const dateAndTime = (moment) => new Date(moment).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+
+/** An identifier, such as a landmark or a voter, in words. */
+export const readable = (identifier) => identifier.replaceAll("_", " ");
 
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;

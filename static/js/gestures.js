@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { byId, h, iconButton, reconcile } from "./dom.js";
+import { readable } from "./format.js";
 import { reloadLanguage } from "./languages.js";
 import { selectedClip, state, update } from "./state.js";
 import { complain } from "./toasts.js";
@@ -28,8 +29,6 @@ export async function edit(doing, title, change, { from = state.gestures, mine =
   did({ title, kind: "edit", language: language.id, before, after: language.revision });
   return language;
 }
-
-const readable = (name) => name.replaceAll("_", " ");
 
 async function remove(gesture) {
   const from = state.gestures;

@@ -3,6 +3,7 @@
 import { alignmentsOf } from "./alignment.js";
 import * as api from "./api.js";
 import { byId, h, svg } from "./dom.js";
+import { readable } from "./format.js";
 import { edit } from "./gestures.js";
 import { recogniseWith, rangeOf } from "./stage.js";
 import { state, update } from "./state.js";
@@ -11,8 +12,6 @@ import { undo } from "./undo.js";
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
-
-const readable = (name) => name.replaceAll("_", " ");
 
 /** Load why, as soon as it is known what was meant. */
 export async function loadWhy({ result }) {
@@ -131,9 +130,6 @@ const shares = (result, why) => h("p", { className: "share" },
   why ? shared(api.recognitions.analysisUrl(result.id), "Share as one file", "plays without a server") : null,
   shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"));
 
-/** The sentence that says why, with the voters' names as people read them. */
-const sentenceOf = ({ sentence }, { voters }) => voters.filter((name) => name.includes("_")).reduce((text, name) => text.replaceAll(name, readable(name)), sentence);
-
 /** Draw why, under the take. */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
@@ -146,7 +142,7 @@ export function drawWhy({ why, result, trial }) {
   const remedies = why && !why.right ? why.counterfactuals : [];
   const words = [
     trying,
-    why ? h("p", { className: "why-sentence" }, sentenceOf(why, result)) : null,
+    why ? h("p", { className: "why-sentence" }, why.sentence) : null,
     remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
     why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
     result ? shares(result, why) : null,

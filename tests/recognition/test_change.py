@@ -99,7 +99,11 @@ def test_nothing_can_be_demonstrated_by_a_hand_at_rest(situation: Situation) -> 
     [
         (Trim(size=0.2, start=0.1, end=1.6), {"start": 0.1, "end": 1.6}, "0.10-1.60 s"),
         (VoterWeight(size=0.1, voter="hu", factor=0.0), {"factor": 0.0}, "without the voter hu"),
-        (VoterWeight(size=0.1, voter="hu", factor=2.0), {"voter": "hu"}, "2 times the weight"),
+        (
+            VoterWeight(size=0.1, voter="wrist_bend", factor=2.0),
+            {"voter": "wrist_bend"},
+            "with 2 times the weight on the voter wrist bend",
+        ),
         (KeypointRepair(size=0.1, on=True), {"on": True}, "put right"),
         (OtherProfile(size=1.0, profile="full"), {"profile": "full"}, "profile full"),
         (

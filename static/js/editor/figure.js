@@ -2,9 +2,9 @@
 
 import * as api from "../api.js";
 import { h, svg } from "../dom.js";
+import { readable } from "../format.js";
 import { insideFrame } from "../frames.js";
 import { drawPose, skeleton } from "../skeleton.js";
-import { readable } from "./keypoints.js";
 
 const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side: a finger hits it at 390 px.
 

@@ -1,9 +1,8 @@
 // The salient keypoints: how far each moves, as bars that switch it on and off.
 
 import { h, reconcile } from "../dom.js";
+import { readable } from "../format.js";
 import { change, draft } from "./draft.js";
-
-export const readable = (name) => name.replaceAll("_", " ");
 
 /** The keypoints that are followed: as chosen, or as proposed. */
 export function chosenIn(preview) {

@@ -2,7 +2,7 @@
 
 import * as api from "../api.js";
 import { byId, h } from "../dom.js";
-import { bytes, plural } from "../format.js";
+import { bytes, plural, readable } from "../format.js";
 import { state } from "../state.js";
 import { attempt, toast } from "../toasts.js";
 
@@ -12,7 +12,7 @@ const FORMATS = {
   proteus: { title: "PROTEUS language definition", text: "The gestures as input symbols, for a robot that answers by PROTEUS: names and kinds only.", suffix: ".ldf", command: (file) => `osg-studio convert language.json ${file}` },
 };
 
-const readable = (names) => names.map((name) => name.replaceAll("_", " ")).join(", ");
+const listed = (names) => names.map(readable).join(", ");
 
 /** A name that a shell takes without quotes. */
 const fileName = (name, { suffix = ".json" }) => `${name.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}${suffix}`;
@@ -29,9 +29,9 @@ const row = (term, value, note) => (value.length ? [h("dt", {}, term), h("dd", {
 
 function facts(contents) {
   return h("dl", { className: "export-facts" },
-    row("Landmarks", readable(contents.salient), "must be seen, or the gesture is not recognised"),
-    row("Better with", readable(contents.limbs)),
-    row("Torso", readable(contents.torso), "takes out distance and drift"),
+    row("Landmarks", listed(contents.salient), "must be seen, or the gesture is not recognised"),
+    row("Better with", listed(contents.limbs)),
+    row("Torso", listed(contents.torso), "takes out distance and drift"),
     row("Models", contents.models.join(", "), "osg-studio models export DIR copies them for a robot without a network"),
     row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
     row("Without command", contents.without_command.join(", "), "the robot is told the label only"));

@@ -1,11 +1,9 @@
 // What is to be expected of each gesture by itself.
 
 import { h } from "../dom.js";
-import { duration } from "../format.js";
+import { duration, readable } from "../format.js";
 import { editLink } from "./links.js";
 import { percent, told } from "./report.js";
-
-const readable = (name) => name.replaceAll("_", " ");
 
 /** A rate with a bar of that length and its interval; over the bar it is marked by a sign as well. */
 function rate(forecast, bar) {

@@ -1,0 +1,21 @@
+"""How identifiers and lists are worded in sentences for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+
+def readable(identifier: str) -> str:
+    """Return the name of a landmark or voter as people say it: ``right_wrist`` is right wrist."""
+    return identifier.replace("_", " ")
+
+
+def all_readable(identifiers: Iterable[str]) -> list[str]:
+    """Return each of the names as people say it."""
+    return [readable(identifier) for identifier in identifiers]
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return one or more words as a sentence lists them: a, b and c."""
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
