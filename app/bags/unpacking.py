@@ -1,8 +1,4 @@
-"""A recording's place on disk while it is read: archives are unpacked, single files get an ending.
-
-What an archive says about itself is not believed: names never become paths, sizes are counted
-while they are written.
-"""
+"""A recording's place on disk while it is read: archives are unpacked, files get an ending."""
 
 from __future__ import annotations
 
@@ -10,11 +6,12 @@ import os
 import shutil
 import stat
 import tempfile
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
+from zipfile import ZipFile, ZipInfo
 
+from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
 from app.bags.kind import METADATA, BagKind, bag_kind, kind_of
 from app.recognition.errors import BagError
 
@@ -28,8 +25,6 @@ ones by their noise to a half or a third at best; what shrinks further is no rec
 
 ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 """By which rosbags tells the two storages apart."""
-
-_CHUNK = 1024 * 1024
 
 
 @contextmanager
@@ -86,14 +81,12 @@ def _stand_in(path: Path, place: Path) -> None:
 
 def _unpacked(path: Path, folder: Path) -> Path:
     """Unpack an archive of a recording's folder, or of its one file, flat into `folder`."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            _unpack(archive, _wanted(archive, path.name), path.name, folder)
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, RuntimeError) as error:
-        raise BagError(
-            f"{path.name} is a damaged, encrypted or unusual zip ({error}); pack the recording's "
-            "folder again, without a password"
-        ) from error
+    with opened(path, path.name, BagError) as archive:
+        entries = _wanted(archive, path.name)
+        try:
+            unpack(archive, entries, folder, most_bytes=MOST_BYTES)
+        except UnpackedTooLarge as error:
+            raise _too_large(path.name, MOST_BYTES) from error
     if (folder / METADATA).is_file():
         return folder
     files = sorted(folder.iterdir())
@@ -105,8 +98,8 @@ def _unpacked(path: Path, folder: Path) -> Path:
     return files[0]
 
 
-def _wanted(archive: zipfile.ZipFile, name: str) -> list[zipfile.ZipInfo]:
-    """Return the entries that make up the recording, after a look at all of them."""
+def _wanted(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
+    """Return the entries that make up the recording by name, after a look at all of them."""
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > MOST_ENTRIES:
         raise BagError(
@@ -121,40 +114,23 @@ def _wanted(archive: zipfile.ZipFile, name: str) -> list[zipfile.ZipInfo]:
                 f"{name} has an entry that leads out of its folder ({entry.filename[:80]!r}); "
                 "pack the recording's folder again, without links"
             )
-    wanted = [entry for entry in entries if _belongs(_base(entry))]
-    if not any(_base(entry) != METADATA for entry in wanted):
+    files = [entry for entry in visible_files(archive) if _belongs(plain_name(entry))]
+    wanted = {plain_name(entry): entry for entry in files}
+    if not wanted.keys() - {METADATA}:
         raise BagError(
             f"{name} holds no dive recording (no .mcap and no .db3 file); pack a folder made by "
             "`ros2 bag record`"
         )
-    if len({_base(entry) for entry in wanted}) < len(wanted):
+    if len(wanted) < len(files):
         raise BagError(f"{name} holds more than one dive recording; pack one folder at a time")
-    if (total := sum(entry.file_size for entry in wanted)) > MOST_BYTES:
+    if (total := sum(entry.file_size for entry in files)) > MOST_BYTES:
         raise _too_large(name, total)
     return wanted
 
 
-def _base(entry: zipfile.ZipInfo) -> str:
-    return PurePosixPath(entry.filename.replace("\\", "/")).name
-
-
-def _belongs(base: str) -> bool:
-    """Tell whether a file is part of a recording; hidden ones are notes of the Mac's Finder."""
-    stem = base.removesuffix(".zstd")
-    return not base.startswith(".") and (base == METADATA or stem.endswith((".mcap", ".db3")))
-
-
-def _unpack(
-    archive: zipfile.ZipFile, entries: list[zipfile.ZipInfo], name: str, folder: Path
-) -> None:
-    left = MOST_BYTES
-    for entry in entries:
-        with archive.open(entry) as packed, (folder / _base(entry)).open("wb") as file:
-            while chunk := packed.read(_CHUNK):
-                left -= len(chunk)
-                if left < 0:
-                    raise _too_large(name, MOST_BYTES)
-                file.write(chunk)
+def _belongs(name: str) -> bool:
+    """Tell by its name whether a file is part of a recording."""
+    return name == METADATA or name.removesuffix(".zstd").endswith((".mcap", ".db3"))
 
 
 def _too_large(name: str, size: int) -> BagError:
@@ -169,8 +145,4 @@ def is_bag_archive(path: Path) -> bool:
     with path.open("rb") as file:
         if bag_kind(file.read(8)) != "zip":
             return False
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return any(_belongs(PurePosixPath(name).name) for name in archive.namelist())
-    except zipfile.BadZipFile:
-        return False
+    return any(map(_belongs, names_in(path)))

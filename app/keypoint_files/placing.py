@@ -1,20 +1,17 @@
-"""A keypoint file's place on disk while it is read: under its ending, or unpacked.
-
-What an archive says about itself is not believed: names never become paths, sizes are counted
-while they are written.
-"""
+"""A keypoint file's place on disk while it is read: under its ending, or unpacked."""
 
 from __future__ import annotations
 
 import os
 import shutil
 import tempfile
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Final
+from zipfile import ZipFile, ZipInfo
 
+from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
 from app.keypoint_files.kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
 from app.recognition.errors import KeypointFileError
@@ -61,43 +58,29 @@ def placed(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Ite
 
 def is_openpose_archive(path: Path) -> bool:
     """Tell whether the zip at `path` looks like a folder of OpenPose; names alone are read."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return any(_belongs(entry) for entry in archive.infolist())
-    except zipfile.BadZipFile:
-        return False
+    return any(map(_is_frame, names_in(path)))
 
 
 def _unpack(path: Path, folder: Path, limits: VideoLimits) -> None:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            entries = _frames(archive)
-            limits.require_frames(len(entries))
-            left = MOST_BYTES
-            for name, entry in entries.items():
-                with archive.open(entry) as packed:
-                    content = packed.read(LARGEST_FILE + 1)
-                left -= len(content)
-                if len(content) > LARGEST_FILE or left < 0:
-                    raise KeypointFileError(
-                        f"the archive unpacks to more than frames of OpenPose can be (at {name!r});"
-                        f" pack the folder that --write_json wrote, and nothing else"
-                    )
-                (folder / name).write_bytes(content)
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, NotImplementedError, RuntimeError) as error:
-        raise KeypointFileError(
-            f"the archive is a damaged, encrypted or unusual zip ({error}); pack the folder again, "
-            f"without a password"
-        ) from error
+    with opened(path, "the archive", KeypointFileError) as archive:
+        frames = _frames(archive)
+        limits.require_frames(len(frames))
+        try:
+            unpack(archive, frames, folder, most_bytes=MOST_BYTES, most_bytes_each=LARGEST_FILE)
+        except UnpackedTooLarge as error:
+            raise KeypointFileError(
+                "the archive unpacks to more than frames of OpenPose can be (at "
+                f"{error.name!r}); pack the folder that --write_json wrote, and nothing else"
+            ) from error
 
 
-def _frames(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
+def _frames(archive: ZipFile) -> dict[str, ZipInfo]:
     """Return the entries of frames by their plain names; those alone are read."""
-    frames: dict[str, zipfile.ZipInfo] = {}
-    for entry in archive.infolist():
-        if not _belongs(entry):
+    frames: dict[str, ZipInfo] = {}
+    for entry in visible_files(archive):
+        name = plain_name(entry)
+        if not _is_frame(name):
             continue
-        name = _base(entry)
         if name in frames:
             raise KeypointFileError(
                 f"the archive holds {name!r} twice; pack the folder of one clip at a time"
@@ -111,11 +94,5 @@ def _frames(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
     return frames
 
 
-def _base(entry: zipfile.ZipInfo) -> str:
-    return PurePosixPath(entry.filename.replace("\\", "/")).name
-
-
-def _belongs(entry: zipfile.ZipInfo) -> bool:
-    """Tell whether an entry is a frame; hidden ones are notes of the Mac's Finder."""
-    name = _base(entry)
-    return not entry.is_dir() and not name.startswith(".") and name.lower().endswith(".json")
+def _is_frame(name: str) -> bool:
+    return name.lower().endswith(".json")

@@ -1,0 +1,150 @@
+"""Zip archives that people send: what one says about itself is not believed.
+
+Names never become paths, and sizes are counted while they are written.
+"""
+
+from __future__ import annotations
+
+import errno
+import lzma
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from zipfile import ZipFile, ZipInfo
+
+from app.recognition.errors import RecognitionError
+
+_DAMAGE = (
+    zipfile.BadZipFile,
+    RuntimeError,  # encrypted, or compressed by a method that Python does not know
+    UnicodeDecodeError,
+    EOFError,
+    zlib.error,
+    lzma.LZMAError,
+)
+"""What reading a damaged, encrypted or unusual archive raises, beside some of `OSError`."""
+
+_DAMAGE_NUMBERS = (None, errno.EINVAL)
+"""Of an `OSError` by damage: bz2's own has none, and a place before the file's start is invalid.
+All others are the disk's."""
+
+_PIECE = 1024 * 1024
+"""Bytes unpacked at once, so that what is too much is noticed before it fills memory or disk."""
+
+
+class UnpackedTooLarge(Exception):
+    """Raised when an archive unpacks to more than is allowed.
+
+    Parameters
+    ----------
+    name
+        Plain name of the file at which it was noticed.
+
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.name = name
+
+
+@contextmanager
+def opened(path: Path, called: str, refusal: type[RecognitionError]) -> Iterator[ZipFile]:
+    """Open an archive to look at and unpack it.
+
+    Parameters
+    ----------
+    path
+        The archive.
+    called
+        What to call it in the error.
+    refusal
+        The error to raise.
+
+    Raises
+    ------
+    RecognitionError
+        Of the kind `refusal`, when it turns out to be damaged, encrypted or of an unusual kind.
+
+    """
+    try:
+        with ZipFile(path) as archive:
+            yield archive
+    except (*_DAMAGE, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in _DAMAGE_NUMBERS:
+            raise
+        raise refusal(
+            f"{called} is a damaged, encrypted or unusual zip "
+            f"({str(error) or type(error).__name__}); pack the folder again, without a password"
+        ) from error
+
+
+def plain_name(entry: ZipInfo) -> str:
+    """Return the name of an entry without its folders, whichever way they are written."""
+    return PurePosixPath(entry.filename.replace("\\", "/")).name
+
+
+def visible_files(archive: ZipFile) -> list[ZipInfo]:
+    """Return the entries that are files; hidden ones are notes of the Mac's Finder."""
+    return [
+        entry
+        for entry in archive.infolist()
+        if not entry.is_dir() and not plain_name(entry).startswith(".")
+    ]
+
+
+def names_in(path: Path) -> list[str]:
+    """Return the plain names of an archive's visible files, none where it cannot be read."""
+    try:
+        with opened(path, path.name, RecognitionError) as archive:
+            return [plain_name(entry) for entry in visible_files(archive)]
+    except RecognitionError:
+        return []
+
+
+def unpack(
+    archive: ZipFile,
+    entries: Mapping[str, ZipInfo],
+    folder: Path,
+    *,
+    most_bytes: int,
+    most_bytes_each: int | None = None,
+) -> None:
+    """Write entries of an archive into a folder.
+
+    Parameters
+    ----------
+    archive
+        Where they are.
+    entries
+        By the name that each gets in `folder`.
+    folder
+        Exists.
+    most_bytes
+        That may be written altogether.
+    most_bytes_each
+        That one file may have, if there is such a limit.
+
+    Raises
+    ------
+    UnpackedTooLarge
+        When it is more; files written until then stay.
+
+    """
+    left = most_bytes
+    for name, entry in entries.items():
+        allowed = left if most_bytes_each is None else min(left, most_bytes_each)
+        left -= _write(archive, entry, folder / name, allowed)
+
+
+def _write(archive: ZipFile, entry: ZipInfo, place: Path, allowed: int) -> int:
+    """Write an entry of at most `allowed` bytes, and return how many it has."""
+    size = 0
+    with archive.open(entry) as packed, place.open("wb") as file:
+        while piece := packed.read(_PIECE):
+            size += len(piece)
+            if size > allowed:
+                raise UnpackedTooLarge(place.name)
+            file.write(piece)
+    return size
