@@ -9,7 +9,7 @@ from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.extraction.keypoint_source import KeypointSource
-from app.api.extraction.messages import Failed
+from app.api.extraction.messages import Failed, KeypointsProbed, Probed, TopicSeen
 from app.api.media_types import HEAD_BYTES, video_type
 from app.api.problems import ProblemError
 from app.api.schemas import ClipAccepted
@@ -18,6 +18,9 @@ from app.api.upload_fields import UploadFields
 from app.bags.kind import bag_kind
 from app.keypoint_files import Ending, keypoint_ending
 from app.store import Clip
+
+MADE_VIDEO = "video/mp4"
+"""What is played of a clip that came without a video of its own."""
 
 
 def client_of(request: Request) -> str:
@@ -99,15 +102,7 @@ async def _examined_video(
     probed = await studio.runner.probe(partial)
     if isinstance(probed, Failed):
         raise _refused(probed, name)
-    return Clip(
-        name=name,
-        media_type=media_type,
-        size=size,
-        width=probed.width,
-        height=probed.height,
-        duration=probed.duration,
-        frames=probed.frames,
-    )
+    return _clip(name, size, media_type, probed)
 
 
 async def _examined_bag(
@@ -130,17 +125,10 @@ async def _examined_bag(
             topics=[each.model_dump() for each in probed.topics],
         )
     shown = named[topic] if topic is not None else probed.topics[0]
-    return Clip(
-        name=name,
-        media_type="video/mp4",
-        size=size,
-        width=shown.width,
-        height=shown.height,
-        duration=shown.duration,
-        frames=shown.messages,
-        topics=json.dumps([each.model_dump() for each in probed.topics]),
-        topic=topic,
-    )
+    clip = _clip(name, size, MADE_VIDEO, shown)
+    clip.topics = json.dumps([each.model_dump() for each in probed.topics])
+    clip.topic = topic
+    return clip
 
 
 async def _examined_keypoints(
@@ -154,15 +142,22 @@ async def _examined_keypoints(
     probed = await studio.runner.probe_keypoints(partial, told)
     if isinstance(probed, Failed):
         raise _refused(probed, name)
+    clip = _clip(name, size, MADE_VIDEO, probed)
+    clip.keypoints = told.model_dump_json()
+    return clip
+
+
+def _clip(
+    name: str, size: int, media_type: str, seen: Probed | TopicSeen | KeypointsProbed
+) -> Clip:
     return Clip(
         name=name,
-        media_type="video/mp4",
+        media_type=media_type,
         size=size,
-        width=probed.width,
-        height=probed.height,
-        duration=probed.duration,
-        frames=probed.frames,
-        keypoints=told.model_dump_json(),
+        width=seen.width,
+        height=seen.height,
+        duration=seen.duration,
+        frames=seen.frames,
     )
 
 

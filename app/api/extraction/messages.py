@@ -42,6 +42,11 @@ class TopicSeen(BaseModel):
     width: int = Field(description="Pixels of the upright picture")
     height: int
 
+    @property
+    def frames(self) -> int:
+        """Frames of the clip that it would be: each message is one."""
+        return self.messages
+
 
 class BagProbed(BaseModel):
     """What a dive recording offers (`app.bags.summary.usable_topics`)."""

@@ -10,6 +10,7 @@ from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from contextlib import aclosing, asynccontextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.keypoint_source import KeypointSource
@@ -24,6 +25,8 @@ from app.api.extraction.messages import (
     parse,
 )
 from app.settings import Settings
+
+Answer = TypeVar("Answer", Probed, BagProbed, KeypointsProbed, Finished)
 
 PROBE_SECONDS = 30.0
 """Longest time for looking into a clip; it decodes one frame, which takes milliseconds."""
@@ -59,22 +62,15 @@ _DECODER_HANGS = Failed(
 
 async def probe(clip: Path, settings: Settings) -> Probed | Failed:
     """Look into a clip, in a process of its own."""
-    async with aclosing(_messages(["probe", str(clip)], settings, PROBE_SECONDS)) as messages:
-        async for message in messages:
-            if isinstance(message, Probed | Failed):
-                return message
-    return _DECODER_FAILED
+    command = ["probe", str(clip)]
+    return await _answer(Probed, command, settings, PROBE_SECONDS) or _DECODER_FAILED
 
 
 async def probe_bag(bag: Path, settings: Settings) -> BagProbed | Failed:
     """Look into a dive recording, in a process of its own."""
     with _scratch(bag.parent) as scratch:
         command = [_place(scratch), "probe-bag", str(bag)]
-        async with aclosing(_messages(command, settings, PROBE_BAG_SECONDS)) as messages:
-            async for message in messages:
-                if isinstance(message, BagProbed | Failed):
-                    return message
-    return _BAG_FAILED
+        return await _answer(BagProbed, command, settings, PROBE_BAG_SECONDS) or _BAG_FAILED
 
 
 async def probe_keypoints(
@@ -83,11 +79,8 @@ async def probe_keypoints(
     """Look into a keypoint file, in a process of its own."""
     with _scratch(file.parent) as scratch:
         command = [_place(scratch), "probe-keypoints", _how(told), str(file)]
-        async with aclosing(_messages(command, settings, PROBE_BAG_SECONDS)) as messages:
-            async for message in messages:
-                if isinstance(message, KeypointsProbed | Failed):
-                    return message
-    return _KEYPOINTS_FAILED
+        answer = await _answer(KeypointsProbed, command, settings, PROBE_BAG_SECONDS)
+    return answer or _KEYPOINTS_FAILED
 
 
 async def extract(
@@ -132,11 +125,19 @@ async def write_session(
         wanted = scratch / "wishes.json"
         await asyncio.to_thread(wanted.write_bytes, wishes)
         command = [_place(scratch), "session", str(wanted), str(session), *files.arguments]
-        async with aclosing(_extraction(command, settings)) as messages:
-            async for message in messages:
-                if isinstance(message, Finished | Failed):
-                    return message
-    return _DECODER_FAILED
+        silence = settings.worker_silence_seconds
+        return await _answer(Finished, command, settings, silence) or _DECODER_FAILED
+
+
+async def _answer(
+    kind: type[Answer], command: list[str], settings: Settings, silence_seconds: float
+) -> Answer | Failed | None:
+    """Return the answer of a worker that is asked for one, or None where it ends without."""
+    async with aclosing(_messages(command, settings, silence_seconds)) as messages:
+        async for message in messages:
+            if isinstance(message, (kind, Failed)):
+                return message
+    return None
 
 
 async def _extraction(
