@@ -136,10 +136,7 @@ class PoseSequence:
             When a name is not among the recording's landmarks.
 
         """
-        missing = [name for name in names if name not in self.landmarks]
-        if missing:
-            raise PoseError(f"no landmarks {missing} in this recording; it has {self.landmarks}")
-        columns = [self.landmarks.index(name) for name in names]
+        columns = columns_of(names, self.landmarks, "recording")
         confidence = None if self.confidence is None else self.confidence[:, columns]
         return replace(self, landmarks=tuple(names), xy=self.xy[:, columns], confidence=confidence)
 
@@ -208,6 +205,21 @@ class PoseSequence:
         if not set(pair) <= set(self.landmarks):
             return np.full((len(self), 2), np.nan)
         return (self.column(pair[0]) + self.column(pair[1])) / 2
+
+
+def columns_of(names: Sequence[str], landmarks: Sequence[str], what: str) -> list[int]:
+    """Return where `names` stand among `landmarks`.
+
+    Raises
+    ------
+    PoseError
+        When one of them does not; `what` says in its words whose landmarks these are.
+
+    """
+    missing = [name for name in names if name not in landmarks]
+    if missing:
+        raise PoseError(f"no landmarks {missing} in this {what}; it has {landmarks}")
+    return [landmarks.index(name) for name in names]
 
 
 def joined(moments: Sequence[PoseSequence]) -> PoseSequence:

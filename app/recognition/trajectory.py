@@ -11,7 +11,7 @@ import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.landmarks import other_side
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses import FloatArray, PoseSequence, columns_of
 
 Result = TypeVar("Result")
 
@@ -121,10 +121,7 @@ class Trajectory:
             When a name is not among the trajectory's landmarks.
 
         """
-        missing = [name for name in names if name not in self.landmarks]
-        if missing:
-            raise PoseError(f"no landmarks {missing} in this trajectory; it has {self.landmarks}")
-        columns = [self.landmarks.index(name) for name in names]
+        columns = columns_of(names, self.landmarks, "trajectory")
         return replace(self, landmarks=tuple(names), xy=self.xy.take(columns, axis=1))
 
     def between(self, start: float, end: float) -> Trajectory:
