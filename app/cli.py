@@ -39,9 +39,9 @@ from app.recognition.errors import RecognitionError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation import Explanation, explain
 from app.recognition.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.profile import PROFILES
 from app.recognition.proteus import SUFFIX as PROTEUS_SUFFIX
 from app.recognition.proteus import to_proteus
-from app.recognition.recognizer import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.spotting import Spotter
 from app.robot_command import robot
@@ -49,7 +49,6 @@ from app.ros_arguments import apart
 from app.session_file import named_recognitions, save_session
 from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
-DEFAULT_PROFILE = "full"
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
 
@@ -170,8 +169,9 @@ def recognize(
     ],
     language: Annotated[Path, typer.Option(help="Language file.")],
     profile: Annotated[
-        str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")
-    ] = DEFAULT_PROFILE,
+        str | None,
+        typer.Option(help=f"Set of voters, {' or '.join(PROFILES)}; by default the language's."),
+    ] = None,
     expected: Annotated[
         str | None,
         typer.Option(metavar="LABEL", help="The gesture that was meant: explain every take by it."),
@@ -200,7 +200,7 @@ def recognize(
     spoken = Language.load(language)
     if expected is not None:
         spoken.gesture(expected)  # a mistyped label is told before the clip is read
-    recognizer = Recognizer(spoken, profile=profile)
+    recognizer = Recognizer(spoken, profile)
     spotter = Spotter(recognizer) if without_salutes else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), spoken)
@@ -222,7 +222,7 @@ def recognize(
         report = {
             "clip": str(path),
             "language": spoken.name,
-            "profile": profile,
+            "profile": recognizer.profile,
             "takes": [
                 take_report(take, result, explanation)
                 for (take, result), explanation in zip_longest(results, explanations)

@@ -24,7 +24,7 @@ from app.evaluation.labelled_takes import Collection, collected
 from app.evaluation.one_shot import one_shot, read_by
 from app.evaluation.protocols import recognised_variants
 from app.recognition import Language
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.terminal import people, progress_bar
 
 DEFAULT_VARIANTS = 50

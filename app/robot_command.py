@@ -22,7 +22,7 @@ from app.recognition.estimation import create_estimator, finds_hands
 from app.recognition.estimation.base import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.robot import (
     Event,
     Hearing,
@@ -53,7 +53,10 @@ def robot(
             help="Camera number or device, rtsp:// or http:// address, clip, BAG or BAG@/TOPIC."
         ),
     ] = "0",
-    profile: Annotated[str, typer.Option(help=f"Set of voters: {', '.join(PROFILES)}.")] = "full",
+    profile: Annotated[
+        str | None,
+        typer.Option(help=f"Set of voters, {' or '.join(PROFILES)}; by default the language's."),
+    ] = None,
     without_salutes: Annotated[
         bool, typer.Option("--without-salutes", help="Hear gestures that no salute announces.")
     ] = False,

@@ -13,7 +13,7 @@ from statistics import median
 
 from app.recognition import Language, PoseSequence, Recognizer
 from app.recognition.explanation import explain
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.trajectory import Trajectory
 from app.recognition.variation import variants

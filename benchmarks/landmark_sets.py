@@ -30,7 +30,7 @@ from app.recognition import (
 from app.recognition.estimation import create_estimator
 from app.recognition.landmark_sets import COCO_17
 from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from benchmarks.methods.ours import gesture_of
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets

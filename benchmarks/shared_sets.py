@@ -26,7 +26,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from benchmarks.arguments import set_arguments
 from benchmarks.drawn_sets import drawn_sets
 from benchmarks.methods import new_method

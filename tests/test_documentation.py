@@ -33,7 +33,7 @@ def test_links_inside_the_repository_lead_somewhere(page: Path) -> None:
 
 
 def test_every_voter_is_documented() -> None:
-    from app.recognition.recognizer import PROFILES
+    from app.recognition.profile import PROFILES
 
     text = (ROOT / "docs" / "recognizer.md").read_text()
     voters = {voter.name for profile in PROFILES.values() for voter in profile}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from app.recognition import Gesture, Language
 from app.recognition.estimation.base import Hand
 from app.recognition.landmark_sets import BODY_25, COCO_18
+from app.recognition.tuning import Tuning
 from tests.command_line import OsgStudio
 from tests.keypoint_files.files import (
     renamed,
@@ -69,6 +71,19 @@ def test_salutes_of_openpose_s_hands_cut_the_takes(
     assert take["closed"]
     assert take["start"] == pytest.approx(19 / 30, abs=0.05)
     assert take["end"] == pytest.approx(100 / 30, abs=0.05)
+
+
+def test_a_language_is_recognised_as_its_author_kept_it(
+    osg_studio: OsgStudio, tmp_path: Path, language: Path
+) -> None:
+    tuning = Tuning(weights={"hu": 0.0})
+    replace(Language.load(language), profile="paper", tuning=tuning).save(language)
+    folder = write_openpose(tmp_path / "dive", recording(circle, landmarks=ARMS), BODY_25)
+    command = ("recognize", folder, "--language", language, "--frame-rate", "30", "--json")
+    report = json.loads(osg_studio(*command).out)
+    assert (report["profile"], report["takes"][0]["weights"]["hu"]) == ("paper", 0.0)
+    other = json.loads(osg_studio(*command, "--profile", "full").out)
+    assert (other["profile"], other["takes"][0]["weights"]["hu"] > 0) == ("full", True)
 
 
 @pytest.mark.parametrize("form", ["numbered", "named", "deeplabcut"])

@@ -74,9 +74,12 @@ def language_words(older: Language, newer: Language) -> list[str]:
         for what, old, new in (
             ("name", older.name, newer.name),
             ("author", older.author, newer.author),
+            ("profile", older.profile, newer.profile),
         )
         if old != new
     ]
+    if older.tuning != newer.tuning:
+        words.append(f"was recognised {older.tuning.words}, is {newer.tuning.words}")
     shared = [label for label in newer.labels if label in older.labels]
     if shared != [label for label in older.labels if label in newer.labels]:
         words.append("the gestures are in another order")

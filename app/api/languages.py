@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, Any
 from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Header, Query, Response
@@ -27,6 +28,8 @@ from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
 from app.recognition.grammar_entry import grammar_entry_of, grammar_of
+from app.recognition.tuning import AS_THE_PROFILE
+from app.recognition.tuning_entry import tuning_entry_of, tuning_of
 from app.store import LanguageState, LanguageStore
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)
@@ -85,20 +88,34 @@ def change_language(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Rename a language or its author, or say which sequences of its gestures are phrases."""
-    fields = change.model_dump(exclude={"grammar"}, exclude_none=True)
+    """Rename a language or its author, change its phrases, or how it is recognised."""
+    fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
     if "grammar" in change.model_fields_set:
         fields["grammar"] = None if change.grammar is None else grammar_of(change.grammar)
+    if "tuning" in change.model_fields_set:
+        fields["tuning"] = AS_THE_PROFILE if change.tuning is None else tuning_of(change.tuning)
     if not fields:
         return answered(studio, studio.languages.get(language_id), response)
+    edit = editing(_change_words(fields), lambda language: replace(language, **fields))
+    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+
+
+def _change_words(fields: Mapping[str, Any]) -> str:
+    """Say for the history what changes about a language."""
     words = {
-        "name": f"Rename to {change.name}",
-        "author": f"Name {change.author} as author",
+        "name": "Rename to {}",
+        "author": "Name {} as author",
         "grammar": "Change the phrases",
     }
-    told = ", ".join(words[field] for field in fields)
-    edit = editing(told, lambda language: replace(language, **fields))
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+    told = [words[field].format(value) for field, value in fields.items() if field in words]
+    recognised = []
+    if "profile" in fields:
+        recognised.append(f"by the profile {fields['profile']}")
+    if "tuning" in fields:
+        recognised.append(fields["tuning"].words)
+    if recognised:
+        told.append(f"Recognise {', '.join(recognised)}")
+    return ", ".join(told)
 
 
 @router.post("/{language_id}/duplicate", status_code=201, responses=documented(404))
@@ -149,6 +166,9 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
             for gesture in language.gestures
         ],
         grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
+        profile=language.profile,
+        tuning=None if language.tuning == AS_THE_PROFILE else tuning_entry_of(language.tuning),
+        tuning_words=language.tuning.words,
     )
 
 

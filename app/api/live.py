@@ -26,6 +26,7 @@ from app.recognition import RecognitionError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.base import PoseEstimator
+from app.recognition.profile import ProfileName
 from app.store import NotFound
 
 MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013
@@ -56,7 +57,7 @@ class Listen(BaseModel):
 
     do: Literal["listen"]
     language_id: Annotated[str, Field(max_length=64)] | None = None
-    profile: Literal["paper", "full"] = "full"
+    profile: ProfileName | None = Field(default=None, description="Null: the language's own")
 
 
 class Listening(BaseModel):

@@ -15,19 +15,15 @@ from app.api.schemas import (
     Label,
     RecognitionRequest,
     RecognitionView,
-    TuningChange,
 )
 from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation import explain
+from app.recognition.language_schema import TuningEntry
 from app.recognition.requirements import require_landmarks
 from app.recognition.situation import Situation
-from app.recognition.trajectory_image import SIMPLIFICATION
-from app.recognition.tuning import Tuning
+from app.recognition.tuning_entry import tuning_of
 from app.store import Clip, RecognitionRecord
-
-DEFAULT_PROFILE = "full"
-"""Profile of whoever names none."""
 
 MOST_LISTED = 500
 """Recognitions in one answer; the page shows the newest of one clip or language."""
@@ -40,8 +36,9 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     """Recognise a take, a range or all of a clip, and keep the answer."""
     state = studio.languages.get(request.language_id)
     recording = studio.recording(request.clip_id)
-    profile = request.profile or DEFAULT_PROFILE
-    require_given(studio.clips.get(request.clip_id).clip, recording.poses, studio.language(state))
+    language = studio.language(state)
+    profile = request.profile or language.profile
+    require_given(studio.clips.get(request.clip_id).clip, recording.poses, language)
     demonstration = demonstration_in(recording, request.start, request.end)
     recognizer = _tuned(studio.recognizer(state, profile), request.tuning)
     told = recognizer.recognize(demonstration.poses).to_dict()
@@ -131,15 +128,10 @@ def situation_of(record: RecognitionRecord, studio: Studio) -> Situation:
     )
 
 
-def _tuned(recognizer: Recognizer, change: TuningChange | None) -> Recognizer:
-    if change is None:
+def _tuned(recognizer: Recognizer, asked: TuningEntry | None) -> Recognizer:
+    if asked is None:
         return recognizer
-    tuning = Tuning(
-        weights=change.weights,
-        simplification=SIMPLIFICATION if change.simplification is None else change.simplification,
-        keypoints_repaired=change.keypoints_repaired,
-    )
-    return Recognizer(recognizer.language, recognizer.profile, tuning=tuning)
+    return Recognizer(recognizer.language, recognizer.profile, tuning=tuning_of(asked))
 
 
 def kept_recognition(record: RecognitionRecord) -> Recognition:

@@ -11,6 +11,8 @@ from app.api.extraction.messages import Pose, TopicSeen
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.grammar_schema import GrammarEntry
 from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+from app.recognition.language_schema import TuningEntry
+from app.recognition.profile import ProfileName
 from app.store import JobStatus
 
 MOST_SECONDS = 24 * 60 * 60
@@ -137,6 +139,10 @@ class LanguageChange(Body):
     name: Name | None = None
     author: Author | None = None
     grammar: GrammarEntry | None = Field(default=None, description="The phrases; null: none")
+    profile: ProfileName | None = Field(default=None, description="The voters that recognise it")
+    tuning: TuningEntry | None = Field(
+        default=None, description="What differs from the profile; null: nothing"
+    )
 
 
 class LanguageRevert(Body):
@@ -232,6 +238,9 @@ class LanguageView(LanguageSummary):
 
     gestures: list[GestureView]
     grammar: GrammarEntry | None = Field(description="Null: gestures stand for themselves")
+    profile: ProfileName = Field(description="The voters that recognise it")
+    tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
+    tuning_words: str = Field(description="The same for people: recognised ...")
 
 
 class RevisionView(BaseModel):
@@ -265,24 +274,6 @@ class RevisionComparison(BaseModel):
     )
 
 
-Voter = Annotated[str, Field(max_length=64)]
-Factor = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
-
-
-class TuningChange(Body):
-    """How to recognise otherwise than the profile does, to see what would come of it."""
-
-    weights: Annotated[dict[Voter, Factor], Field(max_length=64)] = Field(
-        default_factory=dict, description="Factor per voter on its say; 0: off"
-    )
-    simplification: Annotated[float, Field(ge=0, le=50, allow_inf_nan=False)] | None = Field(
-        default=None, description="Tolerance of the drawings, in pixels"
-    )
-    keypoints_repaired: bool | None = Field(
-        default=None, description="Whether bad keypoints are repaired; null: as the profile does"
-    )
-
-
 class RecognitionRequest(Body):
     """What to recognise."""
 
@@ -290,8 +281,10 @@ class RecognitionRequest(Body):
     language_id: Identifier
     start: Seconds | None = None
     end: Seconds | None = None
-    profile: Annotated[str, Field(max_length=32)] | None = None
-    tuning: TuningChange | None = None
+    profile: Annotated[str, Field(max_length=32)] | None = Field(
+        default=None, description="Null: the language's own"
+    )
+    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
     expected: Label | None = None
 
 
@@ -307,7 +300,7 @@ class RecognitionView(BaseModel):
     start: float
     end: float
     profile: str
-    tuning: TuningChange | None = Field(default=None, description="Null: as the profile does")
+    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
     expected: str | None
     created: datetime
     label: str | None = Field(description="None when rejected")

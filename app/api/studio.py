@@ -110,8 +110,8 @@ class Studio:
         """Return the language that a revision holds."""
         return _language(state.revision.document)
 
-    def recognizer(self, state: LanguageState, profile: str) -> Recognizer:
-        """Return a recogniser of a revision.
+    def recognizer(self, state: LanguageState, profile: str | None = None) -> Recognizer:
+        """Return a recogniser of a revision, by default with the language's own profile.
 
         Raises
         ------
@@ -133,8 +133,8 @@ def _language(document: str) -> Language:
 
 
 @lru_cache(CACHED_LANGUAGES)
-def _recognizer(document: str, profile: str) -> Recognizer:
-    return Recognizer(_language(document), profile=profile)
+def _recognizer(document: str, profile: str | None) -> Recognizer:
+    return Recognizer(_language(document), profile)
 
 
 @asynccontextmanager

@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 from app.recognition.finding import Finding
 from app.recognition.grammar import Grammar
 from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
-from app.recognition.placeholders import listed
+from app.recognition.wording import listed
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
 

@@ -21,7 +21,7 @@ from app.recognition.change import (
 )
 from app.recognition.gesture import Gesture
 from app.recognition.motion_references import CLEARLY_SLOWER
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.repair import repaired
 from app.recognition.salience import salient_landmarks
 from app.recognition.situation import Situation

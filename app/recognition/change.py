@@ -13,7 +13,8 @@ from typing import Any, ClassVar, Literal
 from app.recognition.gesture import Gesture
 from app.recognition.situation import Situation
 from app.recognition.switches import Switch
-from app.recognition.wording import all_readable, listed, readable
+from app.recognition.tuning import repair_words, simplification_words, weight_words
+from app.recognition.wording import all_readable, listed
 
 SwitchName = Literal["direction", "tempo", "mirror"]
 
@@ -91,9 +92,7 @@ class VoterWeight(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        if self.factor == 0:
-            return f"without the voter {readable(self.voter)}"
-        return f"with {self.factor:g} times the weight on the voter {readable(self.voter)}"
+        return weight_words(self.voter, self.factor)
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
@@ -113,7 +112,7 @@ class Simplification(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        return f"with drawings simplified by {self.tolerance:g} pixels"
+        return simplification_words(self.tolerance)
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""
@@ -131,9 +130,7 @@ class KeypointRepair(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        if self.on:
-            return "with exchanged sides put right and jumps left out"
-        return "with the keypoints left as the pose model saw them"
+        return repair_words(self.on)
 
     def applied(self, situation: Situation) -> Situation:
         """See `Change`."""

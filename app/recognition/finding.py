@@ -42,7 +42,8 @@ class Finding:
     code
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``empty``, and of the grammar ``phrases_`` with one of `ambiguity.AmbiguityKind`.
+        ``unrejecting``, ``empty``, and of the grammar ``phrases_`` with one of
+        `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures it is about; none where it is about phrases.
     message

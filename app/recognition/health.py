@@ -69,7 +69,7 @@ def check_health(
     Parameters
     ----------
     language
-        With profile ``full``.
+        With its tuning, by profile ``full`` whatever its own: `paper` rejects nothing.
     person
         Who will dive: the person who demonstrated, or somebody else.
     takes
@@ -116,6 +116,7 @@ def check_health(
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
+    findings += _profile_findings(language)
     if language.grammar is not None:
         findings += [each.finding() for each in find_ambiguities(language.grammar)]
     return HealthReport(
@@ -270,6 +271,17 @@ def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contr
         f"{confusion.rate:.0%} of all takes of {one} ({confusion.low:.0%} to {confusion.high:.0%}) "
         f"would be nearer to {other}{where}"
     )
+
+
+def _profile_findings(language: Language) -> list[Finding]:
+    if language.profile == "full":
+        return []
+    message = (
+        f"the language is recognised by the profile {language.profile}, which gives every movement "
+        "a label and rejects none, and the forecasts here are by the profile full: choose that one "
+        "before a dive"
+    )
+    return [Finding("unrejecting", (), message, below_bar=True)]
 
 
 def _gesture_findings(

@@ -11,7 +11,7 @@ from typing import Any
 from zlib import crc32
 
 from app.recognition.calibration import RULE, calibrated
-from app.recognition.errors import LanguageError
+from app.recognition.errors import LanguageError, RecognitionError
 from app.recognition.gesture import SETTINGS, Gesture
 from app.recognition.gesture_entry import entry_of, gesture_of
 from app.recognition.grammar import Grammar
@@ -24,8 +24,11 @@ from app.recognition.language_schema import (
     VERSION,
     LanguageDocument,
 )
-from app.recognition.placeholders import listed
+from app.recognition.profile import DEFAULT_PROFILE, ProfileName, voters_of
 from app.recognition.strict_json import pointer_to
+from app.recognition.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.tuning_entry import tuning_entry_of, tuning_of
+from app.recognition.wording import listed
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
@@ -59,6 +62,11 @@ class Language:
         The `fingerprint` of the gestures that the thresholds were made for; empty: for none.
     grammar
         Its phrases; None where every gesture stands for itself.
+    profile
+        Voters that recognise it, one of `profile.PROFILES`.
+    tuning
+        How recognition deviates from that profile: what its author kept after trying it on a take.
+        Thresholds do not follow; they are the gestures'.
 
     Raises
     ------
@@ -75,6 +83,8 @@ class Language:
     skeleton: tuple[tuple[str, str], ...] = SKELETON
     thresholds_for: str = ""
     grammar: Grammar | None = None
+    profile: ProfileName = DEFAULT_PROFILE
+    tuning: Tuning = AS_THE_PROFILE
 
     def __post_init__(self) -> None:
         """Validate, and bring the fields to their kept form."""
@@ -99,6 +109,7 @@ class Language:
             labels.add(gesture.label)
         if self.grammar is not None:
             self.grammar.require(labels)
+        _check_tuning(self.profile, self.tuning)
         object.__setattr__(self, "created", _utc_second(self.created))
 
     @property
@@ -143,6 +154,10 @@ class Language:
         if not self.gestures or self.thresholds_for == fingerprint:
             return self
         return replace(self, gestures=calibrated(self.gestures), thresholds_for=fingerprint)
+
+    def tuning_with(self, profile: str) -> Tuning:
+        """Return how recognition by a profile is tuned: weights are for the language's own."""
+        return self.tuning if profile == self.profile else replace(self.tuning, weights={})
 
     def with_gesture(self, gesture: Gesture) -> Language:
         """Return the next revision, with one more gesture at the end.
@@ -202,6 +217,8 @@ class Language:
             settings=dict(SETTINGS),
             thresholds_for=self.thresholds_for,
             grammar=None if self.grammar is None else grammar_entry_of(self.grammar),
+            profile=self.profile,
+            tuning=None if self.tuning == AS_THE_PROFILE else tuning_entry_of(self.tuning),
             gestures=[entry_of(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -232,6 +249,8 @@ class Language:
             skeleton=tuple((start, end) for start, end in document.skeleton),
             thresholds_for=document.thresholds_for,
             grammar=None if document.grammar is None else grammar_of(document.grammar),
+            profile=document.profile,
+            tuning=AS_THE_PROFILE if document.tuning is None else tuning_of(document.tuning),
         )
 
     def save(self, path: str | Path) -> None:
@@ -263,6 +282,17 @@ class Language:
 def _check_text(text: Any, most: int, pointer: str) -> None:
     if not isinstance(text, str) or len(text) > most or not text.isprintable():
         raise LanguageError(f"must be at most {most} printable characters, got {text!r}", pointer)
+
+
+def _check_tuning(profile: str, tuning: Tuning) -> None:
+    try:
+        voters = voters_of(profile)
+    except RecognitionError as error:
+        raise LanguageError(str(error), "/profile") from error
+    try:
+        tuning.weights_of(voters)
+    except RecognitionError as error:
+        raise LanguageError(str(error), "/tuning/weights") from error
 
 
 def _utc_second(moment: datetime | None) -> datetime:

@@ -13,7 +13,9 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.grammar_schema import GrammarEntry
+from app.recognition.profile import DEFAULT_PROFILE, ProfileName
 from app.recognition.switches import Switch
+from app.recognition.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
@@ -150,6 +152,31 @@ class GestureEntry(_Model):
     ] = "auto"
 
 
+class TuningEntry(_Model):
+    """How recognition deviates from the profile."""
+
+    weights: Annotated[
+        dict[Name, Annotated[FiniteFloat, Field(ge=0, le=MAX_FACTOR)]],
+        Field(description="Factor per voter on its say, 0: off. Voters left out keep 1."),
+    ] = {}
+    simplification: Annotated[
+        FiniteFloat | None,
+        Field(
+            ge=0,
+            le=MAX_SIMPLIFICATION,
+            description="Tolerance in pixels with which the paths are simplified before they are "
+            "drawn. Left out: as in `settings`.",
+        ),
+    ] = None
+    keypoints_repaired: Annotated[
+        bool | None,
+        Field(
+            description="Whether bad keypoints are repaired before they are looked at. Left out: "
+            "as the profile does."
+        ),
+    ] = None
+
+
 class LanguageDocument(_Model):
     """A gesture language for one diver and one robot."""
 
@@ -184,6 +211,14 @@ class LanguageDocument(_Model):
     grammar: Annotated[
         GrammarEntry | None,
         Field(description="The phrases. Left out when gestures stand for themselves."),
+    ] = None
+    profile: Annotated[
+        ProfileName,
+        Field(description="The voters that recognise it. Left out when full."),
+    ] = DEFAULT_PROFILE
+    tuning: Annotated[
+        TuningEntry | None,
+        Field(description="What differs from the profile. Left out when nothing does."),
     ] = None
     gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
     sha256: Annotated[

@@ -14,7 +14,7 @@ from typing import Any, Literal
 from app.recognition.grammar import Grammar
 from app.recognition.mission import Mission, mission_of
 from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
-from app.recognition.placeholders import listed
+from app.recognition.wording import listed
 
 PhraseEventKind = Literal[
     "continues",

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterator, Mapping, Set
 
 from app.recognition.phrase import Value
+from app.recognition.wording import listed
 
 SlotValue = Value | list[Value]
 """What a slot came to: a list where it may be filled more than once."""
@@ -85,10 +86,3 @@ def words(value: SlotValue | None) -> str:
     if isinstance(value, list):
         return listed([words(each) for each in value])
     return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
-
-
-def listed(items: Sequence[str], last: str = "and") -> str:
-    """Say several things in a row."""
-    if len(items) < 2:
-        return "".join(items)
-    return f"{', '.join(items[:-1])} {last} {items[-1]}"

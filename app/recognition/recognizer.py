@@ -9,12 +9,13 @@ import numpy as np
 
 from app.recognition.calibrated_vote import CalibratedVote
 from app.recognition.comparison import Comparison
-from app.recognition.errors import LanguageError, PoseError, RecognitionError
+from app.recognition.errors import LanguageError, PoseError
 from app.recognition.examination import Examination
 from app.recognition.gesture import condensed
 from app.recognition.landmarks import other_side
 from app.recognition.language import Language
 from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.profile import voters_of
 from app.recognition.quality import fault
 from app.recognition.recognition_result import Recognition
 from app.recognition.rejection import VIEWS
@@ -22,16 +23,8 @@ from app.recognition.repair import Repair, repaired
 from app.recognition.shape_references import ShapeReferences
 from app.recognition.switches import Counting
 from app.recognition.trajectory import Trajectory
-from app.recognition.tuning import AS_THE_PROFILE, Tuning
-from app.recognition.voters import PAPER_VOTERS, Voter
-from app.recognition.voters.motion import MOTION_VOTERS, MotionVoter
-
-PROFILES: dict[str, tuple[Voter | MotionVoter, ...]] = {
-    "paper": PAPER_VOTERS,
-    "full": (*PAPER_VOTERS, *MOTION_VOTERS),
-}
-"""The voters of each profile. ``paper``: the seven of the paper, majority vote, no rejection.
-``full``: also the movement itself, by calibrated distances."""
+from app.recognition.tuning import Tuning
+from app.recognition.voters import PAPER_VOTERS
 
 
 class Recognizer:
@@ -43,9 +36,10 @@ class Recognizer:
         At least one gesture. Profile ``full`` takes its thresholds from it, or makes them where
         they are missing or were made for other gestures; `language` then has them.
     profile
-        One of `PROFILES`.
+        One of `PROFILES`; the language's own when not given.
     tuning
-        How it deviates from the profile.
+        How it deviates from the profile; as the language says when not given
+        (`Language.tuning_with`).
 
     Raises
     ------
@@ -57,23 +51,23 @@ class Recognizer:
     """
 
     def __init__(
-        self, language: Language, profile: str = "full", *, tuning: Tuning = AS_THE_PROFILE
+        self, language: Language, profile: str | None = None, *, tuning: Tuning | None = None
     ) -> None:
-        if profile not in PROFILES:
-            raise RecognitionError(
-                f"no profile {profile!r}; this version has {', '.join(sorted(PROFILES))}"
-            )
+        profile = language.profile if profile is None else profile
+        voters = voters_of(profile)
         if not language.gestures:
             raise LanguageError(f"language {language.name!r} has no gestures yet: add one", "")
-        self.language = language.calibrated() if profile == "full" else language
+        calibrating = profile == "full"
+        tuning = language.tuning_with(profile) if tuning is None else tuning
+        self.language = language.calibrated() if calibrating else language
         self.profile = profile
         self.tuning = tuning
-        self._weights = tuning.weights_of([voter.name for voter in PROFILES[profile]])
+        self._weights = tuning.weights_of(voters)
         gestures = self.language.gestures
         self._shapes = ShapeReferences(gestures, tuning.simplification)
-        self._calibrated = CalibratedVote(gestures, tuning) if profile == "full" else None
+        self._calibrated = CalibratedVote(gestures, tuning) if calibrating else None
         wanted = tuning.keypoints_repaired
-        self.repairs = profile == "full" if wanted is None else wanted
+        self.repairs = calibrating if wanted is None else wanted
 
     def recognize(self, poses: PoseSequence) -> Recognition:
         """Recognise the gesture in a recording without salutes.

@@ -12,6 +12,13 @@ import numpy as np
 from app.recognition.errors import RecognitionError
 from app.recognition.poses import FloatArray
 from app.recognition.trajectory_image import SIMPLIFICATION
+from app.recognition.wording import listed, readable
+
+MAX_FACTOR = 100.0
+"""Most that a voter's say is multiplied by: beside it, the others have none left."""
+
+MAX_SIMPLIFICATION = 50.0
+"""Pixels of 224: beyond it every drawing is a line or two."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +39,8 @@ class Tuning:
     Raises
     ------
     RecognitionError
-        When a weight or the tolerance is negative or no number.
+        When a weight or the tolerance is no number, negative, or beyond `MAX_FACTOR` or
+        `MAX_SIMPLIFICATION`.
 
     """
 
@@ -42,10 +50,27 @@ class Tuning:
 
     def __post_init__(self) -> None:
         """Check the numbers, and freeze the weights."""
-        for name, value in (*self.weights.items(), ("simplification", self.simplification)):
-            if not (math.isfinite(value) and value >= 0):
-                raise RecognitionError(f"{name} must be a number from 0 up, got {value!r}")
+        limits = [(name, value, MAX_FACTOR) for name, value in self.weights.items()]
+        for name, value, most in (
+            *limits,
+            ("simplification", self.simplification, MAX_SIMPLIFICATION),
+        ):
+            if not (math.isfinite(value) and 0 <= value <= most):
+                raise RecognitionError(f"{name} must be a number from 0 to {most:g}, got {value!r}")
         object.__setattr__(self, "weights", MappingProxyType(dict(self.weights)))
+
+    @property
+    def words(self) -> str:
+        """A clause for people that follows "recognised".
+
+        Of a voter that keeps its weight there is nothing to say.
+        """
+        words = [weight_words(*each) for each in self.weights.items() if each[1] != 1]
+        if self.simplification != SIMPLIFICATION:
+            words.append(simplification_words(self.simplification))
+        if self.keypoints_repaired is not None:
+            words.append(repair_words(self.keypoints_repaired))
+        return listed(words) or "as the profile does"
 
     def weights_of(self, voters: Sequence[str]) -> FloatArray:
         """Return the ``(V,)`` factors of the voters.
@@ -68,3 +93,23 @@ class Tuning:
 
 
 AS_THE_PROFILE = Tuning()
+
+
+def weight_words(voter: str, factor: float) -> str:
+    """Say what a factor on a voter's weight means."""
+    name = readable(voter)
+    if factor == 0:
+        return f"without the voter {name}"
+    return f"with {factor:g} times the weight on the voter {name}"
+
+
+def simplification_words(tolerance: float) -> str:
+    """Say how coarse drawings are, by their tolerance in pixels."""
+    return f"with drawings simplified by {tolerance:g} pixels"
+
+
+def repair_words(repaired: bool) -> str:
+    """Say what happens to bad keypoints."""
+    if repaired:
+        return "with exchanged sides put right and jumps left out"
+    return "with the keypoints left as the pose model saw them"

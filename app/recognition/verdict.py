@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.recognition.comparison import Comparison
+from app.recognition.profile import PROFILES
 from app.recognition.recognition_result import Recognition
-from app.recognition.recognizer import PROFILES
 
 
 @dataclass(frozen=True, kw_only=True)

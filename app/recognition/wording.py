@@ -15,7 +15,8 @@ def all_readable(identifiers: Iterable[str]) -> list[str]:
     return [readable(identifier) for identifier in identifiers]
 
 
-def listed(words: Sequence[str]) -> str:
-    """Return one or more words as a sentence lists them: a, b and c."""
-    *others, last = words
-    return f"{', '.join(others)} and {last}" if others else last
+def listed(items: Sequence[str], last: str = "and") -> str:
+    """Say several things in a row: a, b and c."""
+    if len(items) < 2:
+        return "".join(items)
+    return f"{', '.join(items[:-1])} {last} {items[-1]}"

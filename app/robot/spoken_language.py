@@ -40,7 +40,7 @@ class SpokenLanguage:
         return self.recognizer.language.revision
 
     @classmethod
-    def load(cls, path: str | Path, profile: str = "full") -> Self:
+    def load(cls, path: str | Path, profile: str | None = None) -> Self:
         """Read a language file and make it ready; up to a second where it brings no thresholds.
 
         Raises
@@ -54,7 +54,7 @@ class SpokenLanguage:
         return cls.from_json(read_content(path), profile)
 
     @classmethod
-    def from_json(cls, text: str | bytes, profile: str = "full") -> Self:
+    def from_json(cls, text: str | bytes, profile: str | None = None) -> Self:
         """Make ready what a language file says; see `load`.
 
         Raises

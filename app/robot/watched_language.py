@@ -34,7 +34,7 @@ class WatchedLanguage:
     path
         The language file.
     profile
-        The recogniser's profile.
+        The recogniser's profile; each language's own when not given.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class WatchedLanguage:
 
     """
 
-    def __init__(self, path: str | Path, profile: str = "full") -> None:
+    def __init__(self, path: str | Path, profile: str | None = None) -> None:
         self._path = Path(path)
         self._profile = profile
         self._read_state = self._state()

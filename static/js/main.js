@@ -15,6 +15,7 @@ import { drawNow } from "./timeline.js";
 import { attempt } from "./toasts.js";
 import { offerTour } from "./tour.js";
 import { drawTransport } from "./transport.js";
+import { drawTuning } from "./tuning.js";
 import { bindUndo } from "./undo.js";
 import { acceptFiles, drawUploads } from "./uploads.js";
 import { followViews, go } from "./views.js";
@@ -31,6 +32,7 @@ function drawEverything() {
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExport);
+  follow(["gestures"], drawTuning);
   follow(["gestures", "result", "clip"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["position", "clips", "clip"], drawTransport);

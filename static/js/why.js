@@ -4,11 +4,9 @@ import { alignmentsOf } from "./alignment.js";
 import * as api from "./api.js";
 import { byId, h, svg } from "./dom.js";
 import { readable } from "./format.js";
-import { edit } from "./gestures.js";
-import { recogniseWith, rangeOf } from "./stage.js";
 import { state, update } from "./state.js";
-import { attempt, complain, toast } from "./toasts.js";
-import { undo } from "./undo.js";
+import { attempt } from "./toasts.js";
+import { trialBar, tryOut } from "./trial.js";
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -58,45 +56,6 @@ export function drawCosts({ why, timeline }) {
     ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)));
 }
 
-const APPLY = {
-  trim: (change) => { update({ take: null, start: change.start, end: change.end }); return {}; },
-  voter_weight: (change) => ({ tuning: { weights: { [change.voter]: change.factor } } }),
-  simplification: (change) => ({ tuning: { simplification: change.tolerance } }),
-  keypoint_repair: (change) => ({ tuning: { keypoints_repaired: change.on } }),
-  profile: (change) => ({ profile: change.profile }),
-  salient: (change) => changeGesture(change, { salient: change.salient }),
-  switch: (change) => changeGesture(change, { [change.switch]: change.position }),
-  demonstration: (change) => changeGesture(change, { demonstration: rangeOf() }),
-};
-
-async function changeGesture(change, body) {
-  await edit("Trying the change", `Change of ${change.label}`, (language) => api.languages.changeGesture(language, change.label, body));
-  return { edited: true };
-}
-
-/** Apply a change and recognise again; until it is kept, one press takes it back. */
-async function tryOut({ change }) {
-  const base = { recognition: state.recognition, take: state.take, start: state.start, end: state.end };
-  try {
-    const { edited = false, ...extra } = await APPLY[change.kind](change);
-    const result = await recogniseWith(extra);
-    if (result) update({ trial: { change, base, edited, result: result.id } });
-  } catch (error) {
-    complain(error, "Trying the change");
-  }
-}
-
-function discard({ base, edited }) {
-  if (edited) undo();
-  update({ trial: null, ...base });
-}
-
-function keep({ change, edited }) {
-  update({ trial: null });
-  if (edited) toast("Change kept", `${change.words}, in ${state.gestures.name}`);
-  else if (change.kind === "trim") toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
-}
-
 /** What a change of the language does to its other gestures, in words. */
 function effectOf(effect) {
   if (!effect) return null;
@@ -112,15 +71,6 @@ function remedy(found) {
     h("button", { type: "button", onclick: () => tryOut(found) }, h("span", {}, found.change.words)),
     h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
     effectOf(found.effect));
-}
-
-function trialBar(trial, result) {
-  const lasting = trial.edited || trial.change.kind === "trim";
-  return h("div", { className: "trial", role: "status" },
-    h("p", {}, h("b", {}, "On trial: "), `${trial.change.words}. It is read as ${result.label ?? `nothing; nearest is ${result.nearest}`}.`),
-    h("span", { className: "joined" },
-      lasting ? h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep") : null,
-      h("button", { type: "button", onclick: () => discard(trial) }, lasting ? "Discard" : "Back to as it was")));
 }
 
 const shared = (href, title, note) => h("span", {}, h("a", { href, download: "" }, title), h("small", { className: "dim" }, ` ${note}`));

@@ -7,6 +7,7 @@ import pytest
 from app.api.language_comparison import compared, language_words
 from app.recognition import Gesture, Language
 from app.recognition.switches import Switches
+from app.recognition.tuning import Tuning
 from tests.api.recordings import recording_of
 
 
@@ -60,3 +61,12 @@ def test_another_order_is_said(circle: Gesture, line: Gesture) -> None:
     older, newer = Language("pool", [circle, line]), Language("pool", [line, circle])
     assert language_words(older, newer) == ["the gestures are in another order"]
     assert {change.kind for change in compared(older, newer)} == {"same"}
+
+
+def test_how_it_is_recognised_is_compared_in_words(circle: Gesture) -> None:
+    language = Language("pool", [circle])
+    tuned = replace(language, profile="paper", tuning=Tuning(weights={"hu": 0.0}))
+    assert language_words(language, tuned) == [
+        "profile was “full”, is “paper”",
+        "was recognised as the profile does, is without the voter hu",
+    ]

@@ -4,7 +4,7 @@ import httpx
 import pytest
 
 from app.api.studio import Studio
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
@@ -132,3 +132,28 @@ def test_a_tuning_changes_this_recognition_alone_and_is_told_with_it(
     unknown = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"magic": 1.0}}})
     assert unknown.status_code == 422
     assert "no voter 'magic'" in unknown.json()["detail"]
+
+
+def test_a_tuning_that_the_language_keeps_changes_every_recognition(
+    client: httpx.Client, spoken: str, line_clip: str
+) -> None:
+    place, body = f"{LANGUAGES}/{spoken}", {"clip_id": line_clip, "language_id": spoken}
+    before = client.post(RECOGNITIONS, json=body | {"expected": "circle"}).json()
+    tuning = {"weights": {"hu": 0.0}, "simplification": 8.0}
+    kept = client.patch(place, json={"profile": "paper", "tuning": tuning}).json()
+    assert kept["profile"] == "paper"
+    assert kept["tuning"] == tuning | {"keypoints_repaired": None}
+    assert kept["change"] == (
+        "Recognise by the profile paper, without the voter hu and with drawings simplified by 8 "
+        "pixels"
+    )
+    tuned = client.post(RECOGNITIONS, json=body).json()
+    assert (tuned["profile"], tuned["weights"]["hu"], tuned["tuning"]) == ("paper", 0.0, None)
+    # What was recognised before is explained as it was then.
+    why = client.get(f"{RECOGNITIONS}/{before['id']}/explanation").json()
+    assert why["profile"] == "full"
+    silent = {"tuning": {"weights": dict.fromkeys(tuned["voters"], 0.0)}}
+    assert client.patch(place, json=silent).status_code == 422
+    again = client.patch(place, json={"profile": "full", "tuning": None}).json()
+    assert (again["profile"], again["tuning"]) == ("full", None)
+    assert again["tuning_words"] == "as the profile does"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import httpx
 
+from app.recognition import Recording
 from app.store import Clip
 from tests.api.recordings import recording_of
 from tests.api.running import Running
@@ -42,19 +43,31 @@ class Library:
         answer = self.client.post(f"/api/v1/languages/{self.language}/gestures", json=body)
         assert answer.status_code == 201, answer.text
 
-    def recognise(self, expected: str | None = None) -> str:
+    def recognise(self, expected: str | None = None, profile: str | None = None) -> str:
         """Recognise the clip, and return the recognition's id."""
-        body = {"clip_id": self.clip, "language_id": self.language, "expected": expected}
+        body = {
+            "clip_id": self.clip,
+            "language_id": self.language,
+            "expected": expected,
+            "profile": profile,
+        }
         answer = self.client.post("/api/v1/recognitions", json=body)
         assert answer.status_code == 201, answer.text
         return str(answer.json()["id"])
 
 
 def add_clip(
-    server: Running, *shapes: str, name: str = "dive.mp4", video: Path | None = None
+    server: Running,
+    *shapes: str,
+    name: str = "dive.mp4",
+    video: Path | None = None,
+    recording: Recording | None = None,
 ) -> str:
-    """Add a clip with one take per shape, and a small video or that one; return its id."""
-    recording = recording_of(*shapes)
+    """Add a clip with one take per shape, and a small video or that one; return its id.
+
+    `recording`: what was seen in it, instead of these shapes.
+    """
+    recording = recording_of(*shapes) if recording is None else recording
     clips = server.studio.clips
     partial = clips.new_partial()
     if video is None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.comparison import Comparison
 from app.recognition.gesture import condensed
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.switches import Switches
 from app.recognition.trajectory import Trajectory
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings

@@ -13,10 +13,11 @@ from app.recognition.counterfactual import (
     margin,
 )
 from app.recognition.landmarks import POSE_LANDMARKS, other_side
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.situation import Situation
+from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, recording, wedge
-from tests.recognition.test_difference import HOOK, corners, exchanged
+from tests.recognition.test_difference import HOOK, corners
 
 LANGUAGE = Language(
     "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
@@ -81,7 +82,7 @@ def test_a_stroke_cut_too_short_is_made_longer() -> None:
 
 
 def test_bad_keypoints_are_repaired() -> None:
-    mistaken = exchanged(recording(wedge), [slice(20, 26), slice(34, 40)])
+    mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
     told = found_for(mistaken, "wedge", RECOGNIZERS["paper"])
     repairs = [each for each in told.found if each.change.kind == "keypoint_repair"]
     assert len(repairs) == 1

@@ -8,11 +8,12 @@ import pytest
 from app.recognition import Gesture, PoseSequence
 from app.recognition.difference import Difference, differences
 from app.recognition.gesture import condensed
-from app.recognition.landmarks import POSE_LANDMARKS, other_side
+from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.pairing import Pairing
 from app.recognition.poses import FloatArray
 from app.recognition.readings import AS_SHOWN
 from app.recognition.trajectory import Trajectory
+from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
 START = 5.0
@@ -114,17 +115,8 @@ def test_another_course_is_told_with_its_time_joint_and_directions() -> None:
     assert "the right wrist goes right where 'hook' goes left" in first.words
 
 
-def exchanged(poses: PoseSequence, frames: list[slice]) -> PoseSequence:
-    xy = poses.xy.copy()
-    names = poses.landmarks
-    others = [names.index(other_side(name)) for name in names]
-    for span in frames:
-        xy[span] = xy[span][:, others]
-    return PoseSequence(landmarks=names, xy=xy, time=poses.time, frame_size=poses.frame_size)
-
-
 def test_exchanged_sides_are_told_with_the_moments() -> None:
-    query = exchanged(recording(hook), [slice(20, 26), slice(34, 40)])
+    query = with_sides_exchanged(recording(hook), [*range(20, 26), *range(34, 40)])
     first = told(query)[0]
     assert first.kind == "exchanged_sides"
     assert first.start == pytest.approx(START + 20 / 30, abs=0.07)

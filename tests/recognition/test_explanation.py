@@ -9,12 +9,13 @@ from hypothesis import given, settings
 
 from app.recognition import Gesture, Language, PoseSequence, RecognitionError, Recognizer
 from app.recognition.explanation import Explanation, explain
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.situation import Situation
 from app.recognition.tuning import Tuning
 from app.recognition.wording import readable
+from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
-from tests.recognition.test_difference import corners, exchanged
+from tests.recognition.test_difference import corners
 
 LANGUAGE = Language(
     "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
@@ -186,7 +187,7 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
-    mistaken = exchanged(recording(wedge), [slice(20, 26), slice(34, 40)])
+    mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
     unrepaired = Recognizer(LANGUAGE, profile, tuning=Tuning(keypoints_repaired=False))
     explanation = explain(situation(mistaken, unrepaired), "wedge")
     assert not explanation.right

@@ -87,6 +87,14 @@ def test_a_gesture_without_demonstration_is_told_and_not_judged() -> None:
     assert report.pairs[0].second_as_first is None
 
 
+def test_a_language_that_rejects_nothing_is_not_ready() -> None:
+    report = check_health(replace(HEALTHY, profile="paper"), takes=2, person="same")
+    (finding,) = [each for each in report.findings if each.code == "unrejecting"]
+    assert finding.below_bar
+    assert "profile paper" in finding.message
+    assert not report.ok
+
+
 def test_a_language_without_gestures_is_not_ready() -> None:
     report = check_health(Language("empty"))
     assert not report.ok

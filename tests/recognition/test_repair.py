@@ -12,18 +12,10 @@ from app.recognition.landmarks import POSE_LANDMARKS
 from app.recognition.repair import repaired
 from app.recognition.sides import sides_of
 from app.recognition.tuning import Tuning
+from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
 WRIST = POSE_LANDMARKS.index("right_wrist")
-
-
-def with_sides_exchanged(poses: PoseSequence, frames: list[int]) -> PoseSequence:
-    left, right = sides_of(poses.landmarks)
-    order = np.arange(len(poses.landmarks))
-    order[[*left, *right]] = [*right, *left]
-    xy = poses.xy.copy()
-    xy[frames] = xy[frames][:, order]
-    return replace(poses, xy=xy)
 
 
 def with_jumps(poses: PoseSequence, frames: list[int], pixels: float = 120) -> PoseSequence:

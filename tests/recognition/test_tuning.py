@@ -1,14 +1,19 @@
 """Tuning: voters off or weighed, coarser drawings, sides put right or not."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from app.recognition import Gesture, Language, RecognitionError, Recognizer
+from app.recognition import Gesture, Language, LanguageError, RecognitionError, Recognizer
 from app.recognition.gesture import condensed
-from app.recognition.landmarks import other_side
-from app.recognition.poses import PoseSequence
+from app.recognition.profile import voters_of
 from app.recognition.trajectory import Trajectory
 from app.recognition.tuning import Tuning
+from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 
 
@@ -65,21 +70,9 @@ def test_references_and_queries_are_drawn_alike(language: Language) -> None:
     assert (coarse.recognize(recording(circle, jitter=0.03)).distances != fine.distances).any()
 
 
-def with_sides_exchanged(poses: PoseSequence, frames: slice) -> PoseSequence:
-    xy = poses.xy.copy()
-    others = [
-        poses.landmarks.index(other) if (other := other_side(name)) in poses.landmarks else index
-        for index, name in enumerate(poses.landmarks)
-    ]
-    xy[frames] = xy[frames][:, others]
-    return PoseSequence(
-        landmarks=poses.landmarks, xy=xy, time=poses.time, frame_size=poses.frame_size
-    )
-
-
 def test_profile_paper_puts_sides_right_when_told_to(language: Language) -> None:
     query = recording(circle)
-    mistaken = with_sides_exchanged(query, slice(20, 30))
+    mistaken = with_sides_exchanged(query, range(20, 30))
     told = Recognizer(language, "paper", tuning=Tuning(keypoints_repaired=True))
     np.testing.assert_allclose(told.recognize(mistaken).distances, told.recognize(query).distances)
     as_it_is = Recognizer(language, "paper").recognize(mistaken)
@@ -95,7 +88,84 @@ def test_a_tuning_that_fits_nothing_is_refused(language: Language) -> None:
     voters = Recognizer(language, "paper").recognize(recording(circle)).voters
     with pytest.raises(RecognitionError, match="all voters are off"):
         Recognizer(language, "paper", tuning=Tuning(weights=dict.fromkeys(voters, 0.0)))
-    with pytest.raises(RecognitionError, match="number from 0 up"):
+    with pytest.raises(RecognitionError, match="number from 0 to 100"):
         Tuning(weights={"hu": -1.0})
-    with pytest.raises(RecognitionError, match="number from 0 up"):
+    with pytest.raises(RecognitionError, match="number from 0 to 50"):
         Tuning(simplification=float("nan"))
+
+
+def test_a_language_is_recognised_as_it_says(language: Language) -> None:
+    query = recording(wedge, jitter=0.02)
+    tuning = Tuning(weights={"hu": 0.0}, simplification=9.0, keypoints_repaired=True)
+    tuned = replace(language, profile="paper", tuning=tuning)
+    told = Recognizer(tuned).recognize(query)
+    meant = Recognizer(language, "paper", tuning=tuning).recognize(query)
+    assert told.profile == "paper"
+    assert told.to_dict() == meant.to_dict()
+    assert Recognizer(tuned, tuning=Tuning()).recognize(query).weights["hu"] > 0
+    # Weights are for the voters of the language's own profile.
+    other = Recognizer(tuned, "full")
+    assert (other.tuning.simplification, dict(other.tuning.weights)) == (9.0, {})
+
+
+def test_a_tuning_leaves_the_thresholds_alone(language: Language) -> None:
+    tuned = replace(language, tuning=Tuning(weights={"path": 3.0}, simplification=9.0))
+    assert tuned.fingerprint == language.fingerprint
+    for one, other in zip(tuned.calibrated().gestures, language.calibrated().gestures, strict=True):
+        assert (one.thresholds, one.rates) == (other.thresholds, other.rates)
+
+
+def test_a_tuning_is_said_in_words() -> None:
+    assert Tuning().words == "as the profile does"
+    assert Tuning(weights={"hu": 1.0}).words == "as the profile does"
+    tuning = Tuning(
+        weights={"wrist_bend": 0.0, "hu": 2.5}, simplification=8.0, keypoints_repaired=False
+    )
+    assert tuning.words == (
+        "without the voter wrist bend, with 2.5 times the weight on the voter hu, with drawings "
+        "simplified by 8 pixels and with the keypoints left as the pose model saw them"
+    )
+
+
+TUNINGS = st.builds(
+    Tuning,
+    weights=st.dictionaries(st.sampled_from(voters_of("full")), st.floats(0.1, 100), max_size=4),
+    simplification=st.floats(0, 50),
+    keypoints_repaired=st.sampled_from([None, True, False]),
+)
+
+
+@given(tuning=TUNINGS)
+def test_a_language_file_keeps_every_tuning(tuning: Tuning) -> None:
+    language = Language("pool", tuning=tuning)
+    again = Language.from_json(language.to_json())
+    assert again.tuning == tuning
+    assert again.to_json() == language.to_json()
+
+
+def test_a_language_as_any_other_says_nothing_of_it() -> None:
+    content = json.loads(Language("pool").to_json())
+    assert {"profile", "tuning"}.isdisjoint(content)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "pointer"),
+    [
+        ("profile", "best", "/profile"),
+        ("tuning", {"weights": {"hu": -1.0}}, "/tuning/weights/hu"),
+        ("tuning", {"weights": {"hu": 1e9}}, "/tuning/weights/hu"),
+        ("tuning", {"weights": {"psychic": 1.0}}, "/tuning/weights"),
+        ("tuning", {"weights": dict.fromkeys(voters_of("full"), 0.0)}, "/tuning/weights"),
+        ("tuning", {"simplification": "fine"}, "/tuning/simplification"),
+        ("tuning", {"keypoints_repaired": 1}, "/tuning/keypoints_repaired"),
+        ("tuning", {"gain": 3}, "/tuning/gain"),
+    ],
+)
+def test_a_tuning_that_makes_no_sense_is_refused_by_its_place(
+    key: str, value: object, pointer: str
+) -> None:
+    content = json.loads(Language("pool").to_json())
+    del content["sha256"]
+    with pytest.raises(LanguageError) as refusal:
+        Language.from_json(json.dumps(content | {key: value}))
+    assert refusal.value.pointer == pointer

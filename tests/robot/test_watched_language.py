@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from app.recognition import LanguageError, RecognitionError
+from app.recognition.tuning import Tuning
 from app.robot import SpokenLanguage
 from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
 from tests.robot.languages import language_of, spoken
@@ -42,6 +44,16 @@ def test_the_first_language_has_the_seal_of_its_file(file: Path) -> None:
         assert language.first.sha256 == saved.sha256
         assert f'"sha256": "{saved.sha256}"' in file.read_text()
         assert language.changes() is None
+
+
+def test_a_language_is_heard_as_its_author_kept_it_unless_told_otherwise(file: Path) -> None:
+    tuned = replace(language_of("circle"), profile="paper", tuning=Tuning(weights={"hu": 0.0}))
+    tuned.save(file)
+    with WatchedLanguage(file) as language:
+        recognizer = language.first.recognizer
+        assert (recognizer.profile, recognizer.tuning) == ("paper", tuned.tuning)
+    with WatchedLanguage(file, "full") as language:
+        assert language.first.recognizer.profile == "full"
 
 
 def test_a_replaced_file_is_read_and_told_once(file: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Final
 from osg_interfaces.srv import ReloadLanguage
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 
-from app.recognition.recognizer import PROFILES
+from app.recognition.profile import PROFILES
 from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import SpokenLanguage
 from osg_ros.managed_node import ManagedNode
@@ -16,7 +16,10 @@ from osg_ros.settings import Setting
 
 LANGUAGE: Final = Setting("language", "", "Path of the language file on the robot.")
 PROFILE: Final = Setting(
-    "profile", "full", "The recogniser's set of voters.", choices=tuple(PROFILES)
+    "profile",
+    "",
+    "The recogniser's set of voters; empty: the language's own.",
+    choices=("", *PROFILES),
 )
 
 WITHOUT_SALUTES: Final = Setting(
@@ -60,7 +63,7 @@ class LanguageService:
         self._check = check
         self._taken = taken
         self._path: str = node.settings["language"]
-        self._profile: str = node.settings["profile"]
+        self._profile: str | None = node.settings["profile"] or None
         if not self._path:
             raise ValueError(
                 "parameter language is empty; set it to a language file, exported from the studio "

@@ -5,10 +5,11 @@ import { byId, h } from "../dom.js";
 import { bytes, plural, readable } from "../format.js";
 import { state } from "../state.js";
 import { attempt, toast } from "../toasts.js";
+import { tuningWords } from "../tuning.js";
 
 const FORMATS = {
   "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio robot --language ${file} --source 0` },
-  "osg-reference": { title: "Published OSG format", text: "For the published ROS node: images and salient keypoints only. Movement, thresholds and commands are left out.", command: (file) => `osg-studio convert ${file} language.json` },
+  "osg-reference": { title: "Published OSG format", text: "For the published ROS node: images and salient keypoints only. Movement, thresholds, tuning and commands are left out.", command: (file) => `osg-studio convert ${file} language.json` },
   proteus: { title: "PROTEUS language definition", text: "The gestures as input symbols, for a robot that answers by PROTEUS: names and kinds only.", suffix: ".ldf", command: (file) => `osg-studio convert language.json ${file}` },
 };
 
@@ -27,12 +28,13 @@ function choice({ format, bytes: size }, chosen, onchange) {
 
 const row = (term, value, note) => (value.length ? [h("dt", {}, term), h("dd", {}, value, note ? h("small", { className: "dim" }, note) : null)] : []);
 
-function facts(contents) {
+function facts(contents, language) {
   return h("dl", { className: "export-facts" },
     row("Landmarks", listed(contents.salient), "must be seen, or the gesture is not recognised"),
     row("Better with", listed(contents.limbs)),
     row("Torso", listed(contents.torso), "takes out distance and drift"),
     row("Models", contents.models.join(", "), "osg-studio models export DIR copies them for a robot without a network"),
+    row("Recognised", tuningWords(language), "as kept after a trial; the robot does the same"),
     row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
     row("Without command", contents.without_command.join(", "), "the robot is told the label only"));
 }
@@ -76,7 +78,7 @@ export async function openExport() {
     h("h2", { id: "dialog-title" }, "Export"),
     h("p", { className: "dim" }, `${contents.name}, revision ${contents.revision}, ${plural(language.gestures.length, "gesture")}`),
     h("div", { role: "radiogroup", "aria-label": "Format", className: "export-choices" }, contents.files.map((file, index) => choice(file, index === 0, choose))),
-    facts(contents),
+    facts(contents, language),
     h("div", { className: "export-command" }, code, copy),
     h("div", { className: "dialog-actions" }, h("button", { type: "button", onclick: () => dialog.close() }, "Close"), download)));
   dialog.setAttribute("aria-labelledby", "dialog-title");

@@ -144,7 +144,7 @@ export function batchSection() {
   let drawn = "";
   const draw = () => {
     if (content.contains(document.activeElement) && document.activeElement.matches("select")) document.activeElement.blur();
-    const takes = testedOf(state.tested, state.clips);
+    const takes = testedOf(state.tested, state.clips, state.gestures?.profile);
     const uploads = uploadsHere();
     const empty = !takes.length && !waitingClips().length && !uploads.length;
     content.replaceChildren(...(empty || !state.gestures ? [] : [...(takes.length ? [summary(takes), matrix(takes)] : []), ...list(takes, uploads).filter(Boolean)]));

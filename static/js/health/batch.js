@@ -21,13 +21,13 @@ function setPending(pending) {
   sessionStorage.setItem(KEY, JSON.stringify(pending));
 }
 
-/** What is tested of a language: the newest untuned answer for each take whose meaning was told. */
-export function testedOf(recognitions, clips) {
+/** What is tested of a language: the newest answer by its profile, untried, for each take that was told. */
+export function testedOf(recognitions, clips, profile) {
   const names = new Map(clips.map(({ id, name }) => [id, name]));
   const newest = new Map();
   for (const each of recognitions) {
     const key = `${each.clip_id} ${each.start}`;
-    if (each.profile === "full" && !each.tuning && !newest.has(key)) newest.set(key, each);
+    if (each.profile === profile && !each.tuning && !newest.has(key)) newest.set(key, each);
   }
   return [...newest.values()].filter((each) => each.expected !== null && names.has(each.clip_id))
     .map((each) => ({ ...each, clip: names.get(each.clip_id), right: each.label === each.expected }))

@@ -1,0 +1,85 @@
+// A change on trial: applied at once, recognised again, and then kept or taken back.
+
+import * as api from "./api.js";
+import { h } from "./dom.js";
+import { edit } from "./gestures.js";
+import { rangeOf, recogniseWith } from "./stage.js";
+import { state, update } from "./state.js";
+import { complain, toast } from "./toasts.js";
+import { keepTuning } from "./tuning.js";
+import { tellDone, undo } from "./undo.js";
+
+/** What differs from the profile in the recognition on display. */
+const tuning = () => state.result.tuning ?? state.gestures.tuning ?? { weights: {} };
+
+const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
+
+const APPLY = {
+  trim: (change) => { update({ take: null, start: change.start, end: change.end }); return {}; },
+  voter_weight: ({ voter, factor }) => {
+    const { weights } = tuning();
+    return tuned({ weights: { ...weights, [voter]: (weights[voter] ?? 1) * factor } });
+  },
+  simplification: (change) => tuned({ simplification: change.tolerance }),
+  keypoint_repair: (change) => tuned({ keypoints_repaired: change.on }),
+  // Weights are for the voters of a profile.
+  profile: (change) => ({ profile: change.profile, ...tuned({ weights: {} }) }),
+  salient: (change) => changeGesture(change, { salient: change.salient }),
+  switch: (change) => changeGesture(change, { [change.switch]: change.position }),
+  demonstration: (change) => changeGesture(change, { demonstration: rangeOf() }),
+};
+
+/** Changes of how the whole language is recognised. */
+const TUNING = new Set(["voter_weight", "simplification", "keypoint_repair", "profile"]);
+
+async function changeGesture(change, body) {
+  await edit("Trying the change", `Change of ${change.label}`, (language) => api.languages.changeGesture(language, change.label, body));
+  return { edited: true };
+}
+
+/** Apply a change and recognise again; until it is kept, one press takes it back. */
+export async function tryOut({ change }) {
+  const { recognition, take, start, end, trial } = state;
+  const { profile, tuning: before } = state.result;
+  try {
+    const { edited = false, ...extra } = await APPLY[change.kind](change);
+    const result = await recogniseWith({ profile, tuning: before, ...extra });
+    if (result) update({ trial: { change, base: { recognition, take, start, end, trial }, edited, result: result.id } });
+  } catch (error) {
+    complain(error, "Trying the change");
+  }
+}
+
+function discard({ base, edited }) {
+  if (edited) undo();
+  update(base);
+}
+
+async function keep({ change, edited }) {
+  const { result } = state;
+  const { words } = change;
+  const where = `${words}, in ${state.gestures.name}`;
+  try {
+    if (result.tuning !== null || TUNING.has(change.kind)) await keepTuning(result, words);
+  } catch (error) {
+    complain(error, "Keeping the change");
+    return;
+  }
+  update({ trial: null });
+  if (TUNING.has(change.kind)) {
+    // By the language as it is now, so that what is shown is what a robot would say.
+    await recogniseWith();
+    tellDone("Change kept", where);
+  } else if (edited) toast("Change kept", where);
+  else toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
+}
+
+/** Say what is on trial and what came of it, with both ways on. */
+export function trialBar(trial, result) {
+  const read = result.label ?? `nothing; nearest is ${result.nearest}`;
+  return h("div", { className: "trial", role: "status" },
+    h("p", {}, h("b", {}, "On trial: "), `${trial.change.words}. It is read as ${read}.`),
+    h("span", { className: "joined" },
+      h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep"),
+      h("button", { type: "button", onclick: () => discard(trial) }, "Discard")));
+}

@@ -1,0 +1,122 @@
+"""Changes that would have helped: each is tried by one press, and kept or taken back."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from app.recognition import Recording
+from tests.api.recordings import recording_of
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+from tests.recognition.damaged_poses import with_sides_exchanged
+
+pytestmark = pytest.mark.slow
+
+WEIGHT = "with 2 times the weight on the voter aspect ratio"
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, request.node.name[:40])
+
+
+def exchanged() -> Recording:
+    """Return a circle during which left and right are taken for each other for a while."""
+    recording = recording_of("circle")
+    return replace(recording, poses=with_sides_exchanged(recording.poses, range(32, 40)))
+
+
+def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
+    """Press a change that would have helped, and wait for what came of it."""
+    page.get_by_role("region", name="Why").get_by_role("button", name=words).first.click()
+    trial = page.get_by_role("region", name="Why").get_by_role("status")
+    expect(trial).to_contain_text(words)
+    return trial
+
+
+def test_every_kind_of_change_is_tried_and_taken_back(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, recording=exchanged(), name="sides exchanged.mp4")
+    mistaken = replace(library, clip=clip)
+    recognition = mistaken.recognise("circle", profile="paper")
+    page = open_page({**mistaken.address, "recognition": recognition}, scene=False)
+    outcome = page.locator("#outcome")
+    for words in (
+        "with exchanged sides put right",
+        WEIGHT,
+        "with the take trimmed to",
+        "with left wrist and right wrist as the salient keypoints of 'line'",
+        "with drawings simplified by 16 pixels",
+        "with the profile full",
+    ):
+        expect(outcome).to_contain_text("Taken for line, expected circle")
+        trial = try_out(page, re.compile(words))
+        expect(outcome).to_contain_text("Recognised as circle, as expected")
+        trial.get_by_role("button", name="Discard").click()
+    expect(outcome).to_contain_text("Taken for line, expected circle")
+    assert library.client.get(f"/api/v1/languages/{library.language}").json()["tuning"] is None
+
+
+def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, recording=exchanged(), name="sides exchanged.mp4")
+    mistaken = replace(library, clip=clip)
+    recognition = mistaken.recognise("circle", profile="paper")
+    page = open_page({**mistaken.address, "recognition": recognition}, scene=False)
+    trial = try_out(page, WEIGHT)
+    trial.get_by_role("button", name="Keep").click()
+    told = page.locator("#tuning")
+    expect(told).to_contain_text(f"Recognised by the profile paper, {WEIGHT}")
+    expect(trial).to_have_count(0)
+    outcome = page.locator("#outcome")
+    expect(outcome).to_contain_text("Recognised as circle, as expected3 of 7 voters")
+
+    # What leaves for the robot says it too.
+    page.get_by_role("button", name="Export").click()
+    expect(page.get_by_role("dialog")).to_contain_text(WEIGHT)
+    page.get_by_role("button", name="Close").click()
+    exported = library.client.get(f"/api/v1/languages/{library.language}/export").json()
+    assert exported["profile"] == "paper"
+    assert exported["tuning"] == {"weights": {"aspect_ratio": 2.0}}
+
+    page.keyboard.press("Control+z")
+    expect(told).to_be_hidden()
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(outcome).to_contain_text("of 12 voters")
+    page.keyboard.press("Control+Shift+Z")
+    expect(told).to_be_visible()
+    told.get_by_role("button", name="As the profile full does").click()
+    expect(told).to_be_hidden()
+    page.keyboard.press("Control+z")
+    expect(told).to_contain_text(WEIGHT)
+
+
+def test_a_change_of_a_gesture_is_kept_or_taken_back(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    strict = f"/api/v1/languages/{library.language}/gestures/circle"
+    library.client.patch(strict, json={"direction": "on"}).raise_for_status()
+    clip = add_clip(server, "circle backwards", name="circle backwards.mp4")
+    refused = replace(library, clip=clip)
+    page = open_page({**refused.address, "recognition": refused.recognise("circle")}, scene=False)
+    outcome = page.locator("#outcome")
+    for words in ("the switch direction of 'circle' off", "this take as the demonstration"):
+        expect(outcome).to_contain_text("Not recognised")
+        trial = try_out(page, re.compile(words))
+        expect(outcome).to_contain_text("Recognised as circle, as expected")
+        trial.get_by_role("button", name="Discard").click()
+    expect(outcome).to_contain_text("Not recognised")
+    try_out(page, re.compile("direction")).get_by_role("button", name="Keep").click()
+    expect(page.get_by_text("Change kept")).to_be_visible()
+    switches = library.client.get(f"/api/v1/languages/{library.language}").json()["gestures"]
+    assert [each["direction"] for each in switches if each["label"] == "circle"] == ["off"]

@@ -1,0 +1,22 @@
+"""Recordings with keypoints as pose models get them wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from app.recognition import PoseSequence
+from app.recognition.sides import sides_of
+
+
+def with_sides_exchanged(poses: PoseSequence, frames: Iterable[int]) -> PoseSequence:
+    """Take the left landmarks for the right ones, and these for the left, in some frames."""
+    left, right = sides_of(poses.landmarks)
+    order = np.arange(len(poses.landmarks))
+    order[[*left, *right]] = [*right, *left]
+    rows = list(frames)
+    xy = poses.xy.copy()
+    xy[rows] = xy[rows][:, order]
+    return replace(poses, xy=xy)
