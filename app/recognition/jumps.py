@@ -7,6 +7,7 @@ acceleration allows; what strays farther was misplaced.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -61,12 +62,15 @@ def jumps(trajectory: Trajectory) -> Mask:
     paths = trajectory.xy.take(followed, axis=1) / body_unit(trajectory)
     finite = np.isfinite(paths)
     known = np.asarray(finite[..., 0] & finite[..., 1])
-    with_gaps: Mask = ~np.asarray(known.all(axis=0))
-    for index in np.flatnonzero(with_gaps | _has_kink(paths)).tolist():
+    whole: Mask = np.asarray(known.all(axis=0))
+    together = np.flatnonzero(whole & _has_kink(paths))
+    if len(together):
+        off[:, followed[together]] = _strays(paths.take(together, axis=1), trajectory.time)
+    for index in np.flatnonzero(~whole).tolist():
         seen = np.flatnonzero(known[:, index])
-        if with_gaps[index] and not _has_kink(paths[seen, index, None]).any():
-            continue
-        off[seen, followed[index]] = _strays(paths[seen, index], trajectory.time[seen])
+        path = paths[seen, index, None]
+        if _has_kink(path).any():
+            off[seen, followed[index]] = _strays(path, trajectory.time[seen])[:, 0]
     return off
 
 
@@ -95,43 +99,101 @@ def body_unit(trajectory: Trajectory) -> float:
     return TORSOS_PER_EXTENT * max(displacements(trajectory).values()) or 1.0
 
 
-def _strays(path: FloatArray, time: FloatArray) -> Mask:
-    """Tell ``(T,)`` which places of one landmark's path ``(T, 2)``, in torso lengths, are jumps."""
-    off = np.zeros(len(path), dtype=bool)
-    while True:
+def _strays(paths: FloatArray, time: FloatArray) -> Mask:
+    """Tell ``(T, K)`` which places of paths ``(T, K, 2)``, in torso lengths, are jumps."""
+    off = _there_and_back(paths, time)
+    for index in np.flatnonzero(off.any(axis=0)).tolist():
+        off[:, index] = _with_those_behind(off[:, index], paths[:, [index]], time)
+    return off
+
+
+def _with_those_behind(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
+    """Look for more jumps of one landmark without those found, until there are no more.
+
+    Returns
+    -------
+    ``(T,)``; none at all where there are too many.
+
+    """
+    while off.mean() <= MOST_JUMPS:
         kept = np.flatnonzero(~off)
-        found = _there_and_back(path[kept], time[kept])
+        found = _there_and_back(path[kept], time[kept])[:, 0]
         if not found.any():
             return off
         off[kept[found]] = True
-        if off.mean() > MOST_JUMPS:
-            return np.zeros(len(path), dtype=bool)
+    return np.zeros_like(off)
 
 
-def _there_and_back(path: FloatArray, time: FloatArray) -> Mask:
-    """Find the clearest jumps, of one or more moments each, that do not touch one another."""
-    candidates: list[tuple[float, int, int]] = []
-    usual = 0.0
-    for length in range(1, len(path) - 1):
-        first = np.arange(len(path) - length - 1)
-        last = first + length + 1
-        lasts = time[last] - time[first]
+def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
+    """Find each landmark's clearest jumps, of one or more moments, that do not touch one another.
+
+    Parameters
+    ----------
+    paths
+        ``(T, K, 2)`` without gaps, in torso lengths.
+    time
+        ``(T,)`` seconds.
+
+    Returns
+    -------
+    ``(T, K)``.
+
+    """
+    candidates: list[tuple[float, int, int, int]] = []
+    usual = np.zeros(paths.shape[1])
+    for length in range(1, len(paths) - 1):
+        firsts = len(paths) - length - 1
+        lasts = time[length + 1 :] - time[:firsts]
         if lasts.min() > LONGEST_JUMP:
             break
-        inside = first[:, None] + np.arange(1, length + 1)
-        share = (time[inside] - time[first, None]) / lasts[:, None]
-        net = path[last] - path[first]
-        line = path[first, None] + share[..., None] * net[:, None]
-        stray = np.linalg.norm(path[inside] - line, axis=2).min(axis=1)
+        net = paths[length + 1 :] - paths[:firsts]
+        stray = _least_stray(paths, time, net, lasts)
         if length == 1:
-            usual = float(np.quantile(stray, 0.25))
-        allowed = np.maximum(NOTICED + ACCELERATION / 8 * lasts**2, np.linalg.norm(net, axis=1))
+            usual = _lower_quartile(stray)
+        carried = NOTICED + ACCELERATION / 8 * lasts**2
+        allowed = np.maximum(carried[:, None], np.hypot(net[..., 0], net[..., 1]))
         excess = stray - np.maximum(allowed, JITTERS * usual)
-        for start in np.flatnonzero((excess > 0) & (lasts <= LONGEST_JUMP)).tolist():
-            candidates.append((float(excess[start]), start, start + length + 1))
-    touched, off = np.zeros(len(path), dtype=bool), np.zeros(len(path), dtype=bool)
-    for _, start, end in sorted(candidates, reverse=True):
-        if not touched[start : end + 1].any():
-            touched[start : end + 1] = True
-            off[start + 1 : end] = True
+        excess[lasts > LONGEST_JUMP] = 0.0
+        for start, index in np.argwhere(excess > 0).tolist():
+            candidates.append((float(excess[start, index]), start, start + length + 1, index))
+    touched, off = np.zeros(paths.shape[:2], dtype=bool), np.zeros(paths.shape[:2], dtype=bool)
+    for _, start, end, index in sorted(candidates, reverse=True):
+        if not touched[start : end + 1, index].any():
+            touched[start : end + 1, index] = True
+            off[start + 1 : end, index] = True
     return off
+
+
+def _lower_quartile(values: FloatArray) -> FloatArray:
+    """Return what ``np.quantile(values, 0.25, axis=0)`` does, in a fifth of its time."""
+    place = (len(values) - 1) / 4
+    below, above = int(place), math.ceil(place)
+    ordered = np.partition(values, (below, above), axis=0)
+    return np.asarray(ordered[below] + (place - below) * (ordered[above] - ordered[below]))
+
+
+def _least_stray(
+    paths: FloatArray, time: FloatArray, net: FloatArray, lasts: FloatArray
+) -> FloatArray:
+    """Measure how far the places between two moments lie from the straight line, at least.
+
+    Parameters
+    ----------
+    paths, time
+        As for `_there_and_back`.
+    net, lasts
+        ``(F, K, 2)`` and ``(F,)``: the way and the seconds between each of the first F moments and
+        the one that is ``T - F`` later.
+
+    Returns
+    -------
+    ``(F, K)``: the smallest distance of a place in between from where uniform motion would be.
+
+    """
+    firsts = len(lasts)
+    least = np.full(net.shape[:2], np.inf)
+    for between in range(1, len(paths) - firsts):
+        share = (time[between : between + firsts] - time[:firsts]) / lasts
+        away = paths[between : between + firsts] - paths[:firsts] - share[:, None, None] * net
+        np.minimum(least, np.hypot(away[..., 0], away[..., 1]), out=least)
+    return least
