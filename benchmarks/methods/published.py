@@ -7,8 +7,8 @@ Fourier descriptors keep position, size and starting point; the first contour is
 it is. The query is drawn, described and compared once for each gesture of the language.
 
 It also costs what the published implementation costs, for `benchmarks.speed`: coordinates are
-gathered and lines drawn in plain loops over frames and keypoints, moments are matrix products over
-the whole picture as in scikit-image, and every voter looks for the contours by itself.
+gathered and lines drawn in plain loops over frames and keypoints, moments are those of the same two
+libraries (scikit-image and mahotas), and every voter looks for the contours by itself.
 
 Not taken over, which makes it the faster: the picture written to the working directory for every
 gesture, and what is printed. Nor is the crash of the whole language when one drawing is empty; such
@@ -27,6 +27,7 @@ import cv2
 import mahotas  # type: ignore[import-untyped]
 import numpy as np
 import numpy.typing as npt
+from skimage.measure import moments, moments_hu
 
 from app.recognition import PoseSequence
 from app.recognition.landmarks import HIPS, SHOULDERS
@@ -49,7 +50,6 @@ ZERNIKE_RADIUS = 21
 ZERNIKE_DEGREE = 8
 NOT_HANDS = ("shoulder", "elbow", "hip", "knee", "ankle", "heel", "foot_index")
 
-MOMENT_ORDER = 3
 VOTERS = 7
 
 Image = npt.NDArray[np.uint8]
@@ -79,8 +79,17 @@ class PublishedCode(Method):
 
     def answer(self, query: PoseSequence) -> str | None:
         """Draw, describe and compare the query once for each gesture, and count the votes."""
-        # Published, frames arrive like this one by one; only what any gesture needs is converted.
-        frames = frames_of(query, {name for each in self._references for name in each.salient})
+        return self.named(self.gathered(query))
+
+    def gathered(self, query: PoseSequence) -> Frames:
+        """Return a query as it arrives in the published implementation, frame by frame.
+
+        Only what any gesture needs is converted.
+        """
+        return frames_of(query, {name for each in self._references for name in each.salient})
+
+    def named(self, frames: Frames) -> str | None:
+        """As `answer`, of a query that is `gathered`."""
         rows = []
         for reference in self._references:
             described = features(picture(frames, reference.salient, QUERY_EDGES))
@@ -198,12 +207,8 @@ def _complexity(image: Image) -> float:
 
 def _hu_of_raw_moments(image: Image) -> FloatArray:
     """Hu's seven polynomials, of raw moments as published instead of normalised central ones."""
-    powers = np.arange(SIZE, dtype=np.float64)[:, None] ** np.arange(MOMENT_ORDER + 1)
-    # Rows first, as scikit-image counts.
-    raw = (image.astype(np.float64).T @ powers).T @ powers
-    names = ("nu20", "nu11", "nu02", "nu30", "nu21", "nu12", "nu03")
-    of_raw = {name: float(raw[int(name[2]), int(name[3])]) for name in names}
-    return np.asarray(cv2.HuMoments(of_raw).ravel())
+    raw = moments(image)  # type: ignore[no-untyped-call]
+    return np.asarray(moments_hu(raw), dtype=np.float64)  # type: ignore[no-untyped-call]
 
 
 def _standardised(values: FloatArray) -> FloatArray:
