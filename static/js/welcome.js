@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { addSample, BUSY, needsTopic, samplesList, statusText } from "./clips.js";
 import { byId, h } from "./dom.js";
+import { firstMoment } from "./frames.js";
 import { choose } from "./languages.js";
 import { drawPose, skeleton } from "./skeleton.js";
 import { selectedClip, state, update } from "./state.js";
@@ -64,10 +65,12 @@ function welcome(samples, languages) {
 
 /** The clip's own picture under the skeleton; `showProgress` moves both on. */
 function progressPanel(clip) {
+  // The video of a dive recording is made while its poses are found.
+  const video = clip.topics.length ? null : h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" });
+  if (video) firstMoment(video).then((start) => { video.dataset.start = start; });
   return h("div", { className: "welcome-progress" },
     h("div", { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
-      // The video of a dive recording is made while its poses are found.
-      clip.topics.length ? null : h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" }),
+      video,
       skeleton(clip.width, clip.height)),
     h("h1"),
     h("progress", { "aria-label": "Progress" }),
@@ -80,7 +83,7 @@ function showPose(panel, clip, { time, pose }) {
   const playable = video && !video.error && (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
   // A seek that is cut short by the next shows nothing, so the next waits.
-  if (playable && !video.seeking) video.currentTime = time;
+  if (playable && !video.seeking && video.dataset.start) video.currentTime = Number(video.dataset.start) + time;
   drawPose(panel.querySelector(".skeleton"), pose);
 }
 

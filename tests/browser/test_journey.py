@@ -12,7 +12,7 @@ from playwright.sync_api import FrameLocator, Locator, Page, expect
 
 from app.recognition import Language
 from app.ui.workspace import first_look
-from tests.api.running import Running, until
+from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 
@@ -129,17 +129,14 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(table.locator("th.chosen")).to_have_attribute("title", winner)
     expect(table.locator("th", has_text="expected")).to_have_attribute("title", "circle")
 
-    # Scrubbing moves the clock and the picture.
-    canvas = lab.locator("canvas[data-engine]")
+    # Stepping moves the clock.
     clock = page.locator("#clock")
     at = first_shown(page, server)
     expect(clock).to_have_text(re.compile(rf"frame {at} of \d+$"))
     page.keyboard.press(",")
     expect(clock).to_have_text(re.compile(rf"frame {at - 1} of \d+$"))
-    before = canvas.screenshot()
     page.keyboard.press("Shift+.")
     expect(clock).to_have_text(re.compile(rf"frame {at + 9} of \d+$"))
-    until(lambda: canvas.screenshot() != before)
     expect(page.locator(".toast")).to_have_count(0)
     assert picture(page, "studio").stat().st_size < 400_000
     take_other_pictures(page, picture)

@@ -3,7 +3,7 @@
 import * as api from "../api.js";
 import { h, svg } from "../dom.js";
 import { readable } from "../format.js";
-import { insideFrame } from "../frames.js";
+import { firstMoment, insideFrame } from "../frames.js";
 import { drawPose, skeleton } from "../skeleton.js";
 
 const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side: a finger hits it at 390 px.
@@ -16,14 +16,24 @@ export function figure(onPick) {
   const element = h("div", { className: "figure" }, video, over);
   let poses = null;
   let parts = null;
-  let wanted = null; // the moment to seek to as soon as the last seek is done
+  let wanted = null; // the moment of the clip to seek to as soon as the last seek is done
+  let start = null; // of the clip by the video's clock, as soon as that is known
 
   const seek = () => {
-    if (wanted === null || video.seeking || video.readyState === 0) return;
-    video.currentTime = wanted;
+    if (wanted === null || start === null || video.seeking) return;
+    video.currentTime = start + wanted;
     wanted = null;
   };
-  video.onseeked = video.onloadedmetadata = seek;
+  video.onseeked = seek;
+
+  async function load(source) {
+    start = null;
+    video.src = source;
+    const found = await firstMoment(video);
+    if (video.getAttribute("src") !== source) return; // Another clip is shown by now.
+    start = found;
+    seek();
+  }
 
   function show(next, clip) {
     poses = next;
@@ -43,7 +53,7 @@ export function figure(onPick) {
     over.replaceChildren(body);
     parts = { body, trails, circles };
     video.hidden = !clip;
-    if (clip) video.src = api.clips.video(clip);
+    if (clip) load(api.clips.video(clip));
     else video.removeAttribute("src");
   }
 

@@ -55,6 +55,7 @@ export function keypoints(latest) {
     proposal.disabled = draft().salient === null || !found.length;
     note.textContent = found.length
       ? `Movement in ${preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent"}. From the line, ${preview.threshold.toFixed(2)}, a keypoint is proposed.`
+      : preview && draft().clip ? "No keypoint is seen in this range of the clip: choose another range, or another clip."
       : preview ? "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose." : "\u2026";
   }
   return {

@@ -23,9 +23,11 @@ function descriptor({ voter, unit, values }) {
 
 /** Build the image and descriptors. */
 export function image() {
-  const drawing = h("img", { className: "trajectory", alt: "Trajectory image of the gesture", width: 224, height: 224 });
+  const drawing = h("img", { className: "trajectory", alt: "Trajectory image of the gesture", width: 224, height: 224, hidden: true });
+  const nothing = h("p", {}, "Nothing to draw yet");
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const list = h("ul", { className: "descriptors", "aria-label": "Descriptors" });
+  const described = h("details", { open: true, hidden: true }, h("summary", {}, "Descriptors of the image"), list);
   const length = h("small", { className: "dim num" });
   function draw(preview) {
     if (!preview) return;
@@ -33,14 +35,18 @@ export function image() {
     problem.textContent = preview.problem ? `It cannot be saved like this: ${preview.problem}.` : "";
     drawing.classList.toggle("stale", Boolean(preview.problem));
     length.textContent = preview.seconds === null ? "" : `${preview.seconds.toFixed(2)} s`;
-    if (preview.image) drawing.src = preview.image;
+    if (preview.image) {
+      Object.assign(drawing, { src: preview.image, hidden: false });
+      nothing.hidden = true;
+    }
+    described.hidden = !preview.descriptors.length;
     list.replaceChildren(...preview.descriptors.map(descriptor));
   }
   return {
     element: h("section", { className: "panel image-panel", "aria-label": "Trajectory image" },
       h("div", { className: "panel-head" }, h("h2", {}, "Trajectory image"), length),
-      h("div", { className: "image-box" }, drawing), problem,
-      h("details", { open: true }, h("summary", {}, "Descriptors of the image"), list)),
+      h("div", { className: "image-box" }, nothing, drawing), problem,
+      described),
     draw,
   };
 }

@@ -20,6 +20,7 @@ const BY_HAND = "by hand";
  */
 export function take({ language, gesture, drawn, pick }) {
   let source = null; // { id, poses, takes, timeline } of what is on display
+  let opening; // the clip of what is on its way; null is what the language keeps
   let frame = 0;
   let chosen = [];
   let clock = 0; // of the animation that plays
@@ -151,9 +152,12 @@ export function take({ language, gesture, drawn, pick }) {
   /** Put a demonstration on display: of a clip, or as the language keeps it. */
   async function open() {
     const id = draft().clip?.clip_id ?? null;
-    if (source && source.id === id) return;
+    if ((source && source.id === id) || opening === id) return;
     if (clock) pause();
+    opening = id;
     const loaded = id === null && (gesture === null || drawn) ? null : await load(id);
+    if (opening !== id) return; // Another one is on its way, or this one is shown already.
+    opening = undefined;
     if (!loaded || (draft().clip?.clip_id ?? null) !== id) { element.classList.toggle("bare", !loaded); return; }
     source = loaded;
     element.classList.remove("bare");

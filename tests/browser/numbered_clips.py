@@ -1,0 +1,106 @@
+"""Clips whose every picture carries its own number, to be read off the screen again."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import cv2
+import numpy as np
+import numpy.typing as npt
+from av.video.stream import VideoStream
+
+WIDTH, HEIGHT = 320, 240
+CORNER = 40
+"""Pixels, the side of the marks in the corners and of the blocks between them."""
+
+BITS = 12
+COLUMNS = 4
+LEFT, TOP = 80, 60
+"""Where the first block stands; the others follow it line by line."""
+
+CORNERS = ((255, 0, 0), (0, 255, 0), (255, 255, 0), (0, 0, 255))
+"""RGB of the marks: top left, top right, bottom right, bottom left."""
+
+TICKS = 90_000
+"""Of the clip's clock, a second, as in broadcasts: most frames begin at no whole millisecond."""
+
+FIRST = 126_000
+"""Ticks of the first frame. A clip cut out of a longer one often does not begin at 0."""
+
+GAPS = (3003, 1501, 4504, 9009, 2999, 1801)
+"""Ticks between frames, as a camera gives them that lengthens its exposure in the dark."""
+
+Picture = npt.NDArray[np.uint8]
+
+
+def numbered_clip(path: Path, frames: int) -> list[float]:
+    """Write a clip as phones do, H.264 with frames out of order; return its frames' seconds."""
+    stamps = [FIRST + sum(GAPS[i % len(GAPS)] for i in range(frame)) for frame in range(frames)]
+    with av.open(str(path), "w", format="mp4") as container:
+        stream = container.add_stream("libx264", rate=30)
+        assert isinstance(stream, VideoStream)
+        stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
+        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
+        stream.options = {"preset": "veryfast", "bf": "2", "g": "12"}
+        for number, stamp in enumerate(stamps):
+            frame = av.VideoFrame.from_ndarray(numbered(number), format="rgb24")
+            frame = frame.reformat(format="yuv420p")
+            frame.pts, frame.time_base = stamp, Fraction(1, TICKS)
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    return [(stamp - FIRST) / TICKS for stamp in stamps]
+
+
+def numbered(number: int) -> Picture:
+    """Paint a number as blocks, white for the ones of its binary form, the lowest first."""
+    image = np.full((HEIGHT, WIDTH, 3), 110, np.uint8)
+    for (x, y), colour in zip(_corners(CORNER // 2), CORNERS, strict=True):
+        _square(image, x, y)[:] = colour
+    for bit, (x, y) in enumerate(_blocks()):
+        _square(image, x, y)[:] = 235 if number >> bit & 1 else 20
+    return image
+
+
+def number_on(screen: bytes) -> int | None:
+    """Read the number off a screenshot, however the picture lies in space; None without one."""
+    decoded = cv2.imdecode(np.frombuffer(screen, np.uint8), cv2.IMREAD_COLOR_RGB)
+    shown = np.asarray(decoded, np.uint8)
+    found = [_middle(shown, colour) for colour in CORNERS]
+    places = [place for place in found if place is not None]
+    if len(places) < len(CORNERS):
+        return None
+    painted = np.array(_corners(CORNER // 2), np.float32)
+    onto = cv2.getPerspectiveTransform(painted, np.array(places, np.float32))
+    blocks = cv2.perspectiveTransform(np.array([_blocks()], np.float32), onto)[0]
+    lit = [shown[round(float(y)), round(float(x))].mean() > 128 for x, y in blocks]
+    return sum(1 << bit for bit, on in enumerate(lit) if on)
+
+
+def _corners(inside: int) -> list[tuple[int, int]]:
+    right, bottom = WIDTH - inside, HEIGHT - inside
+    return [(inside, inside), (right, inside), (right, bottom), (inside, bottom)]
+
+
+def _blocks() -> list[tuple[int, int]]:
+    """Return the middles of the blocks, the lowest bit's first."""
+    half = CORNER // 2
+    lines = [divmod(bit, COLUMNS) for bit in range(BITS)]
+    return [(LEFT + CORNER * column + half, TOP + CORNER * line + half) for line, column in lines]
+
+
+def _square(image: Picture, x: int, y: int) -> Picture:
+    half = CORNER // 2
+    return image[y - half : y + half, x - half : x + half]
+
+
+def _middle(shown: Picture, colour: tuple[int, int, int]) -> tuple[float, float] | None:
+    """Return x and y of the middle of the largest patch of a colour."""
+    near = (np.abs(np.asarray(shown, np.int16) - np.array(colour)) < 60).all(axis=2)
+    count, _, statistics, middles = cv2.connectedComponentsWithStats(near.astype(np.uint8))
+    if count < 2:
+        return None
+    largest = 1 + int(np.argmax(statistics[1:, cv2.CC_STAT_AREA]))
+    x, y = middles[largest]
+    return float(x), float(y)
