@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import httpx
@@ -63,20 +63,44 @@ def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(
     expect(card(page, name)).to_have_count(1)
 
 
-def test_a_dropped_file_becomes_a_card_which_undo_takes_away(
-    open_page: OpenPage, library: Library, name: str, tmp_path: Path
+def test_a_language_that_is_exported_and_dropped_again_is_the_same_and_undo_takes_it_away(
+    open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
-    file = tmp_path / "pool.json"
-    exported = library.client.get(f"/api/v1/languages/{library.language}/export")
-    file.write_bytes(exported.content)
-    library.client.delete(f"/api/v1/languages/{library.language}")
-    page = open_page({"view": "languages"}, scene=False)
-    expect(page.get_by_role("heading", name="Languages")).to_be_visible()
+    name = "Zeichen für Höhlen, 2. Fassung ✋"
+    tuning = {"simplification": 2.5, "weights": {"fourier": 0.5}}
+    change = {"name": name, "author": "Čeněk", "tuning": tuning}
+    original = copy_of_the_sample_with_phrases(library, change)
+    page = open_page({"view": "languages", "language": original}, scene=False)
+    page.get_by_role("button", name="Export").click()
+    dialog = page.get_by_role("dialog", name="Export")
+    with page.expect_download() as download:
+        dialog.get_by_role("link", name="Download").click()
+    file = tmp_path / download.value.suggested_filename
+    download.value.save_as(file)
+    library.client.delete(f"/api/v1/languages/{original}").raise_for_status()
+    expect(card(page, name)).to_have_count(0)
     drop(page, file)
     expect(page.get_by_text("Language imported")).to_be_visible()
-    expect(card(page, name).get_by_text("2 gestures")).to_be_visible()
+    expect(card(page, name).get_by_text("8 gestures")).to_be_visible()
+    listed = library.client.get("/api/v1/languages").json()
+    (again,) = [each["id"] for each in listed if each["name"] == name]
+    assert again != original
+    exported = library.client.get(f"/api/v1/languages/{again}/export")
+    assert exported.content == file.read_bytes()
     page.keyboard.press("Control+z")
     expect(card(page, name)).to_have_count(0)
+
+
+def copy_of_the_sample_with_phrases(library: Library, change: Mapping[str, object]) -> str:
+    """Return the id of a changed copy of the larger sample, one gesture with its own switches."""
+    listed = library.client.get("/api/v1/languages").json()
+    (sample,) = [each["id"] for each in listed if each["name"] == "Table 2: eight signs"]
+    copy = str(library.client.post(f"/api/v1/languages/{sample}/duplicate").json()["id"])
+    place = f"/api/v1/languages/{copy}"
+    library.client.patch(place, json=change).raise_for_status()
+    switches = {"tempo": "on", "mirror": "off", "command": {"do": "turn", "by": [0.5, -1]}}
+    library.client.patch(f"{place}/gestures/circle", json=switches).raise_for_status()
+    return copy
 
 
 @pytest.mark.usefixtures("library")
