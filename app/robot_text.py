@@ -42,7 +42,7 @@ def _about_language(event: LanguageChanged | LanguageRefused) -> str:
         )
     return (
         f"listening for {event.name!r}, revision {event.revision}, {event.sha256[:8]}: "
-        f"{', '.join(event.gestures)}"
+        f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
     )
 
 

@@ -170,6 +170,10 @@ class LanguageChanged:
         Its id and revision, see `SpokenLanguage`.
     gestures
         Its labels.
+    profile
+        The voters that recognise it.
+    tuning
+        How that deviates from the profile, in words that follow "recognised".
 
     """
 
@@ -178,6 +182,8 @@ class LanguageChanged:
     sha256: str
     revision: int
     gestures: tuple[str, ...]
+    profile: str
+    tuning: str
 
 
 @dataclass(frozen=True)

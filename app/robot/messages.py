@@ -148,6 +148,8 @@ class LanguageChangedMessage(_Message):
     sha256: Sha256
     revision: Revision
     gestures: Annotated[tuple[str, ...], Field(description="The labels.")]
+    profile: Annotated[str, Field(description="The voters that recognise it.")]
+    tuning: Annotated[str, Field(description='What differs from that, in words: "recognised ...".')]
 
 
 class LanguageRefusedMessage(_Message):

@@ -203,5 +203,13 @@ class DropCount:
 
 def language_changed(time: float, language: SpokenLanguage) -> LanguageChanged:
     """Tell which language is spoken from now on."""
-    gestures = language.recognizer.language.labels
-    return LanguageChanged(time, language.name, language.sha256, language.revision, gestures)
+    recognizer = language.recognizer
+    return LanguageChanged(
+        time=time,
+        name=language.name,
+        sha256=language.sha256,
+        revision=language.revision,
+        gestures=recognizer.language.labels,
+        profile=recognizer.profile,
+        tuning=recognizer.tuning.words,
+    )

@@ -72,7 +72,7 @@ EVENTS: list[Event] = [
     SourceEnded(9.0, 120, 4, True),
     FramesDropped(10.0, 10.0, 3, 200),
     StateChanged(1.0, TakeState.recording),
-    LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲")),
+    LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲"), "full", "as the profile does"),
     LanguageRefused(5.0, "/format: not a language file", SEAL, 3),
     recognized(),
     recognized("Come here"),

@@ -56,7 +56,9 @@ def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: 
     assert looked_at == record(clip, estimator=estimator).poses.time.tolist()
     assert told == [
         SourceOpened(0.0, str(clip), False, (WIDTH, HEIGHT), None),
-        LanguageChanged(0.0, "pool", spoken("circle").sha256, 1, ("circle",)),
+        LanguageChanged(
+            0.0, "pool", spoken("circle").sha256, 1, ("circle",), "full", "as the profile does"
+        ),
         StateChanged(0.0, TakeState.idle),
         SourceEnded(looked_at[-1], 6, 0, False),
     ]
