@@ -237,24 +237,25 @@ class CalibratedVote:
         self, trajectory: Trajectory, drawn: bool
     ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
         """Return ``(V, sides)`` distances and ``(sides,)`` rows of the readings, -1: none."""
-        shape = np.full((_SHAPES, len(self._owners)), np.inf)
-        comparable: npt.NDArray[np.bool_] = np.ones(len(self._owners), dtype=bool)
+        distances = np.full((len(VOTERS), len(self._owners)), np.inf)
         if drawn:
-            shape = self._shapes.distances(trajectory)
-            comparable = np.asarray(np.isfinite(shape).any(axis=0))
-        elif not set(self.needed) & set(trajectory.landmarks):
-            comparable[:] = False
-        motion = np.full((len(MOTION_VOTERS), len(self._owners)), np.inf)
+            distances[:_SHAPES] = self._shapes.distances(trajectory)
+            comparable = np.asarray(np.isfinite(distances[:_SHAPES]).any(axis=0))
+        else:
+            shown = not set(self.needed).isdisjoint(trajectory.landmarks)
+            comparable = np.full(len(self._owners), shown)
         rows = np.full(len(self._owners), -1, dtype=np.intp)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
             nearest = self._motions.nearest(query, *self._of_motion, len(self._owners))
-            rows, motion = nearest.rows, nearest.distances
-        motion[:, ~comparable] = np.inf
-        return np.concatenate([shape, motion]), rows
+            rows, distances[_SHAPES:] = nearest.rows, nearest.distances
+            distances[_SHAPES:, ~comparable] = np.inf
+        return distances, rows
 
     def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
         """Choose for each gesture itself or its mirror image: ``(G,)`` indices of sides."""
+        if len(self._owners) == len(self._labels):
+            return np.arange(len(self._labels))
         chosen = np.empty(len(self._labels), dtype=np.intp)
         order = np.argsort(-scores, kind="stable")
         chosen[self._owners[order]] = order  # the best is written last and stays

@@ -59,8 +59,12 @@ def jumps(trajectory: Trajectory) -> Mask:
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     followed = _followed(trajectory.landmarks)
-    paths = trajectory.xy.take(followed, axis=1) / body_unit(trajectory)
+    paths = trajectory.xy.take(followed, axis=1)
+    if (unit := body_unit(trajectory)) != 1.0:
+        paths /= unit
     finite = np.isfinite(paths)
+    if finite.all() and not _has_kink(paths).any():
+        return off
     known = np.asarray(finite[..., 0] & finite[..., 1])
     whole: Mask = np.asarray(known.all(axis=0))
     together = np.flatnonzero(whole & _has_kink(paths))
@@ -88,7 +92,8 @@ def _has_kink(paths: FloatArray) -> Mask:
     """
     steps = paths[1:] - paths[:-1]
     bends = steps[1:] - steps[:-1]
-    squares = bends[..., 0] ** 2 + bends[..., 1] ** 2
+    np.multiply(bends, bends, out=bends)
+    squares = bends[..., 0] + bends[..., 1]
     return np.asarray(squares.max(axis=0, initial=0) > NOTICED**2)
 
 

@@ -57,9 +57,22 @@ ten megabytes."""
 ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
-_ELASTIC = tuple(voter.name for voter in MOTION_VOTERS if isinstance(voter, ElasticVoter))
+_ELASTIC = {
+    voter.name: place
+    for place, voter in enumerate(MOTION_VOTERS)
+    if isinstance(voter, ElasticVoter)
+}
+"""Where the voters stand that align movements."""
 
-_UNORDERED = tuple(voter.name for voter in MOTION_VOTERS if isinstance(voter, UnorderedVoter))
+_UNORDERED = {
+    place: voter for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, UnorderedVoter)
+}
+
+_OTHERS = {
+    place: voter
+    for place, voter in enumerate(MOTION_VOTERS)
+    if not isinstance(voter, ElasticVoter | UnorderedVoter)
+}
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
 
@@ -182,11 +195,19 @@ class MotionReferences:
         Indices of rows, in order.
 
         """
-        steps = self.descriptors["path"] - path
-        apart = np.einsum("rnd,rnd->r", steps, steps)
-        chosen = self._shown.copy()
-        chosen[np.lexsort((apart, self._kinds))[self._first_of_kind]] = True
-        return np.flatnonzero(chosen)
+        paths, squares = self._flat_paths
+        apart = np.append(squares - 2.0 * (paths @ path.ravel()), np.inf)
+        rows = self._rows_by_kind
+        nearest = apart.take(rows).argsort(axis=1, kind="stable")[:, :MOST_COMPARED]
+        chosen = np.append(self._shown, False)
+        chosen[np.take_along_axis(rows, nearest, axis=1)] = True
+        return np.asarray(chosen[:-1].nonzero()[0])
+
+    @cached_property
+    def _flat_paths(self) -> tuple[FloatArray, FloatArray]:
+        """Paths with all steps in a row, ``(R, N D)``, and the sums of their squares, ``(R,)``."""
+        paths = self.descriptors["path"].reshape(len(self), -1)
+        return paths, np.einsum("rd,rd->r", paths, paths)
 
     @cached_property
     def _shown(self) -> npt.NDArray[np.bool_]:
@@ -194,17 +215,16 @@ class MotionReferences:
         return np.asarray(np.diff(self.gestures, prepend=-1) != 0)
 
     @cached_property
-    def _kinds(self) -> npt.NDArray[np.intp]:
-        """``(R,)``: a number for each row's gesture and kind of reading."""
-        kinds = [2 * reading.exchanged + reading.backward for reading in self.readings]
-        return 4 * self.gestures + np.array(kinds, dtype=np.intp)
-
-    @cached_property
-    def _first_of_kind(self) -> npt.NDArray[np.intp]:
-        """Where the first `MOST_COMPARED` of each kind stand once the rows are sorted by kind."""
-        kinds = np.sort(self._kinds)
-        rank = np.arange(len(kinds)) - np.searchsorted(kinds, kinds)
-        return np.flatnonzero(rank < MOST_COMPARED)
+    def _rows_by_kind(self) -> npt.NDArray[np.intp]:
+        """The rows of each gesture's readings of a kind; R where there are no more of them."""
+        kinds: dict[tuple[int, bool, bool], list[int]] = {}
+        for row, (gesture, reading) in enumerate(zip(self.gestures, self.readings, strict=True)):
+            kind = (int(gesture), reading.backward, reading.exchanged)
+            kinds.setdefault(kind, []).append(row)
+        rows = np.full((len(kinds), max(map(len, kinds.values()), default=1)), len(self))
+        for index, of_kind in enumerate(kinds.values()):
+            rows[index, : len(of_kind)] = of_kind
+        return rows
 
     @cached_property
     def _elastic(self) -> ElasticViews:
@@ -217,7 +237,10 @@ class MotionReferences:
     def _unordered(self) -> dict[str, StepReferences]:
         """What the unordered voters compare with: the distinct rows."""
         distinct, _ = self._distinct
-        return {name: StepReferences(self.descriptors[name][distinct]) for name in _UNORDERED}
+        return {
+            voter.name: StepReferences(self.descriptors[voter.name][distinct])
+            for voter in _UNORDERED.values()
+        }
 
     @cached_property
     def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
@@ -252,18 +275,18 @@ class MotionReferences:
 
         The elastic voters' alignments are found together, which costs hardly more than one.
         """
-        chosen = slice(None) if rows is None else rows
+        chosen = np.arange(len(self)) if rows is None else rows
         costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
-        found = dict(zip(_ELASTIC, alignment_costs(costs, len(query["path"]), BAND), strict=True))
-        _, which = self._distinct
-        for voter in MOTION_VOTERS:
-            asked, others = query[voter.name], self.descriptors[voter.name]
-            if isinstance(voter, UnorderedVoter):
-                to_distinct = voter.distances_to(asked, self._unordered[voter.name])
-                found[voter.name] = to_distinct[which[chosen]]
-            elif voter.name not in found:
-                found[voter.name] = voter.distances(asked, others[chosen])
-        return np.array([found[voter.name] for voter in MOTION_VOTERS])
+        found = np.empty((len(MOTION_VOTERS), len(chosen)))
+        found[[*_ELASTIC.values()]] = alignment_costs(costs, len(query["path"]), BAND)
+        which = self._distinct[1].take(chosen)
+        for place, voter in _UNORDERED.items():
+            references = self._unordered[voter.name]
+            found[place] = voter.distances_to(query[voter.name], references).take(which)
+        for place, other in _OTHERS.items():
+            described = self.descriptors[other.name].take(chosen, axis=0)
+            found[place] = other.distances(query[other.name], described)
+        return found
 
     def nearest(
         self, query: dict[str, FloatArray], say: FloatArray, between: FloatArray, count: int
@@ -288,6 +311,8 @@ class MotionReferences:
         chosen = np.full(count, -1, dtype=np.intp)
         chosen[self.gestures[compared[order]]] = order
         found = chosen >= 0
+        if found.all():
+            return NearestReadings(compared.take(chosen), measured.take(chosen, axis=1))
         distances = np.full((len(MOTION_VOTERS), count), np.inf)
         distances[:, found] = measured[:, chosen[found]]
         return NearestReadings(np.where(found, compared[chosen], -1), distances)

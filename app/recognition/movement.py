@@ -126,10 +126,11 @@ def sized(vectors: FloatArray) -> FloatArray:
 
     NaN adds nothing; what has no size stays as it is.
     """
-    squares = vectors * vectors
-    total = float(squares.sum())
+    coordinates = vectors.reshape(-1)
+    total = float(coordinates @ coordinates)
     if math.isnan(total):
-        total = float(np.fmax(squares, 0.0, out=squares).sum())
+        known = coordinates[~np.isnan(coordinates)]
+        total = float(known @ known)
     size = math.sqrt(total / len(vectors))
     return vectors / size if size > 0 else vectors
 
@@ -191,16 +192,19 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
     smooth = _smoothed(
         replace(trajectory, landmarks=places.needed, xy=trajectory.xy.take(places.columns, axis=1))
     )
-    seen = np.isfinite(smooth.xy[0, places.followed]).all(axis=1)
-    followed = places.followed[seen]
-    reached = smooth.time[[0] * STEPS]
+    followed, path = places.followed, places.paths
+    seen = np.isfinite(smooth.xy[0]).all(axis=1).take(followed)
+    if not seen.all():
+        followed, path = followed[seen], path[seen]
     if len(followed):
-        path = smooth.xy.take(followed, axis=1)
-        reached = replace(smooth, xy=path).moments_in_arc_length(STEPS)
+        shown = replace(smooth, xy=smooth.xy.take(followed, axis=1))
+        reached = shown.moments_in_arc_length(STEPS)
+    else:
+        reached = np.full(STEPS, smooth.time[0])
     even = smooth.at(reached).xy
     paths = np.zeros((STEPS, len(landmarks), 2))
-    shown = even.take(followed, axis=1)
-    paths[:, places.paths[seen]] = shown - shown.mean(axis=0)
+    places_shown = even.take(followed, axis=1)
+    paths[:, path] = places_shown - np.add.reduce(places_shown) / STEPS
     limbs = np.full((STEPS, places.bones, 2), np.nan)
     limbs[:, places.shown] = even.take(places.outer, axis=1) - even.take(places.inner, axis=1)
     return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
@@ -264,16 +268,28 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
     scaled = time / (np.sqrt(2.0) * max(width, 1e-9))
-    exponents = np.square(scaled[:, None] - scaled)
-    weights = np.exp(-np.minimum(exponents, FARTHEST, out=exponents))
-    total = weights.sum(axis=1)
-    bridged = trajectory.xy.copy()
-    finite = np.isfinite(bridged)
+    weights = scaled[:, None] - scaled
+    np.multiply(weights, weights, out=weights)
+    np.minimum(weights, FARTHEST, out=weights)
+    np.exp(np.negative(weights, out=weights), out=weights)
+    # Beside the coordinates a column of ones, whose average is the sum of the weights.
+    beside = np.ones((len(time), 2 * len(trajectory.landmarks) + 1))
+    beside[:, :-1] = _bridged(trajectory).reshape(len(time), -1)
+    averaged = weights @ beside
+    xy = averaged[:, :-1] / averaged[:, -1:]
+    return replace(trajectory, xy=xy.reshape(trajectory.xy.shape))
+
+
+def _bridged(trajectory: Trajectory) -> FloatArray:
+    """Return the places ``(T, K, 2)`` without gaps; NaN for landmarks that were never seen."""
+    xy, time = trajectory.xy, trajectory.time
+    finite = np.isfinite(xy)
+    if finite.all():
+        return xy
+    bridged = xy.copy()
     known = np.asarray(finite[..., 0] & finite[..., 1])
     for index in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
         seen = known[:, index]
         for axis in range(2):
-            bridged[:, index, axis] = np.interp(time, time[seen], bridged[seen, index, axis])
-    xy = (weights @ bridged.reshape(len(time), -1)).reshape(bridged.shape)
-    xy /= total[:, None, None]
-    return replace(trajectory, xy=xy)
+            bridged[:, index, axis] = np.interp(time, time[seen], xy[seen, index, axis])
+    return bridged

@@ -65,7 +65,7 @@ def fault(
     for name in landmarks:
         if name not in poses.landmarks:
             continue
-        path = trajectory.xy[:, trajectory.landmarks.index(name)] / unit
+        path = trajectory.xy[:, trajectory.landmarks.index(name)]
         finite = np.isfinite(path)
         seen = (finite[:, 0] & finite[:, 1]).nonzero()[0]
         time, places = trajectory.time[seen], path[seen]
@@ -76,8 +76,8 @@ def fault(
             only = f"only {followed:.0%} of its {poses.duration:.1f} s"
             return f"the {readable(name)} is followed for {only}"
         steps = places[1:] - places[:-1]
-        lengths = np.sqrt(np.einsum("td,td->t", steps, steps))
-        leaps = float(((lengths > LEAP) & (lasts <= LEAP_SECONDS)).mean())
+        far = np.einsum("td,td->t", steps, steps) > (LEAP * unit) ** 2
+        leaps = np.count_nonzero(far & (lasts <= LEAP_SECONDS)) / len(lasts)
         if leaps > MOST_LEAPS:
             return f"the {readable(name)} leaps over a torso length in {leaps:.0%} of its frames"
     return None

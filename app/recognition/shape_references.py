@@ -103,11 +103,11 @@ def _judge(
         ("drawing", ballot.salient, simplification),
         lambda: _described(trajectory.select(ballot.salient), simplification),
     )
-    for row, voter in enumerate(PAPER_VOTERS):
-        if voter.name in descriptors:
-            distances[row, ballot.members] = voter.distances(
-                descriptors[voter.name], ballot.references[voter.name]
-            )
+    if descriptors:
+        distances[:, ballot.members] = [
+            voter.distances(descriptors[voter.name], ballot.references[voter.name])
+            for voter in PAPER_VOTERS
+        ]
 
 
 def _described(query: Trajectory, simplification: float) -> dict[str, FloatArray]:

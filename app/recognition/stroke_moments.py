@@ -46,9 +46,11 @@ class StrokeMoments:
         pixels = np.zeros(1 + height * (width + 1), dtype=np.uint8)
         box = image[top : top + height, left : left + width]
         pixels[1:].reshape(height, width + 1)[:, :width] = box
-        changes = np.flatnonzero(pixels[1:] != pixels[:-1])
-        rows, columns = np.divmod(changes, width + 1)
-        row, start, stop = rows[::2], columns[::2], columns[1::2]
+        changes = (pixels[1:] != pixels[:-1]).nonzero()[0]
+        begins, ends = changes[::2], changes[1::2]
+        row = begins // (width + 1)
+        first_of_row = row * (width + 1)
+        start, stop = begins - first_of_row, ends - first_of_row
         lengths = stop - start
         count = int(lengths.sum())
         centre_x = float(lengths @ (start + stop - 1)) / (2 * count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -210,7 +210,8 @@ class Trajectory:
             return np.linspace(self.time[0], self.time[-1], count)
         # A rest makes `travelled` flat; the tiny share of time keeps it strictly increasing.
         travelled += 1e-9 * travelled[-1] * (self.time / self.time[-1])
-        return np.interp(np.linspace(0, travelled[-1], count), travelled, self.time)
+        even = travelled[-1] * _equal_shares(count)
+        return np.asarray(np.interp(even, travelled, self.time), dtype=np.float64)
 
     def _require_two(self, count: int) -> None:
         if count < 2 or len(self) < 2:
@@ -224,12 +225,18 @@ class Trajectory:
         after = np.minimum(np.maximum(self.time.searchsorted(moments), 1), len(self) - 1)
         start, end = self.time[after - 1], self.time[after]
         share = np.minimum(np.maximum((moments - start) / (end - start), 0.0), 1.0)[:, None, None]
-        low, high = self.xy[after - 1], self.xy[after]
+        low, high = self.xy.take(after - 1, axis=0), self.xy.take(after, axis=0)
         xy = low + share * (high - low)
         # At a sample itself its neighbour's NaN must not leak in, nor a sum's rounding.
         np.copyto(xy, high, where=share == 1)
         np.copyto(xy, low, where=share == 0)
         return replace(self, xy=xy, time=moments)
+
+
+@lru_cache(maxsize=16)
+def _equal_shares(count: int) -> FloatArray:
+    """Return `count` numbers from 0 to 1 at equal steps."""
+    return np.linspace(0.0, 1.0, count)
 
 
 def _extent(xy: FloatArray) -> float:

@@ -184,11 +184,11 @@ class StrokeDirection:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(3 L,)``: per landmark the signed area, then x and y of the way."""
-        paths = sized(movement.paths)
+        paths = movement.figure
         before, after = paths[:-1], paths[1:]
         cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
         way = paths[-1] - paths[0]
-        return np.column_stack([cross.sum(axis=0) / 2, way]).ravel()
+        return np.concatenate([np.add.reduce(cross)[:, None] / 2, way], axis=1).ravel()
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return Euclidean distances, ``(M,)``."""
@@ -203,8 +203,9 @@ class WhichHand:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(L,)``: each landmark's root mean square, together of norm 1."""
-        shares = np.sqrt((movement.paths**2).sum(axis=(0, 2)))
-        return np.asarray(shares / max(np.linalg.norm(shares), 1e-9))
+        paths = movement.paths
+        squares = np.einsum("nld,nld->l", paths, paths)
+        return np.asarray(np.sqrt(squares / max(squares.sum(), 1e-18)))
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return Euclidean distances, ``(M,)``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.movement import LIMBS, Movement
 from app.recognition.poses import FloatArray
@@ -46,21 +47,21 @@ class WristBend:
         The part is in [0, 1], 1 for the arm whose forearm turns most. NaN for an arm whose forearm
         or hand was not seen.
         """
-        steps = len(movement.limbs)
-        arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
-        forearm, hand = arms[:, :, FOREARM], _mean_of_known(arms[:, :, HAND])
-        length = _lengths(forearm)
-        lengths = length * _lengths(hand)
-        across = forearm[..., 0] * hand[..., 1] - forearm[..., 1] * hand[..., 0]
-        bend = across / np.maximum(lengths, 1e-9)
+        # As complex numbers x + jy, of which one product gives the sine and both lengths.
+        limbs = np.ascontiguousarray(movement.limbs).view(np.complex128)
+        arms = limbs.reshape(len(limbs), -1, len(LIMBS))
+        forearm, hand = arms[..., FOREARM], _mean_of_known(arms[..., HAND])
+        across = forearm.conj() * hand
+        bend = across.imag / np.maximum(np.abs(across), 1e-9)
         since = forearm - forearm[0]
-        turned = np.einsum("nad,nad->na", since, since) * length
-        turned[~np.isfinite(bend)] = 0.0
+        turned = (since.real**2 + since.imag**2) * np.abs(forearm)
+        turned[np.isnan(bend)] = 0.0
         weight = LEAST_WEIGHT + turned / max(turned.max(initial=0.0), 1e-12)
-        total = weight.sum(axis=0)
-        mean = (weight * bend).sum(axis=0) / total
-        spread = np.sqrt((weight * (bend - mean) ** 2).sum(axis=0) / total)
-        return np.column_stack([mean, spread, total / total.max(initial=LEAST_WEIGHT)]).ravel()
+        total = np.add.reduce(weight)
+        mean = np.add.reduce(weight * bend) / total
+        spread = np.sqrt(np.add.reduce(weight * (bend - mean) ** 2) / total)
+        part = total / total.max(initial=LEAST_WEIGHT)
+        return np.array([mean, spread, part]).T.ravel()
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return ``(M,)``; infinite where no arm is seen in both."""
@@ -68,7 +69,11 @@ class WristBend:
         means, spreads, parts = references.reshape(len(references), -1, 3).transpose(2, 0, 1)
         squares = (means - mean) ** 2 / (UNCERTAINTY**2 + spread**2 + spreads**2)
         known = np.isfinite(squares)
-        weights = np.where(known, np.minimum(part, parts) ** 2, 0.0)
+        weights = np.minimum(part, parts) ** 2
+        if known.size and known.all():
+            total, weight = np.add.reduce(weights * squares, axis=1), np.add.reduce(weights, axis=1)
+            return np.asarray(np.sqrt(total / weight))
+        weights[~known] = 0.0
         total = (weights * np.where(known, squares, 0.0)).sum(axis=1)
         mean_square = np.divide(
             total, weights.sum(axis=1), out=np.full_like(total, np.inf), where=known.any(axis=1)
@@ -76,18 +81,10 @@ class WristBend:
         return np.asarray(np.sqrt(mean_square))
 
 
-def _lengths(vectors: FloatArray) -> FloatArray:
-    """Return the lengths of ``(N, A, 2)``."""
-    return np.asarray(np.sqrt(np.einsum("nad,nad->na", vectors, vectors)))
-
-
-def _mean_of_known(bones: FloatArray) -> FloatArray:
-    """Average ``(N, A, B, 2)`` over the bones seen: ``(N, A, 2)``, NaN where none is."""
+def _mean_of_known(bones: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Average ``(N, A, B)`` over the bones seen: ``(N, A)``, NaN where none is."""
     known = np.isfinite(bones)
-    if known.all():
-        return np.asarray(bones.sum(axis=2) / bones.shape[2])
-    total = np.where(known, bones, 0.0).sum(axis=2)
-    count = known.sum(axis=2)
-    mean: FloatArray = np.full_like(total, np.nan)
-    np.divide(total, count, out=mean, where=count > 0)
-    return mean
+    total = np.add.reduce(np.where(known, bones, 0.0), axis=2)
+    count = np.add.reduce(known, axis=2, dtype=np.float64)
+    count[count == 0] = np.nan
+    return np.asarray(total * (1.0 / count))
