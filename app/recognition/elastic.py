@@ -1,36 +1,26 @@
 """Elastic matching: how far sequences lie apart when each may run ahead of the other for a while.
 
-Dynamic time warping (Sakoe and Chiba 1978) between one query and many references at once. The
-recurrence goes along anti-diagonals, on which no cell depends on another one, and from both ends of
-the sequences at once until the two halves meet: N steps of one array operation over all references.
+Dynamic time warping (Sakoe and Chiba 1978) between one query and many references at once: the costs
+of their steps as products of matrices, of which `warping` finds the best alignments.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from math import prod
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses import FloatArray
 from app.recognition.step_distances import (
-    ROUNDING,
     Precision,
     for_query,
     for_references,
     squared_distances,
 )
-
-StepCosts = npt.NDArray[np.float32]
-"""Costs of prepared references: half the memory of doubles, through which most of the time goes.
-Of descriptors, whose mean square is about 1, the distances are right to a millionth."""
-
-ROUNDING_OF_STEP_COSTS = 4e-6
-"""Distances below it are 0 where costs are in single precision: rounding leaves about a millionth
-of the mean square, and two takes of a gesture lie ten thousand times as far apart."""
+from app.recognition.warping import StepCosts, alignment_costs, half_of
 
 
 def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
@@ -262,116 +252,12 @@ class ElasticViews:
         return np.concatenate([self.views[index].sides_by_row for index in self._joined], axis=2)
 
 
-def half_of(steps: int, band: int) -> int:
-    """Return H: how many steps from either end an alignment may reach until the halves meet."""
-    return (steps - 1 + min(band, steps - 1)) // 2 + 1
-
-
 def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArray[Precision]:
     """Take the first steps of ``(..., N, D)``, and the last ones backwards: ``(2, ..., H, D)``."""
     shape = (2, *sequences.shape[:-2], count, sequences.shape[-1])
     ends = np.empty(shape, dtype=sequences.dtype)
     ends[0], ends[1] = sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]
     return ends
-
-
-def alignment_costs(
-    costs: npt.NDArray[np.float32 | np.float64], steps: int, band: int
-) -> FloatArray:
-    """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
-
-    Parameters
-    ----------
-    costs
-        ``(2, ..., H, H, M)``: of each step of the one sequence against each of the other, for M
-        pairs, from the first steps on and from the last ones back; H as `half_of` returns it.
-    steps, band
-        N and the band, as for `elastic_distances`.
-
-    Returns
-    -------
-    ``(..., M)``: costs summed along the alignment over N.
-
-    """
-    _, *points_of_view, count, _, pairs = costs.shape
-    views = prod(points_of_view)
-    cells = costs.reshape(2 * views, count * count, pairs).transpose(1, 0, 2)
-    # Cells of one diagonal do not depend on each other, but on those of the diagonal before, whose
-    # offsets i - j are odd where these are even: kept apart, either lie side by side in memory.
-    totals = [
-        np.full((outer + 1, 2 * views, pairs), np.inf, dtype=costs.dtype)
-        for outer in _outer_offsets(band)
-    ]
-    totals[0][len(totals[0]) // 2] = 0.0  # before the first steps
-    best = np.empty((band + 1, 2 * views, pairs), dtype=costs.dtype)
-    for diagonal in _diagonals(steps, band):
-        parity = diagonal.number % 2
-        own, others = totals[parity][diagonal.own], totals[1 - parity]
-        before = best[: len(own)]
-        np.minimum(others[diagonal.one], others[diagonal.other], out=before)
-        np.minimum(before, own, out=before)
-        np.add(before, cells[diagonal.cells], out=own)
-        if diagonal.number == steps - 1:
-            own[:, :views] = before[:, :views]  # where the halves meet, a cell counts once
-    met = [(each[:, :views] + each[::-1, views:]).min(axis=0) for each in totals]
-    found = np.asarray(np.minimum(*met), dtype=np.float64).reshape(*points_of_view, pairs) / steps
-    found[found < (ROUNDING if costs.dtype == np.float64 else ROUNDING_OF_STEP_COSTS)] = 0.0
-    return np.asarray(found)
-
-
-def _outer_offsets(band: int) -> tuple[int, int]:
-    """Return the least even and odd offsets beyond the band, where totals stay infinite."""
-    return band + 1 + (band + 1) % 2, band + 1 + band % 2
-
-
-@dataclass(frozen=True)
-class _Diagonal:
-    """Where the cells of an anti-diagonal within the band lie.
-
-    Attributes
-    ----------
-    number
-        i + j.
-    own
-        Of the totals with its parity.
-    one, other
-        Of the totals with the other parity: the neighbours on the diagonal before.
-    cells
-        Of the costs, one row a pair of steps.
-
-    """
-
-    number: int
-    own: slice
-    one: slice
-    other: slice
-    cells: slice
-
-
-@lru_cache(maxsize=64)
-def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
-    """Return the anti-diagonals, up to the one where the halves meet, with a cell in the band."""
-    found, count, outer = [], half_of(steps, band), _outer_offsets(band)
-    for number in range(steps):
-        reach = min(band, number)
-        reach -= (reach + number) % 2  # offset and number are both even or both odd
-        if reach < 0:
-            continue
-        first = (outer[number % 2] - reach) // 2
-        one = (outer[1 - number % 2] - reach - 1) // 2
-        start = (number - reach) // 2 * count + (number + reach) // 2
-        # Along an anti-diagonal i grows and j falls by one.
-        stop = start + reach * (count - 1) + 1
-        found.append(
-            _Diagonal(
-                number=number,
-                own=slice(first, first + reach + 1),
-                one=slice(one, one + reach + 1),
-                other=slice(one + 1, one + reach + 2),
-                cells=slice(start, stop, max(count - 1, 1)),
-            )
-        )
-    return tuple(found)
 
 
 def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.elastic import ElasticReferences, ElasticViews, alignment_costs
+from app.recognition.elastic import ElasticReferences, ElasticViews
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
 from app.recognition.movement import (
@@ -22,6 +22,7 @@ from app.recognition.shown_gesture import ShownGesture
 from app.recognition.step_distances import StepReferences
 from app.recognition.trajectory import Trajectory
 from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
+from app.recognition.warping import alignment_costs
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as

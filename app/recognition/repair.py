@@ -71,7 +71,7 @@ class Repair:
     @property
     def findings(self) -> tuple[str, ...]:
         """What was repaired, in sentences with counts; empty where nothing was."""
-        if not self.touched.any():
+        if not (self.exchanged.any() or self.blended.any() or self.jumps.any()):
             return ()
         frames = f"of {len(self.poses)} frames"
         found = []

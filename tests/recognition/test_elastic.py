@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from app.recognition.elastic import (
     ElasticReferences,
     ElasticViews,
-    alignment_costs,
     elastic_distances,
     elastic_pairs,
 )
 from app.recognition.poses import FloatArray
 from app.recognition.step_distances import squared_distances
+from app.recognition.warping import alignment_costs
 
 
 def plain_loop(query: FloatArray, reference: FloatArray, band: int) -> float:

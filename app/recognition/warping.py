@@ -1,0 +1,180 @@
+"""The best alignments of sequences, once the costs of their steps are known.
+
+The recurrence of dynamic time warping (Sakoe and Chiba 1978) goes along anti-diagonals, on which no
+cell depends on another one, and from both ends of the sequences at once until the two halves meet:
+N steps of three array operations over all pairs of sequences.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import prod
+from threading import local
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.poses import FloatArray
+from app.recognition.step_distances import ROUNDING
+
+StepCosts = npt.NDArray[np.float32]
+"""Costs of prepared references: half the memory of doubles, through which most of the time goes.
+Of descriptors, whose mean square is about 1, the distances are right to a millionth."""
+
+Totals = npt.NDArray[np.float32 | np.float64]
+
+ROUNDING_OF_STEP_COSTS = 4e-6
+"""Distances below it are 0 where costs are in single precision: rounding leaves about a millionth
+of the mean square, and two takes of a gesture lie ten thousand times as far apart."""
+
+
+def half_of(steps: int, band: int) -> int:
+    """Return H: how many steps from either end an alignment may reach until the halves meet."""
+    return (steps - 1 + min(band, steps - 1)) // 2 + 1
+
+
+def alignment_costs(
+    costs: npt.NDArray[np.float32 | np.float64], steps: int, band: int
+) -> FloatArray:
+    """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
+
+    Parameters
+    ----------
+    costs
+        ``(2, ..., H, H, M)``: of each step of the one sequence against each of the other, for M
+        pairs, from the first steps on and from the last ones back; H as `half_of` returns it.
+    steps, band
+        N and the band, as for `elastic_distances`.
+
+    Returns
+    -------
+    ``(..., M)``: costs summed along the alignment over N.
+
+    """
+    _, *points_of_view, count, _, pairs = costs.shape
+    views = prod(points_of_view)
+    cells = costs.reshape(2 * views, count * count, pairs).transpose(1, 0, 2)
+    sweep = _SWEEPS.of(views, pairs, steps, band, costs.dtype)
+    for totals in sweep.totals:
+        totals.fill(np.inf)
+    sweep.totals[0][len(sweep.totals[0]) // 2] = 0.0  # before the first steps
+    for own, one, other, before, place in sweep.diagonals:
+        np.minimum(one, other, out=before)
+        np.minimum(before, own, out=before)
+        np.add(before, cells[place], out=own)
+    if sweep.meets_in_cells:
+        own[:, :views] = before[:, :views]  # where the halves meet, a cell counts once
+    met = [(each[:, :views] + each[::-1, views:]).min(axis=0) for each in sweep.totals]
+    found = np.asarray(np.minimum(*met), dtype=np.float64).reshape(*points_of_view, pairs) / steps
+    found[found < (ROUNDING if costs.dtype == np.float64 else ROUNDING_OF_STEP_COSTS)] = 0.0
+    return np.asarray(found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sweep:
+    """Memory for the totals of one shape of costs, and what each diagonal sees of it.
+
+    Prepared once, since cutting it out anew would take a fifth of the time of an alignment.
+
+    Attributes
+    ----------
+    totals
+        ``(offsets, 2 V, M)`` of the diagonals with even and with odd numbers. Cells of one diagonal
+        do not depend on each other, but on those of the diagonal before, whose offsets i - j are
+        odd where these are even: kept apart, either lie side by side in memory.
+    diagonals
+        Of each, in order: its own totals; the neighbours on either side, from the diagonal before;
+        room for the least of these three; and the places of its costs.
+    meets_in_cells
+        Whether the last diagonal is the one in the middle, and not the one before it.
+
+    """
+
+    totals: tuple[Totals, Totals]
+    diagonals: tuple[tuple[Totals, Totals, Totals, Totals, slice], ...]
+    meets_in_cells: bool
+
+    @classmethod
+    def prepared(
+        cls, views: int, pairs: int, steps: int, band: int, precision: np.dtype[Any]
+    ) -> _Sweep:
+        """Prepare for V views of M pairs of sequences of N steps."""
+        even, odd = (
+            np.empty((outer + 1, 2 * views, pairs), dtype=precision)
+            for outer in _outer_offsets(band)
+        )
+        best = np.empty((band + 1, 2 * views, pairs), dtype=precision)
+        diagonals = []
+        for diagonal in (found := _diagonals(steps, band)):
+            same, others = (odd, even) if diagonal.number % 2 else (even, odd)
+            own = same[diagonal.own]
+            neighbours = others[diagonal.one], others[diagonal.other]
+            diagonals.append((own, *neighbours, best[: len(own)], diagonal.cells))
+        return cls((even, odd), tuple(diagonals), found[-1].number == steps - 1)
+
+
+class _Sweeps(local):
+    """The sweeps of the shapes that a thread asked for last; each has its own memory."""
+
+    def __init__(self) -> None:
+        self.of = lru_cache(maxsize=4)(_Sweep.prepared)
+
+
+_SWEEPS = _Sweeps()
+
+
+def _outer_offsets(band: int) -> tuple[int, int]:
+    """Return the least even and odd offsets beyond the band, where totals stay infinite."""
+    return band + 1 + (band + 1) % 2, band + 1 + band % 2
+
+
+@dataclass(frozen=True)
+class _Diagonal:
+    """Where the cells of an anti-diagonal within the band lie.
+
+    Attributes
+    ----------
+    number
+        i + j.
+    own
+        Of the totals with its parity.
+    one, other
+        Of the totals with the other parity: the neighbours on the diagonal before.
+    cells
+        Of the costs, one row a pair of steps.
+
+    """
+
+    number: int
+    own: slice
+    one: slice
+    other: slice
+    cells: slice
+
+
+@lru_cache(maxsize=64)
+def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
+    """Return the anti-diagonals, up to the one where the halves meet, with a cell in the band."""
+    found, count, outer = [], half_of(steps, band), _outer_offsets(band)
+    for number in range(steps):
+        reach = min(band, number)
+        reach -= (reach + number) % 2  # offset and number are both even or both odd
+        if reach < 0:
+            continue
+        first = (outer[number % 2] - reach) // 2
+        one = (outer[1 - number % 2] - reach - 1) // 2
+        start = (number - reach) // 2 * count + (number + reach) // 2
+        # Along an anti-diagonal i grows and j falls by one.
+        stop = start + reach * (count - 1) + 1
+        found.append(
+            _Diagonal(
+                number=number,
+                own=slice(first, first + reach + 1),
+                one=slice(one, one + reach + 1),
+                other=slice(one + 1, one + reach + 2),
+                cells=slice(start, stop, max(count - 1, 1)),
+            )
+        )
+    return tuple(found)
