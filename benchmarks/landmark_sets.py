@@ -4,7 +4,8 @@ First the sample clips, found by MediaPipe's 33 landmarks and cut down to the 17
 the same as OpenPose's 18, and all of BODY_25 that gestures follow): a language defined with either
 set recognises takes with either set. Then NATOPS (other people's arms, with wrists, elbows, thumbs
 and hand tips): one template a class, everything of all joints or of wrists and elbows alone. What a
-profile would refuse counts as wrong in the column "label" and by its nearest gesture in "nearest".
+profile would refuse counts as wrong in the column "label" and by its nearest gesture in "nearest";
+at the end stands which two gestures make up most of the wrong ones among the nearest.
 
     python -m benchmarks.landmark_sets ../shared/data
 """
@@ -12,10 +13,12 @@ profile would refuse counts as wrong in the column "label" and by its nearest ge
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from app.evaluation.share import Share
 from app.recognition import (
@@ -42,17 +45,23 @@ Query = tuple[str, PoseSequence]
 """The gesture that is shown, and its recording."""
 
 
-def shares(recognizer: Recognizer, queries: Sequence[Query]) -> tuple[Share, Share]:
-    """Count the right labels, and the right nearest gestures."""
-    labels = nearest = 0
-    for label, poses in queries:
+class Reading(NamedTuple):
+    """What was shown, its label, and the nearest gesture; None where none could be compared."""
+
+    shown: str
+    label: str | None
+    nearest: str | None
+
+
+def readings(recognizer: Recognizer, queries: Sequence[Query]) -> Iterator[Reading]:
+    """Recognise one query after the other."""
+    for shown, poses in queries:
         try:
             result = recognizer.recognize(poses)
         except PoseError:
-            continue
-        labels += result.label == label
-        nearest += result.nearest == label
-    return Share(labels, len(queries)), Share(nearest, len(queries))
+            yield Reading(shown, None, None)
+        else:
+            yield Reading(shown, result.label, result.nearest)
 
 
 def sample_strokes() -> tuple[list[Query], list[Query]]:
@@ -81,7 +90,7 @@ def report_samples() -> None:
             recognizer = Recognizer(language, profile)
             for asked, seen in SETS.items():
                 queries = [(label, poses.select(seen)) for label, poses in tests]
-                line(f"samples, {defined} -> {asked}", profile, *shares(recognizer, queries))
+                line(f"samples, {defined} -> {asked}", profile, [*readings(recognizer, queries)])
 
 
 def natops_subsets(recorded: RecordedSet) -> Iterator[tuple[str, RecordedSet]]:
@@ -97,7 +106,7 @@ def report_natops(folder: Path, count: int, queries: int, seed: int) -> None:
     (natops,) = [each for each in recorded_sets(folder) if each.name == "natops"]
     for name, recorded in natops_subsets(natops):
         for profile in PROFILES:
-            right, nearest = Share(0, 0), Share(0, 0)
+            found: list[Reading] = []
             for draw in draws(recorded, count, queries, seed):
                 gestures = [
                     gesture_of(str(recorded.labels[template]), recorded.recordings[template])
@@ -106,14 +115,21 @@ def report_natops(folder: Path, count: int, queries: int, seed: int) -> None:
                 asked = [
                     (str(recorded.labels[query]), recorded.recordings[query]) for query in draw.own
                 ]
-                found = shares(Recognizer(Language("natops", gestures), profile), asked)
-                right, nearest = right + found[0], nearest + found[1]
-            line(f"natops, {name}", profile, right, nearest)
+                found += readings(Recognizer(Language("natops", gestures), profile), asked)
+            line(f"natops, {name}", profile, found)
 
 
-def line(name: str, profile: str, right: Share, nearest: Share) -> None:
+def line(name: str, profile: str, found: Sequence[Reading]) -> None:
     """Print one line of the report."""
-    print(f"{name:22} {profile:6} {right!s:>18} {nearest!s:>18} {right.asked:5}", flush=True)
+    right = Share(sum(each.label == each.shown for each in found), len(found))
+    nearest = Share(sum(each.nearest == each.shown for each in found), len(found))
+    pairs = Counter(
+        " and ".join(sorted((each.shown, each.nearest)))
+        for each in found
+        if each.nearest not in (each.shown, None)
+    )
+    worst = "".join(f"  {pair}: {n} of {pairs.total()}" for pair, n in pairs.most_common(1))
+    print(f"{name:22} {profile:6} {right!s:>18} {nearest!s:>18} {len(found):5}{worst}", flush=True)
 
 
 def main() -> None:
