@@ -72,15 +72,21 @@ languages: models  ## Rebuild the sample languages from their clips
 	$(BIN)/python -m languages.build
 
 lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer versions)
-	$(UV_COMPILE) --group build --extra studio --output-file requirements.txt
-	$(UV_COMPILE) --group build --extra studio --extra test \
+	$(LOCK) $(FOR_STUDIO) --group build --extra studio --output-file requirements.txt
+	$(LOCK) $(FOR_STUDIO) --group build --extra studio --extra test \
 	  --constraints requirements.txt --output-file requirements-test.txt
-	$(UV_COMPILE) --extra mediapipe \
+	$(LOCK) $(FOR_STUDIO) --extra mediapipe \
 	  --constraints requirements-test.txt --output-file requirements-mediapipe.txt
+	cp requirements.txt requirements-robot.txt
+	$(LOCK) $(FOR_ROBOT) --extra robot --output-file requirements-robot.txt
 
+LOCK = $(UV) pip compile pyproject.toml --quiet --universal --generate-hashes \
+  --custom-compile-command "make lock"
 # One version of everything on every Python and platform (`fewest`), so that what is tested is what runs.
-UV_COMPILE = $(UV) pip compile pyproject.toml --quiet --universal --fork-strategy fewest \
-  --python-version 3.11 --generate-hashes --custom-compile-command "make lock" $(UPGRADE)
+FOR_STUDIO = --python-version 3.11 --fork-strategy fewest $(UPGRADE)
+# The same on a robot, for uv keeps the versions that it finds in the file to write; on Python 3.10 the
+# last ones that support it.
+FOR_ROBOT = --python-version 3.10 --fork-strategy requires-python
 
 clean:  ## Remove the virtual environment, caches and build results
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \

@@ -10,8 +10,14 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from tests.conftest import ROOT
+from tests.test_packaging import WEB_APP
 
-LOCKS = ("requirements.txt", "requirements-test.txt", "requirements-mediapipe.txt")
+LOCKS = (
+    "requirements.txt",
+    "requirements-test.txt",
+    "requirements-mediapipe.txt",
+    "requirements-robot.txt",
+)
 
 # Where packages come from is the user's pip configuration, mirrors and all, never ours.
 REGISTRY = re.compile(rb"pypi\.org|pythonhosted\.org|anaconda\.org|npmjs\.|--(extra-)?index-url")
@@ -81,6 +87,7 @@ def test_every_pin_carries_hashes(lock: str) -> None:
         ("requirements.txt", ["studio"]),
         ("requirements-test.txt", ["studio", "test"]),
         ("requirements-mediapipe.txt", ["mediapipe"]),
+        ("requirements-robot.txt", ["robot"]),
     ],
 )
 def test_a_lock_pins_what_the_project_declares(lock: str, extras: list[str]) -> None:
@@ -104,3 +111,33 @@ def test_the_locks_agree_so_that_what_is_tested_is_what_runs() -> None:
     for name, requirements in pins("requirements-mediapipe.txt").items():
         if name in tested:
             assert [r.specifier for r in tested[name]] == [r.specifier for r in requirements]
+
+
+def chosen(lock: str, python: str, machine: str) -> dict[str, str]:
+    """Return the versions that a lock gives Linux with that Python and processor."""
+    environment = {
+        "python_version": python,
+        "python_full_version": f"{python}.0",
+        "sys_platform": "linux",
+        "platform_machine": machine,
+    }
+    fitting = [
+        (name, str(requirement.specifier))
+        for name, requirements in pins(lock).items()
+        for requirement in requirements
+        if requirement.marker is None or requirement.marker.evaluate(environment)
+    ]
+    assert len(dict(fitting)) == len(fitting)
+    return dict(fitting)
+
+
+@pytest.mark.parametrize("machine", ["x86_64", "aarch64"])
+@pytest.mark.parametrize("python", ["3.10", "3.11", "3.12", "3.13"])
+def test_a_robot_gets_what_the_studio_is_tested_with_and_nothing_of_the_web_app(
+    python: str, machine: str
+) -> None:
+    robot = chosen("requirements-robot.txt", python, machine)
+    assert robot.keys() >= {canonicalize_name(each.name) for each in declared("robot")}
+    assert not robot.keys() & WEB_APP
+    if python != "3.10":
+        assert robot.items() <= chosen("requirements.txt", python, machine).items()
