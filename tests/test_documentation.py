@@ -2,6 +2,8 @@
 
 import re
 import runpy
+from importlib.metadata import distribution
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -17,12 +19,18 @@ EXAMPLES = [
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_an_example_runs(code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_example_runs(
+    code: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     (tmp_path / "languages").symlink_to(ROOT / "languages")
     monkeypatch.chdir(tmp_path)
     script = tmp_path / "example.py"
     script.write_text(code)
     runpy.run_path(str(script))
+    assert bool(capsys.readouterr().out) == ("print(" in code)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -30,6 +38,21 @@ def test_links_inside_the_repository_lead_somewhere(page: Path) -> None:
     links = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text())
     inside = [link for link in links if "://" not in link]
     assert [link for link in inside if not (page.parent / link).exists()] == []
+
+
+def test_extras_modules_and_files_that_commands_name_exist() -> None:
+    text = "".join(page.read_text() for page in PAGES)
+    extras = {
+        extra for names in re.findall(r"osg-studio\[(.+?)\]", text) for extra in names.split(",")
+    }
+    assert extras >= {"robot", "dds"}
+    assert extras <= set(distribution("osg-studio").metadata.get_all("Provides-Extra") or [])
+    modules = set(re.findall(r"python -m ((?:benchmarks|languages)[.\w]*)", text))
+    assert modules
+    assert {module for module in modules if find_spec(module) is None} == set()
+    files = set(re.findall(r"(?:languages/[\w/]+|requirements[\w-]*)\.(?:json|mp4|txt)", text))
+    assert files
+    assert {file for file in files if not (ROOT / file).is_file()} == set()
 
 
 def test_every_voter_is_documented() -> None:
