@@ -39,8 +39,9 @@ def show_stages(
 
 def profile_table(profile: StageProfile) -> Table:
     """Lay out what each stage leaves of the rate, a stage a row."""
+    takes = "1 take" if profile.takes == 1 else f"{profile.takes} takes"
     caption = (
-        f"{profile.frames} frames, {profile.takes} takes; recognition lowers the rate of pose and "
+        f"{profile.frames} frames, {takes}; recognition lowers the rate of pose and "
         f"hands by {profile.share:.1%} and takes {profile.processor_share:.1%} of the processor's "
         f"time; energy: {profile.energy or 'this machine does not tell'}"
     )

@@ -6,6 +6,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.filesize import decimal
+
 from app.bags import bag_and_topic, is_bag
 from app.bags.clip import write_video
 from app.bags.session import NamedRecognition, write_session
@@ -47,7 +49,7 @@ def save_session(
                 partial, recording, recognitions, video=video, name=path.name, progress=advance
             )
         partial.replace(target)
-    people.print(f"{target}: {target.stat().st_size / 1e6:.1f} MB, opens in Foxglove", markup=False)
+    people.print(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove", markup=False)
 
 
 def named_recognitions(

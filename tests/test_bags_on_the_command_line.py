@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shlex
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -24,7 +23,7 @@ from tests.bags.bag_files import (
 )
 from tests.bags.sessions import checked
 from tests.command_line import OsgStudio
-from tests.conftest import ROOT
+from tests.documented import documented
 from tests.recognition.damaged_clips import picture
 
 
@@ -81,7 +80,7 @@ def test_the_session_is_written_as_mcap(
     session = tmp_path / "session.mcap"
     ended = osg_studio("recognize", bag, "--language", language, "--mcap", session)
     assert ended.code == 0, ended.error
-    assert "opens in Foxglove" in ended.error
+    assert re.search(r"session.mcap: \d+\.\d kB, opens in Foxglove", " ".join(ended.error.split()))
     found = checked(session)
     assert [content["label"] for _, content in found["/recognitions"]] == ["line", "circle"]
     assert len(found["/video"]) == len(found["/pose"]) > 0
@@ -92,15 +91,6 @@ def test_the_session_is_written_as_mcap(
 def as_another_diver(diver: str, rows: Iterable[Row]) -> list[Row]:
     """Return rows with their topics in a namespace."""
     return [(f"/{diver}{topic}", content, received) for topic, content, received in rows]
-
-
-def documented(word: str) -> list[list[str]]:
-    """Return the commands of the page on robots that read a recording and do `word`."""
-    page = (ROOT / "docs" / "robots.md").read_text("utf-8")
-    (section,) = re.findall(r"^## Recordings$(.*?)^## ", page, re.DOTALL | re.MULTILINE)
-    lines = [line for line in section.splitlines() if line.startswith(f"osg-studio {word} ")]
-    assert lines
-    return [shlex.split(line)[1:] for line in lines]
 
 
 def test_the_documented_commands_do_what_they_say(
@@ -115,7 +105,8 @@ def test_the_documented_commands_do_what_they_say(
         *as_another_diver("leader", published_rows(recording_of("circle"))),
     ]
     write_bag(tmp_path / "dives" / "reef", sorted(divers, key=lambda row: row[2]))
-    for command in (*documented("define"), *documented("recognize")):
+    defining = documented("define", below="Recordings")
+    for command in (*defining, *documented("recognize", below="Recordings")):
         ended = osg_studio(*command)
         assert ended.code == 0, ended.error
     assert ended.out.split("\t")[2] == "line"
@@ -135,7 +126,7 @@ def test_the_documented_robot_looks_at_the_pictures_of_a_bag(
     ]
     write_bag(tmp_path / "dives" / "camera", rows)
     language.rename(tmp_path / "pool.json")
-    (command,) = documented("robot")
+    (command,) = documented("robot", below="Recordings")
     ended = osg_studio(*command)
     assert ended.code == 1, ended.error  # nobody is in these pictures
     told = [json.loads(line) for line in ended.out.splitlines()]

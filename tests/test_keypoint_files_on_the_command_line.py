@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language
@@ -13,8 +15,10 @@ from app.recognition.estimation.base import Hand
 from app.recognition.landmark_sets import BODY_25, COCO_18
 from app.recognition.tuning import Tuning
 from tests.command_line import OsgStudio
+from tests.documented import documented
 from tests.keypoint_files.files import (
     renamed,
+    sleap_labels,
     write_deeplabcut,
     write_named,
     write_numbered,
@@ -57,6 +61,31 @@ def test_a_language_is_defined_from_a_folder_of_openpose_and_understands_another
     assert ended.code == 0, ended.error
     (take,) = json.loads(ended.out)["takes"]
     assert (take["label"], take["closed"]) == ("circle", True)
+
+
+def test_the_documented_commands_do_what_they_say(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    library = importlib.import_module("sleap_io")
+    for shape in (circle, line):
+        poses = renamed(recording(shape, landmarks=ARMS), {"right_wrist": "claw"})
+        labels = sleap_labels(library, [poses], tracked=False)
+        library.save_slp(labels, str(tmp_path / f"{shape.__name__}.slp"))
+    write_openpose(tmp_path / "openpose-output", recording(circle, landmarks=ARMS))
+    whole = recording(line)
+    unseen = np.isin(whole.landmarks, ARMS, invert=True)
+    xy = np.where(unseen[:, np.newaxis], np.nan, whole.xy)
+    write_numbered(tmp_path / "landmarks.csv", replace(whole, xy=xy, frame_size=(1920, 1080)))
+    monkeypatch.chdir(tmp_path)
+    (define,) = documented("define", below="Keypoint files")
+    defined = osg_studio(*define)
+    assert defined.code == 0, defined.error
+    of_openpose, of_mediapipe = documented("recognize", below="Keypoint files")
+    ended = osg_studio(*of_openpose)
+    assert ended.out.split("\t")[2] == "circle", ended.error
+    assert "openpose-output: the folder gives no left_pinky" in " ".join(ended.error.split())
+    ended = osg_studio(*of_mediapipe)
+    assert ended.out.split("\t")[2] == "line", ended.error
 
 
 def test_salutes_of_openpose_s_hands_cut_the_takes(

@@ -10,6 +10,7 @@ import pytest
 from app.recognition import Language
 from app.recognition.landmark_sets import COCO_17
 from tests.command_line import OsgStudio
+from tests.documented import documented
 from tests.marker_clips import RATE, marker_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.estimation.marker_models import save_yolo_pose
@@ -22,34 +23,32 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return save_yolo_pose(tmp_path_factory.mktemp("model") / "markers-pose.onnx", side=320)
 
 
+WITHOUT_HANDS = ("--hands", "none", "--water", "off")
+"""There are none beside the markers, which correcting the colours would repaint."""
+
+
 def arguments(model: Path) -> tuple[str, ...]:
-    # Correcting the colours would repaint the markers.
-    return ("--estimator", f"yolo-pose:{model}", "--hands", "none", "--water", "off")
+    return ("--estimator", f"yolo-pose:{model}", *WITHOUT_HANDS)
 
 
 @pytest.mark.slow
-def test_a_language_defined_and_recognised_by_yolo_pose(
-    osg_studio: OsgStudio, tmp_path: Path, model: Path
+def test_a_language_is_defined_and_recognised_by_yolo_pose_as_documented(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    clips = {
-        shape.__name__: marker_clip(tmp_path / f"{shape.__name__}.mkv", shape)
-        for shape in (circle, line)
-    }
-    file = tmp_path / "pool.json"
-    defined = osg_studio(
-        "define",
-        *(f"{label}={clip}" for label, clip in clips.items()),
-        *("--name", "pool", "--output", file),
-        *arguments(model),
-    )
+    for name, shape, frames in (("circle", circle, 30), ("line", line, 30), ("dive", circle, 24)):
+        clip = marker_clip(tmp_path / f"{name}.mkv", shape, frames=frames)
+        clip.rename(clip.with_suffix(".mp4"))
+    (tmp_path / "yolo11n-pose.onnx").symlink_to(model)
+    monkeypatch.chdir(tmp_path)
+    (define,), (recognize,) = (documented(word, below="Models") for word in ("define", "recognize"))
+    defined = osg_studio(*define, *WITHOUT_HANDS)
     assert defined.code == 0, defined.error
-    language = Language.load(file)
+    language = Language.load(tmp_path / "pool.json")
     for gesture in language.gestures:
         assert gesture.salient == ("right_wrist",)
         assert gesture.trajectory is not None
         assert set(gesture.trajectory.landmarks) <= set(COCO_17)
-    again = marker_clip(tmp_path / "again.mkv", circle, frames=24)
-    ended = osg_studio("recognize", again, "--language", file, "--json", *arguments(model))
+    ended = osg_studio(*recognize, "--json", *WITHOUT_HANDS)
     assert ended.code == 0, ended.error
     (take,) = json.loads(ended.out)["takes"]
     assert take["label"] == "circle"

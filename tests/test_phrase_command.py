@@ -8,12 +8,17 @@ import pytest
 from app.recognition import Language
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
+from tests.documented import documented
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 
 
-def test_a_complete_message_is_spoken_back(osg_studio: OsgStudio) -> None:
-    ended = osg_studio("phrase", LANGUAGE, "circle", "square", "three", "circle")
+def test_a_complete_message_is_spoken_back(
+    osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    (command,) = documented("phrase")
+    ended = osg_studio(*command)
     assert (ended.code, ended.out) == (0, "mission: align yourself, 3 times\n")
     assert "circle, square: then circle, three or infinity" in " ".join(ended.error.split())
 

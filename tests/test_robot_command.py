@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
-import shlex
 import signal
 import subprocess
 import sys
@@ -23,19 +21,14 @@ from app.robot.stage_profile import STAGES
 from app.ros_arguments import apart
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
+from tests.documented import documented
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
 from tests.test_layers import modules_of, requirements_of
 
-SHELL = re.findall(r"```sh\n(.*?)```", (ROOT / "docs" / "robots.md").read_text("utf-8"), re.DOTALL)
-DOCUMENTED = [
-    apart(shlex.split(line)[1:])[0]
-    for block in SHELL
-    for line in block.splitlines()
-    if line.startswith("osg-studio ")
-]
-ON_A_CLIP = next(each for each in DOCUMENTED if each[0] == "robot" and each[-1].endswith(".mp4"))
+DOCUMENTED = [apart(command)[0] for command in documented()]
+ON_A_CLIP = documented("robot", below="Try a clip, then a camera")[0]
 
 WITHOUT_THE_WEB_APP = f"""
 import sys
@@ -162,15 +155,24 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
 
 
 def test_the_cost_of_each_stage_is_one_object_and_a_table(
-    osg_studio: OsgStudio, installed_models: None, language: Path, tmp_path: Path
+    osg_studio: OsgStudio,
+    installed_models: None,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    clip = write_clip(tmp_path / "dive.mp4", frames=12)
-    ended = osg_studio("robot", "--language", language, "--source", clip, "--profile-stages")
+    (command,) = documented("robot", below="What each stage costs")
+    spoken, clip = (Path(command[command.index(it) + 1]) for it in ("--language", "--source"))
+    (tmp_path / clip).parent.mkdir(parents=True)
+    (tmp_path / spoken).symlink_to(ROOT / spoken)
+    write_clip(tmp_path / clip, frames=12)
+    monkeypatch.chdir(tmp_path)
+    ended = osg_studio(*command)
     assert ended.code == 0
     profile = json.loads(ended.out)
     assert profile["frames"] == 2
     assert [stage["up_to"] for stage in profile["stages"]] == list(STAGES)
     assert "+ recognition" in ended.error
+    assert f"2 frames, {profile['takes']} take" in " ".join(ended.error.split())
 
 
 @pytest.mark.parametrize(

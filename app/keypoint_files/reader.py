@@ -191,7 +191,8 @@ def _mapped(
             f"--landmark {dropped[0]}=NAME"
         )
     if missing := missing_from(found):
-        notes.append(f"{path.name} gives no {', '.join(missing)}")
+        source = "the folder" if path.is_dir() else "the file"
+        notes.append(f"{source} gives no {', '.join(missing)}")
     return tuple(found), list(found.values()), tuple(notes)
 
 

@@ -48,7 +48,7 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
         followed, most = _by_place(labelled, frames / options.nominal_rate, len(names))
         notes = _notes(most, "the largest is followed")
     if len(labels.videos) > 1:
-        notes += (f"{path.name} holds {len(labels.videos)} videos; the first is read",)
+        notes += (f"the file holds {len(labels.videos)} videos; the first is read",)
     return KeypointTable(
         names=names,
         xy=seen_only(followed[..., :2], followed[..., 2], 0.0),

@@ -145,3 +145,29 @@ def renamed(poses: PoseSequence, names: dict[str, str]) -> PoseSequence:
 def unseen_frames(poses: PoseSequence) -> list[int]:
     """Return the numbers of the frames that show nobody."""
     return [index for index, seen in enumerate(poses.seen) if not seen.any()]
+
+
+def sleap_labels(library: Any, people: list[PoseSequence], *, tracked: bool) -> Any:
+    """Return what SLEAP's own library writes of predictions, with its names of a right side."""
+    landmarks, frames = people[0].landmarks, len(people[0])
+    skeleton = library.Skeleton(nodes=[name.replace("right_", "R_") for name in landmarks])
+    video = library.Video(filename="dive.mp4", open_backend=False)
+    tracks = [library.Track(f"diver {number}") for number in range(len(people))]
+    labelled = [
+        library.LabeledFrame(
+            video=video,
+            frame_idx=index + 100,
+            instances=[
+                library.PredictedInstance.from_numpy(
+                    each.xy[index],
+                    skeleton=skeleton,
+                    point_scores=np.full(len(landmarks), 0.8),
+                    score=0.9,
+                    track=track if tracked else None,
+                )
+                for each, track in zip(people, tracks, strict=True)
+            ],
+        )
+        for index in range(frames)
+    ]
+    return library.Labels(labelled)

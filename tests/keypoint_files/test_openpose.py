@@ -43,7 +43,7 @@ def test_landmarks_come_back_by_their_names(tmp_path: Path, landmarks: LandmarkS
     assert back.confidence is not None
     assert (back.confidence == 0.875).all()
     (told,) = read.recording.warnings
-    assert told.startswith("json gives no left_pinky, right_pinky, left_index")
+    assert told.startswith("the folder gives no left_pinky, right_pinky, left_index")
     assert not read.has_hands
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from app.keypoint_files import KeypointOptions, read_keypoints
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses import PoseSequence
+from tests.keypoint_files.files import sleap_labels
 from tests.recognition.strategies import BODY, circle, recording
 
 POSES = recording(circle, frames=8, landmarks=tuple(BODY))
@@ -27,35 +27,11 @@ def library() -> Any:
     return importlib.import_module("sleap_io")
 
 
-def labels_of(library: Any, people: list[PoseSequence], *, tracked: bool) -> Any:
-    skeleton = library.Skeleton(nodes=[name.replace("right_", "R_") for name in POSES.landmarks])
-    video = library.Video(filename="dive.mp4", open_backend=False)
-    tracks = [library.Track(f"diver {number}") for number in range(len(people))]
-    frames = [
-        library.LabeledFrame(
-            video=video,
-            frame_idx=index + 100,
-            instances=[
-                library.PredictedInstance.from_numpy(
-                    each.xy[index],
-                    skeleton=skeleton,
-                    point_scores=np.full(len(POSES.landmarks), 0.8),
-                    score=0.9,
-                    track=track if tracked else None,
-                )
-                for each, track in zip(people, tracks, strict=True)
-            ],
-        )
-        for index in range(len(POSES))
-    ]
-    return library.Labels(frames)
-
-
 @pytest.mark.parametrize(("ending", "tracked"), [(".slp", True), (".slp", False), (".h5", True)])
 def test_the_larger_person_comes_back(
     library: Any, tmp_path: Path, ending: str, tracked: bool
 ) -> None:
-    labels = labels_of(library, [FAR, POSES], tracked=tracked)
+    labels = sleap_labels(library, [FAR, POSES], tracked=tracked)
     path = tmp_path / f"dive{ending}"
     if ending == ".slp":
         library.save_slp(labels, str(path))

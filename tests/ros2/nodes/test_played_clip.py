@@ -21,6 +21,7 @@ from sensor_msgs.msg import Image
 from app.recognition.video import read_frames
 from osg_ros.pictures import picture_message
 from osg_ros.stamps import nanoseconds_of, stamp_of
+from tests.documented import documented
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import BEST_EFFORT, PATIENCE, RELIABLE, Bench
 from tests.ros2.nodes.keypoint_messages import stamped
@@ -137,8 +138,9 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
 ) -> None:
     said = bench.heard(GestureRecognition, "/auv/gestures")
     seen = bench.heard(Hands, "/auv/hands", BEST_EFFORT)
-    asked = ["robot", "--ros2", "--source", str(clip), "--language", str(language_file)]
-    asked += ["--ros-args", "-r", "__ns:=/auv", "-r", "recognition:=gestures"]
+    (command,) = documented("robot", "--ros2")
+    given = {"pool.json": str(language_file), "0": str(clip)}
+    asked = [given.get(argument, argument) for argument in command]
     for _ in range(ATTEMPTS):
         running = subprocess.Popen(
             [sys.executable, "-m", "app", *asked],
