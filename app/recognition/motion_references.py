@@ -12,10 +12,7 @@ import numpy.typing as npt
 from app.recognition.elastic import ElasticReferences, ElasticViews
 from app.recognition.fusion import fused
 from app.recognition.gesture import Gesture
-from app.recognition.movement import (
-    followed_landmarks,
-    movement,
-)
+from app.recognition.movement import followed_landmarks, movement
 from app.recognition.poses import FloatArray
 from app.recognition.readings import Reading
 from app.recognition.shown_gesture import ShownGesture
