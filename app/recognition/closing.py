@@ -7,6 +7,7 @@ same to the last pixel, in a fifth of the time.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import cv2
@@ -42,18 +43,26 @@ def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]
 def _dilated(bits: int, row: int, diameter: int) -> int:
     """Unite an image with itself moved by every pixel of the disc; `row`: bits in a row.
 
-    The disc is a union of rectangles, from high and narrow to low and wide. All moves go one way,
-    from the disc's first corner on, and are taken back at the end. All rectangles are at least
-    three rows high: moving the image down by one row once spares every one of them a move.
+    The disc is a union of rectangles, from high and narrow to low and wide. All of them are at
+    least three rows high: moving the image down by one row once spares every one of them a move.
+    What is united lies `up` rows and `aside` pixels farther on, which is taken back at the end.
     """
-    radius, reached, united = diameter // 2, 0, 0
-    wide, height = _moved(bits, 0, 1, row), radius
-    for reach, down in _rectangles(diameter):
-        wide = _moved(wide, 2 * reached, 2 * reach, 1)
-        united = _moved(united, 1, 1 + 2 * (height - down), row)
-        united |= wide << (radius - down) * row + radius - reach
-        reached, height = reach, down
-    return _moved(united, 1, 2 * height, row) >> radius * row + radius
+    stages = _stages(diameter)
+    up = sum(stage.lower for stage in stages if stage.by_moving)
+    reached, united, height, aside = 0, 0, diameter // 2, diameter // 2
+    strip = _moved(bits, 0, 1, row)
+    for stage in stages:
+        height -= stage.lower
+        if stage.by_moving:
+            united |= united << stage.lower * row + stage.wider
+            united |= united >> stage.lower * row - stage.wider
+            aside += stage.wider
+            continue
+        up += stage.lower
+        united = _moved(united, 1, 1 + 2 * stage.lower, row)
+        strip, reached = _moved(strip, 2 * reached, 2 * stage.reach, 1), stage.reach
+        united |= strip << up * row + aside - reached
+    return _moved(united, 1, 2 * height, row) >> (up + height) * row + aside
 
 
 def _moved(bits: int, done: int, wanted: int, step: int) -> int:
@@ -65,9 +74,51 @@ def _moved(bits: int, done: int, wanted: int, step: int) -> int:
     return bits
 
 
+@dataclass(frozen=True)
+class _Stage:
+    """The next of the disc's rectangles.
+
+    Attributes
+    ----------
+    reach
+        Pixels to either side.
+    wider, lower
+        By how much, to either side and up and down, than the one before.
+    by_moving
+        Whether moving what is united to either side, and up and down, adds just this one. That
+        takes two moves, where making and adding it takes three or more.
+
+    """
+
+    reach: int
+    wider: int
+    lower: int
+    by_moving: bool
+
+
 @lru_cache(maxsize=8)
-def _rectangles(diameter: int) -> tuple[tuple[int, int], ...]:
-    """How far the disc's rectangles reach to either side, and up and down, the highest first."""
+def _stages(diameter: int) -> tuple[_Stage, ...]:
+    """Return the disc's rectangles, the highest first."""
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (diameter + 1, diameter + 1))
     reaches = disc.sum(axis=1)[diameter // 2 :].astype(int) // 2
-    return tuple(sorted({reach: down for down, reach in enumerate(reaches.tolist())}.items()))
+    rectangles = sorted({reach: down for down, reach in enumerate(reaches.tolist())}.items())
+    stages = [_Stage(rectangles[0][0], 0, 0, by_moving=False)]
+    for index, (reach, down) in enumerate(rectangles[1:], start=1):
+        narrower, higher = rectangles[index - 1]
+        wider, lower = reach - narrower, higher - down
+        before = _pixels(rectangles[:index], higher)
+        moves = ((wider, 0), (-wider, 0), (0, lower), (0, -lower))
+        moved = {(x + across, y + along) for x, y in before for across, along in moves}
+        by_moving = moved == _pixels(rectangles[: index + 1], down)
+        stages.append(_Stage(reach, wider, lower, by_moving))
+    return tuple(stages)
+
+
+def _pixels(rectangles: list[tuple[int, int]], less: int) -> set[tuple[int, int]]:
+    """Return the pixels of some rectangles around the origin, each `less` high up and down."""
+    return {
+        (x, y)
+        for reach, down in rectangles
+        for x in range(-reach, reach + 1)
+        for y in range(less - down, down - less + 1)
+    }

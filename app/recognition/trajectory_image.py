@@ -8,6 +8,7 @@ from functools import cached_property
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.outline import BinaryImage, Outline
 from app.recognition.poses import FloatArray
@@ -93,27 +94,27 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
 
     """
     image: BinaryImage = np.zeros((SIZE, SIZE), dtype=np.uint8)
-    known = np.isfinite(trajectory.xy).all(axis=2)
-    seen = trajectory.xy.reshape(-1, 2) if known.all() else trajectory.xy[known]
+    finite = np.isfinite(trajectory.xy)
+    whole = bool(finite.all())
+    known = np.asarray(finite.all(axis=2))
+    seen = trajectory.xy.reshape(-1, 2) if whole else trajectory.xy[known]
     if not len(seen):
         return Drawing(image, trajectory)
-    low, high = seen.min(axis=0), seen.max(axis=0)
+    low, high = np.minimum.reduce(seen), np.maximum.reduce(seen)
     extent = float((high - low).max())
     if extent < MIN_EXTENT:
         return Drawing(image, trajectory)
     scale = (SIZE - 1 - 2 * MARGIN) / extent
-    for path in np.moveaxis(trajectory.xy, 1, 0):
-        pixels = (path - (low + high) / 2) * scale + (SIZE - 1) / 2
-        for stroke in _strokes(pixels):
+    pixels = (trajectory.xy - (low + high) / 2) * scale + (SIZE - 1) / 2
+    for index in range(len(trajectory.landmarks)):
+        path = pixels[:, index]
+        for stroke in [path] if whole else _strokes(path, known[:, index]):
             _draw_stroke(image, simplified(stroke, simplification))
     return Drawing(image, trajectory)
 
 
-def _strokes(path: FloatArray) -> list[FloatArray]:
-    """Split ``(T, 2)`` at its NaN rows into unbroken stretches."""
-    known = np.isfinite(path).all(axis=1)
-    if known.all():
-        return [path]
+def _strokes(path: FloatArray, known: npt.NDArray[np.bool_]) -> list[FloatArray]:
+    """Split ``(T, 2)`` where it is not known, ``(T,)``, into unbroken stretches."""
     ends = np.flatnonzero(np.diff(known, prepend=False, append=False))
     return [path[start:end] for start, end in ends.reshape(-1, 2)]
 

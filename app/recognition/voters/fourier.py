@@ -28,8 +28,10 @@ by less than a twelfth of its period."""
 _KEPT = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
 
 
-_BEGUN = np.exp(-2j * np.pi / START_POINTS * np.outer(_KEPT, np.arange(START_POINTS)))
-"""``(20, START_POINTS)``: what beginning elsewhere does to each harmonic."""
+_TURNS = 2 * np.pi / START_POINTS * np.outer(_KEPT, np.arange(START_POINTS))
+_BEGUN = np.concatenate([np.cos(_TURNS), -np.sin(_TURNS)])
+"""``(40, START_POINTS)``: what beginning elsewhere does to the real and the imaginary part of each
+harmonic's product with another outline's."""
 
 
 class FourierDescriptors:
@@ -58,8 +60,13 @@ class FourierDescriptors:
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the distances at the best start points, ``(G,)`` between 0 and 2."""
         half = len(query) // 2
-        begun = (query[:half] + 1j * query[half:])[:, None] * _BEGUN
-        correlation = (references @ np.concatenate([begun.real, begun.imag])).max(axis=1)
+        (real, imaginary), (reals, imaginaries) = (
+            (both[..., :half], both[..., half:]) for both in (query, references)
+        )
+        products = np.concatenate(
+            [reals * real + imaginaries * imaginary, imaginaries * real - reals * imaginary], axis=1
+        )
+        correlation = (products @ _BEGUN).max(axis=1)
         energy = query @ query + np.einsum("gd,gd->g", references, references)
         # The difference of nearly equal sums: what is below rounding error is 0.
         squares = energy - 2 * correlation
