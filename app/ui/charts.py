@@ -26,10 +26,11 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
     """Say what was recognised, whether that was meant, and who voted for it."""
     label, votes = recognition.label, recognition.counted
     count = sum(vote == recognition.nearest for vote in votes.values())
+    confidence = f"confidence {100 * recognition.confidence:.0f} %"
     support = (
-        f"{count} of {len(votes)} voters, confidence {recognition.confidence:.0%}"
+        f"{count} of {len(votes)} voters, {confidence}"
         if votes
-        else f"confidence {recognition.confidence:.0%}"
+        else confidence
     )
     if label is None:
         badge, kind = "?", "expected"

@@ -10,7 +10,10 @@ import { openTopics } from "./topics.js";
 import { did, tellDone } from "./undo.js";
 
 export const BUSY = new Set(["queued", "running"]);
+const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
 const STAGES = { queued: "Waiting for its turn", starting: "Starting", poses: "Finding poses", saving: "Saving" };
+
+let inView = null; // the clip that the list was last scrolled to
 
 export async function reloadClips() {
   const clips = await attempt("Loading the clips", api.clips.list);
@@ -115,9 +118,34 @@ function draw(clip, element) {
   return drawn;
 }
 
-export function drawClips({ clips }) {
+export function drawClips({ clips, clip: chosen }) {
   byId("clip-count").textContent = clips.length ? String(clips.length) : "";
-  reconcile(byId("clips"), clips, (clip) => clip.id, draw);
+  const search = byId("find-clip");
+  search.hidden = clips.length <= SEEN_AT_ONCE;
+  const wanted = search.hidden ? "" : search.value.trim().toLowerCase();
+  const shown = clips.filter(({ name }) => name.toLowerCase().includes(wanted));
+  const list = byId("clips");
+  reconcile(list, shown, (clip) => clip.id, draw);
+  byId("no-clip").textContent = clips.length && !shown.length ? `No clip is called \u201c${search.value.trim()}\u201d.` : "";
+  if (chosen !== inView && list.clientHeight) bringIntoView(list, chosen);
+}
+
+/** Scroll the list, and nothing else, to the clip on display. */
+function bringIntoView(list, chosen) {
+  const item = list.querySelector(".chosen");
+  if (!item) return;
+  inView = chosen;
+  const top = item.offsetTop - list.offsetTop;
+  const seen = top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
+  if (!seen) list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
+}
+
+/** Let the clips be found by their names. */
+export function findClips() {
+  byId("find-clip").oninput = () => {
+    inView = null; // Where the clip on display is among those found is another place.
+    drawClips(state);
+  };
 }
 
 /** "circle_a_demonstration.mp4" as people read it. */

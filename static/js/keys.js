@@ -79,7 +79,7 @@ export function showKeys() {
     list,
     h("div", { className: "dialog-actions" },
       h("button", { type: "button", onclick: () => { dialog.close(); import("./tour.js").then(({ startTour }) => startTour()); } }, "Tour"),
-      h("button", { type: "button", className: "primary", onclick: () => dialog.close() }, "Close"))));
+      h("button", { type: "button", className: "primary", autofocus: true, onclick: () => dialog.close() }, "Close"))));
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;
   dialog.showModal();

@@ -2,7 +2,8 @@
 
 import { showJoint, showMoment } from "./alignment.js";
 import * as api from "./api.js";
-import { drawClips, drawSamples } from "./clips.js";
+import { copyLink } from "./clipboard.js";
+import { drawClips, drawSamples, findClips } from "./clips.js";
 import { byId, icon } from "./dom.js";
 import { drawGestures } from "./gestures.js";
 import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
@@ -12,7 +13,7 @@ import { rememberFrame } from "./playback.js";
 import { drawConnection, followServer } from "./server.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
 import { drawNow } from "./timeline.js";
-import { attempt } from "./toasts.js";
+import { attempt, toast } from "./toasts.js";
 import { offerTour } from "./tour.js";
 import { drawTransport } from "./transport.js";
 import { drawTuning } from "./tuning.js";
@@ -66,19 +67,34 @@ function loadWithSelection() {
   follow(["question", "takes"], answerQuestion);
 }
 
+const OF_A_CLIP = new Set([null, "studio", "gesture"]); // Views that show the clip on display.
+
+/** Who follows a link must not take what is shown instead for what was meant. */
+function tellWhatIsGone({ clip, language }) {
+  const gone = [
+    clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,
+    language && language !== state.language ? "language" : null,
+  ].filter(Boolean).join(" and the ");
+  if (gone) toast(`The ${gone} of this link cannot be found`, "It was deleted, or is in another studio. Another one is shown instead.", { kind: "error" });
+}
+
 async function start() {
   byId("new-language").append(icon("plus"));
   const linked = location.search !== "";
   update(readUrl());
   rememberFrame(state.frame);
+  const { clip, language } = state;
   followHistory();
   addEventListener("popstate", reloadLanguages);
   followViews();
   listenToKeys();
+  byId("copy-link").append(icon("link"));
+  byId("copy-link").onclick = copyLink;
   byId("keys").onclick = showKeys;
   byId("record-clip").onclick = () => go("live", { source: null });
   bindUndo();
   acceptFiles();
+  findClips();
   manageLanguages();
   stageButtons();
   followTheme();
@@ -90,6 +106,7 @@ async function start() {
     openWorkspace().catch(() => null),
   ]);
   update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
+  if (linked && clips) tellWhatIsGone({ clip, language });
   if (state.clip && clips && !selectedClip()) update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();

@@ -4,7 +4,7 @@ import { byId, h, icon } from "./dom.js";
 import { moment } from "./format.js";
 import { bind } from "./keys.js";
 import { loop, play, step } from "./playback.js";
-import { selectedClip, state } from "./state.js";
+import { selectedClip, state, update } from "./state.js";
 import { setEnd, setStart } from "./timeline.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2];
@@ -20,6 +20,14 @@ function shuttle(direction) {
   const { playing, speed: now } = state.position ?? {};
   const same = playing && Math.sign(now) === direction;
   play(direction * (same ? Math.min(FASTEST, 2 * Math.abs(now)) : 1));
+}
+
+/** Choose the take after the one on display, or before it. */
+function neighbour(by) {
+  const { takes, take } = state;
+  if (!takes?.length) return;
+  const next = take === null ? (by > 0 ? 0 : takes.length - 1) : take + by;
+  if (takes[next]) update({ take: next, start: null, end: null, recognition: null });
 }
 
 const button = (name, label, keys, onclick) => h("button", { type: "button", className: "quiet icon", id: `do-${name}`, "aria-label": label, title: `${label} (${keys})`, onclick }, icon(name));
@@ -48,6 +56,8 @@ export function buildTransport() {
   keys(["J"], "Play backwards; again: twice as fast", () => shuttle(-1));
   keys(["K"], "Pause", () => play(0));
   keys(["L"], "Play; again: twice as fast", () => shuttle(1));
+  keys(["T"], "Next take", () => neighbour(1));
+  keys(["Shift+T"], "Take before", () => neighbour(-1));
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
 }

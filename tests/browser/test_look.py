@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def library(server: Running) -> Iterator[Library]:
     with httpx.Client(base_url=server.address, timeout=60) as client:
-        yield library_of(server, client, "look")
+        yield library_of(server, client, "a name as long as those that cameras give to their files")
 
 
 def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library) -> None:
@@ -31,6 +31,9 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     expect(page.locator("#outcome")).to_contain_text("as expected")
     page.get_by_role("list", name="Gestures").scroll_into_view_if_needed()
     expect(page.get_by_role("button", name="Delete circle", exact=True)).to_be_in_viewport()
+    page.get_by_role("button", name="Change circle", exact=True).click()
+    expect(page.get_by_label("Start frame")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 def test_colours_follow_the_system_in_the_page_and_in_the_frame(
@@ -61,7 +64,7 @@ def test_every_control_has_a_name_and_shows_the_focus(
     )
     assert nameless == []
     seen = set()
-    for _ in range(12):
+    for _ in range(14):
         page.keyboard.press("Tab")
         focused = page.evaluate(
             """() => {

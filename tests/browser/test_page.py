@@ -83,6 +83,41 @@ def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
     assert workspace_of(page) == workspace
 
 
+def test_a_link_is_copied_and_says_when_what_it_shows_is_gone(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, "circle", "line", name="two takes.mp4")
+    for number in range(6):
+        add_clip(server, name=f"other {number}.mp4")
+    page = open_page({**library.address, "clip": clip}, scene=False)
+    clips = page.get_by_role("list", name="Clips").get_by_role("listitem")
+    find = page.get_by_label("Find clips")
+    find.fill("Two T")
+    expect(clips).to_have_count(1)
+    find.fill("no such clip")
+    expect(page.get_by_text("No clip is called")).to_be_visible()
+    find.fill("")
+    expect(page.get_by_role("button", name="Show two takes.mp4")).to_be_in_viewport()
+    find.blur()
+    expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    expect(page.locator("#clock")).to_have_text(re.compile("frame"))
+    page.keyboard.press("t")
+    expect(page.get_by_role("button", name=re.compile("^Take 2"))).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy a link to this view").click()
+    expect(page.get_by_text("Link copied")).to_be_visible()
+    link = page.evaluate("navigator.clipboard.readText()")
+    assert f"clip={clip}&take=1" in link
+    library.client.delete(f"/api/v1/clips/{clip}").raise_for_status()
+    colleague = open_page(scene=False)
+    colleague.goto(link)
+    expect(colleague.get_by_role("alert").get_by_text("The clip of this link")).to_be_visible()
+
+
 def test_two_tabs_are_two_workspaces_and_hear_of_each_others_changes(
     open_page: OpenPage, library: Library
 ) -> None:

@@ -81,7 +81,7 @@ def test_the_verdict_says_in_words_what_came_out(
 ) -> None:
     text = Elements(charts.verdict(recognition(label=label), expected)).text
     assert words in text
-    assert "2 of 3 voters, confidence 62%" in text
+    assert "2 of 3 voters, confidence 62 %" in text
 
 
 def test_the_vote_table_has_a_row_per_voter_and_the_most_votes_come_first() -> None:

@@ -1,6 +1,7 @@
 // The language as a file for the robot: what it holds, what it needs, and how it is used there.
 
 import * as api from "../api.js";
+import { copy } from "../clipboard.js";
 import { byId, h } from "../dom.js";
 import { bytes, plural, readable } from "../format.js";
 import { state } from "../state.js";
@@ -16,7 +17,7 @@ const FORMATS = {
 const listed = (names) => names.map(readable).join(", ");
 
 /** A name that a shell takes without quotes. */
-const fileName = (name, { suffix = ".json" }) => `${name.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}${suffix}`;
+const fileName = (name, { suffix = ".json" }) => `${name.normalize("NFKD").replace(/\p{Mark}/gu, "").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "") || "language"}${suffix}`;
 
 function choice({ format, bytes: size }, chosen, onchange) {
   const { title, text } = FORMATS[format];
@@ -40,15 +41,8 @@ function facts(contents, language) {
 }
 
 function commandLine(text) {
-  const copy = h("button", { type: "button", onclick: async () => {
-    try {
-      await navigator.clipboard.writeText(text());
-      toast("Command copied", text());
-    } catch {
-      toast("Could not copy", "The browser does not let this page use the clipboard; select the command and copy it.", { kind: "error" });
-    }
-  } }, "Copy");
-  return { copy, code: h("code", { id: "export-command" }, text()) };
+  const button = h("button", { type: "button", onclick: () => copy(text(), "Command copied") }, "Copy");
+  return { button, code: h("code", { id: "export-command" }, text()) };
 }
 
 /** Show what leaves with the language on display. */
@@ -64,7 +58,7 @@ export async function openExport() {
   let format = contents.files[0].format;
   const name = () => fileName(contents.name, FORMATS[format]);
   const command = () => FORMATS[format].command(name());
-  const { copy, code } = commandLine(command);
+  const { button, code } = commandLine(command);
   const download = h("a", { className: "button primary" }, "Download");
   const show = () => {
     download.download = name();
@@ -79,7 +73,7 @@ export async function openExport() {
     h("p", { className: "dim" }, `${contents.name}, revision ${contents.revision}, ${plural(language.gestures.length, "gesture")}`),
     h("div", { role: "radiogroup", "aria-label": "Format", className: "export-choices" }, contents.files.map((file, index) => choice(file, index === 0, choose))),
     facts(contents, language),
-    h("div", { className: "export-command" }, code, copy),
+    h("div", { className: "export-command" }, code, button),
     h("div", { className: "dialog-actions" }, h("button", { type: "button", onclick: () => dialog.close() }, "Close"), download)));
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;

@@ -9,6 +9,7 @@ import { go } from "../views.js";
 import { compare, editLink } from "./links.js";
 import { told } from "./report.js";
 
+const AT_FIRST = 5; // Warnings shown before the matrix and the map; the worst come first.
 const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.
 
 /** Let a switch of some gestures count; one undo takes it back. */
@@ -59,5 +60,14 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
 /** Draw the warnings of a report; `only` keeps those about the same gestures. */
 export function warningsList(warnings, only = null) {
   const shown = only ? warnings.filter(({ gestures }) => gestures.length === only.length && gestures.every((label) => only.includes(label))) : warnings;
-  return shown.length ? h("ul", { className: "findings", "aria-label": "Warnings" }, shown.map(warning)) : null;
+  if (!shown.length) return null;
+  const list = h("ul", { className: "findings", "aria-label": "Warnings" }, shown.slice(0, AT_FIRST).map(warning));
+  if (shown.length <= AT_FIRST) return list;
+  const rest = h("button", { type: "button" }, `Show all ${shown.length} warnings`);
+  rest.onclick = () => {
+    list.append(...shown.slice(AT_FIRST).map(warning));
+    list.children[AT_FIRST].querySelector("button, a").focus();
+    rest.remove();
+  };
+  return h("div", {}, list, rest);
 }
