@@ -34,6 +34,14 @@ def exchanged() -> Recording:
     return replace(recording, poses=with_sides_exchanged(recording.poses, range(32, 40)))
 
 
+def opened_at_a_mistake(open_page: OpenPage, server: Running, library: Library) -> Page:
+    """Open the page at a circle that is taken for a line, for six reasons."""
+    clip = add_clip(server, recording=exchanged(), name="sides exchanged.mp4")
+    mistaken = replace(library, clip=clip)
+    recognition = mistaken.recognise("circle", profile="paper")
+    return open_page({**mistaken.address, "recognition": recognition}, scene=False)
+
+
 def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
     """Press a change that would have helped, and wait for what came of it."""
     page.get_by_role("region", name="Why").get_by_role("button", name=words).first.click()
@@ -45,10 +53,7 @@ def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
 def test_every_kind_of_change_is_tried_and_taken_back(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
-    clip = add_clip(server, recording=exchanged(), name="sides exchanged.mp4")
-    mistaken = replace(library, clip=clip)
-    recognition = mistaken.recognise("circle", profile="paper")
-    page = open_page({**mistaken.address, "recognition": recognition}, scene=False)
+    page = opened_at_a_mistake(open_page, server, library)
     outcome = page.locator("#outcome")
     for words in (
         "with exchanged sides put right",
@@ -69,10 +74,7 @@ def test_every_kind_of_change_is_tried_and_taken_back(
 def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
-    clip = add_clip(server, recording=exchanged(), name="sides exchanged.mp4")
-    mistaken = replace(library, clip=clip)
-    recognition = mistaken.recognise("circle", profile="paper")
-    page = open_page({**mistaken.address, "recognition": recognition}, scene=False)
+    page = opened_at_a_mistake(open_page, server, library)
     trial = try_out(page, WEIGHT)
     trial.get_by_role("button", name="Keep").click()
     told = page.locator("#tuning")
