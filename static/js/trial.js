@@ -50,8 +50,10 @@ export async function tryOut({ change }) {
   }
 }
 
-function discard({ base, edited }) {
-  if (edited) undo();
+async function discard({ base, edited }) {
+  update({ trial: null });
+  // What is tried next starts from the language as it was.
+  if (edited) await undo();
   update(base);
 }
 

@@ -66,11 +66,11 @@ async function step(from, to, how, words) {
 // One after the other: a second key press may come while the first still waits for the server.
 let working = Promise.resolve();
 
-/** Take back the newest deed. */
-export const undo = () => { working = working.then(() => step(done, undone, "back", "Undone")); };
+/** Take back the newest deed; resolves when that is done. */
+export const undo = () => (working = working.then(() => step(done, undone, "back", "Undone")));
 
-/** Do again what was taken back last. */
-export const redo = () => { working = working.then(() => step(undone, done, "again", "Done again")); };
+/** Do again what was taken back last; resolves when that is done. */
+export const redo = () => (working = working.then(() => step(undone, done, "again", "Done again")));
 
 function keep() {
   sessionStorage.setItem(KEY, JSON.stringify({ done, undone, heads }));
