@@ -82,7 +82,7 @@ class Movement:
 
         The mean over the steps of the summed squares of all landmarks; what does not move stays.
         """
-        return sized(self.paths - self.paths.mean(axis=0))
+        return sized(self.paths - np.add.reduce(self.paths) / len(self.paths))
 
     @cached_property
     def under_way(self) -> FloatArray:

@@ -27,11 +27,7 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
     label, votes = recognition.label, recognition.counted
     count = sum(vote == recognition.nearest for vote in votes.values())
     confidence = f"confidence {100 * recognition.confidence:.0f} %"
-    support = (
-        f"{count} of {len(votes)} voters, {confidence}"
-        if votes
-        else confidence
-    )
+    support = f"{count} of {len(votes)} voters, {confidence}" if votes else confidence
     if label is None:
         badge, kind = "?", "expected"
         text = f"Not recognised. Nearest is <b>{escape(recognition.nearest)}</b>"

@@ -1,6 +1,5 @@
 """Voter: Hu's seven moment invariants."""
 
-import cv2
 import numpy as np
 
 from app.recognition.poses import FloatArray
@@ -14,10 +13,6 @@ Invariants of strokes lie between 1 and 1e-10. Those that are zero in theory, fo
 figures, come out anywhere up to this when a person draws them, and on a plain logarithm their
 noise would outweigh the invariants that mean something.
 """
-
-
-ORDERS = ((2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
-"""Powers of x and y in the moments that the invariants are made of."""
 
 
 class HuMoments:
@@ -37,8 +32,15 @@ class HuMoments:
 
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return the seven invariants, ``(7,)``."""
-        moments = {f"nu{p}{q}": drawing.moments.central(p, q) for p, q in ORDERS}
-        invariants = np.asarray(cv2.HuMoments(moments), dtype=np.float64).ravel()
+        nu = drawing.moments.central
+        # Hu's sums are products of complex moments, which a rotation merely turns (Flusser 2000).
+        spread, ellipse = nu(2, 0) + nu(0, 2), complex(nu(2, 0) - nu(0, 2), 2 * nu(1, 1))
+        lean = complex(nu(3, 0) + nu(1, 2), nu(2, 1) + nu(0, 3))
+        triangle = complex(nu(3, 0) - 3 * nu(1, 2), 3 * nu(2, 1) - nu(0, 3))
+        against = lean.conjugate()
+        turned = triangle * against**3
+        sizes = (spread, abs(ellipse) ** 2, abs(triangle) ** 2, abs(lean) ** 2)
+        invariants = np.array([*sizes, turned.real, (ellipse * against**2).real, turned.imag])
         return np.asarray(np.sign(invariants) * np.log10(1 + np.abs(invariants) / FLOOR))
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
