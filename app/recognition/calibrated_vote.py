@@ -175,7 +175,8 @@ class CalibratedVote:
         distances, rows = self._compared(trajectory, drawn)
         shares = contributions(distances, self._say, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
-        factors[rows >= 0] = self._motions.penalties[rows[rows >= 0]]
+        moved = rows >= 0
+        factors[moved] = self._motions.penalties[rows[moved]]
         turned = np.zeros(len(rows))
         backward = factors > 1
         turned[backward] = (factors[backward] - 1) * scores[backward]

@@ -129,7 +129,7 @@ def contributions(distances: FloatArray, say: FloatArray, between: FloatArray) -
     shape = (-1,) + (1,) * (distances.ndim - 1)
     known = np.isfinite(distances)
     if known.all() and (whole := say.sum()) > 0:
-        return np.asarray(say.reshape(shape) * (distances / between.reshape(shape)) / whole)
+        return np.asarray(distances * (say / (between * whole)).reshape(shape))
     weight = np.where(known, say.reshape(shape), 0.0)
     relative = np.where(known, distances, 0.0) / between.reshape(shape)
     total = np.broadcast_to(weight.sum(axis=0), weight.shape)

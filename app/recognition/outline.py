@@ -46,18 +46,20 @@ class Outline:
 
     @classmethod
     def of(cls, image: BinaryImage) -> Outline:
-        """Close gaps and follow the outer contours (Suzuki and Abe 1985)."""
-        left, top, width, height = cv2.boundingRect(image)
-        strokes = image[top : top + height, left : left + width]
+        """Close gaps and follow the outer contours (Suzuki and Abe 1985).
+
+        The closer the image is cut around the strokes, the less there is to do.
+        """
+        height, width = image.shape
         border = CLOSING_DIAMETER // 2 + 1
         row = -(-(width + 2 * border) // 8) * 8
         padded = np.zeros((height + 2 * border, row), dtype=np.uint8)
-        padded[border : border + height, border : border + width] = strokes
+        padded[border : border + height, border : border + width] = image
         found, _ = cv2.findContours(
             closed(padded, CLOSING_DIAMETER),
             cv2.RETR_EXTERNAL,
             cv2.CHAIN_APPROX_NONE,
-            offset=(left - border, top - border),
+            offset=(-border, -border),
         )
         contours = [np.asarray(contour[:, 0], dtype=np.int32) for contour in found]
         if len(contours) > 1:

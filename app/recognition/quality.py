@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.jumps import body_unit
-from app.recognition.poses import PoseSequence
+from app.recognition.poses import FloatArray, PoseSequence
 from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
 from app.recognition.wording import readable
 
@@ -65,19 +66,26 @@ def fault(
     for name in landmarks:
         if name not in poses.landmarks:
             continue
-        path = trajectory.xy[:, trajectory.landmarks.index(name)]
-        finite = np.isfinite(path)
-        seen = (finite[:, 0] & finite[:, 1]).nonzero()[0]
-        time, places = trajectory.time[seen], path[seen]
+        index = trajectory.landmarks.index(name)
+        time, places = trajectory.time, trajectory.xy[:, index]
+        if not np.isfinite(places).all():
+            seen = np.flatnonzero(np.isfinite(places).all(axis=1))
+            followed = _followed(time, seen) / poses.duration
+            if followed < LEAST_FOLLOWED:
+                only = f"only {followed:.0%} of its {poses.duration:.1f} s"
+                return f"the {readable(name)} is followed for {only}"
+            time, places = time[seen], places[seen]
         lasts = time[1:] - time[:-1]
-        bridged = (lasts <= MAX_GAP_SECONDS) | (seen[1:] - seen[:-1] == 1)
-        followed = lasts[bridged].sum() / poses.duration
-        if followed < LEAST_FOLLOWED:
-            only = f"only {followed:.0%} of its {poses.duration:.1f} s"
-            return f"the {readable(name)} is followed for {only}"
         steps = places[1:] - places[:-1]
         far = np.einsum("td,td->t", steps, steps) > (LEAP * unit) ** 2
         leaps = np.count_nonzero(far & (lasts <= LEAP_SECONDS)) / len(lasts)
         if leaps > MOST_LEAPS:
             return f"the {readable(name)} leaps over a torso length in {leaps:.0%} of its frames"
     return None
+
+
+def _followed(time: FloatArray, seen: npt.NDArray[np.intp]) -> float:
+    """Add up the seconds between moments at which a landmark was seen, without longer gaps."""
+    lasts = np.diff(time[seen])
+    bridged = (lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)
+    return float(lasts[bridged].sum())

@@ -99,6 +99,11 @@ def novelty_by_view(
     ``(K, G)``: the weighted means of distances over thresholds; NaN where no voter has both.
 
     """
+    if np.isfinite(distances).all():
+        # What has no threshold is divided by infinity, and so counts nothing.
+        total = weights @ np.isfinite(thresholds)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(weights @ (distances / thresholds) / total)
     known = np.isfinite(distances) & np.isfinite(thresholds)
     relative = np.where(known, distances, 0.0) / np.where(known, thresholds, 1.0)
     total = weights @ known

@@ -57,19 +57,25 @@ class Drawing:
     trajectory: Trajectory | None = None
 
     @cached_property
+    def strokes(self) -> BinaryImage:
+        """The part of the image that has strokes, ``(0, 0)`` where none has."""
+        left, top, width, height = cv2.boundingRect(self.image)
+        return self.image[top : top + height, left : left + width]
+
+    @cached_property
     def outline(self) -> Outline:
         """The outer contours of the strokes, followed once for all voters that measure them."""
-        return Outline.of(self.image)
+        return Outline.of(self.strokes)
 
     @cached_property
     def moments(self) -> StrokeMoments:
         """The moments of the strokes, measured once for all voters that are made of them."""
-        return StrokeMoments.of(self.image)
+        return StrokeMoments.of(self.strokes)
 
     @property
     def empty(self) -> bool:
         """Tell whether there is no stroke in the image."""
-        return cv2.countNonZero(self.image) == 0
+        return self.strokes.size == 0
 
 
 def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Drawing:
