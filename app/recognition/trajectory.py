@@ -72,7 +72,10 @@ class Trajectory:
 
         """
         if not poses.seen.any():
-            raise PoseError(f"none of the {len(poses)} frames shows a landmark: nothing to follow")
+            raise PoseError(
+                f"none of the {len(poses)} frames shows a landmark: nothing to follow; choose a "
+                "range in which the diver is seen"
+            )
         time = poses.time - poses.time[0]
         centre, length = poses.torso_centre(), poses.torso_length()
         if centre is None or length is None:

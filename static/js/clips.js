@@ -59,8 +59,10 @@ export function statusText(clip, job) {
 async function remove(clip) {
   const done = await attempt("Deleting the clip", async () => { await api.clips.remove(clip.id); return true; });
   if (!done) return;
-  if (state.clip === clip.id) select(null);
+  const at = state.clips.findIndex(({ id }) => id === clip.id);
   await reloadClips();
+  // The next one moves up to its place, as in every list.
+  if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
   did({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
   tellDone("Clip deleted", clip.name);
 }

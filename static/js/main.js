@@ -75,7 +75,7 @@ function tellWhatIsGone({ clip, language }) {
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,
     language && language !== state.language ? "language" : null,
   ].filter(Boolean).join(" and the ");
-  if (gone) toast(`The ${gone} of this link cannot be found`, "It was deleted, or is in another studio. Another one is shown instead.", { kind: "error" });
+  if (gone) toast(`The ${gone} of this link cannot be found`, `It was deleted, or is in another studio.${state.clips.length ? " Another one is shown instead." : ""}`, { kind: "error" });
 }
 
 async function start() {

@@ -57,6 +57,7 @@ async function step(from, to, how, words) {
     from.pop();
     to.push(deed);
     keep();
+    forgetOffers();
     toast(words, deed.title);
   } catch (error) {
     complain(error, words);
@@ -76,10 +77,14 @@ function keep() {
   sessionStorage.setItem(KEY, JSON.stringify({ done, undone, heads }));
 }
 
+/** Undo takes back the newest deed, so older messages must not offer it any more. */
+function forgetOffers() {
+  for (const other of byId("toasts").querySelectorAll(".undoable")) other.remove();
+}
+
 /** Show what was done, with a button that takes it back. */
 export function tellDone(title, detail = "") {
-  // Undo takes back the newest deed, so an older message must not offer it any more.
-  for (const other of byId("toasts").querySelectorAll(".undoable")) other.remove();
+  forgetOffers();
   const told = toast(title, detail, { action: { label: "Undo", run: undo } });
   told.classList.add("undoable");
 }

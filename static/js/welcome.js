@@ -63,6 +63,9 @@ function welcome(samples, languages) {
   ];
 }
 
+/** For when the clip on display was deleted elsewhere. */
+const noClip = () => h("div", { className: "welcome-none" }, h("h1", {}, "No clip is shown"), h("p", { className: "dim" }, "Choose one from the list, or drop another one."));
+
 /** The clip's own picture under the skeleton; `showProgress` moves both on. */
 function progressPanel(clip) {
   // The video of a dive recording is made while its poses are found.
@@ -103,12 +106,13 @@ export function drawWelcome({ clips, uploads, samples, languages, jobs, loaded }
   const clip = selectedClip();
   const busy = clip !== null && BUSY.has(clip.status);
   const nothing = loaded && !clips.length && !uploads.length;
+  const unchosen = loaded && clips.length > 0 && clip === null && !uploads.length;
   const asks = clip !== null && needsTopic(clip);
-  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : nothing ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}` : "";
+  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : unchosen ? "unchosen" : nothing ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}` : "";
   box.hidden = !shows;
   if (box.dataset.shows !== shows) {
     box.dataset.shows = shows;
-    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : nothing ? [h("div", {}, welcome(samples, languages))] : []));
+    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : unchosen ? [noClip()] : nothing ? [h("div", {}, welcome(samples, languages))] : []));
   }
   if (busy) showProgress(box, clip, jobs.get(clip.job_id));
 }

@@ -153,6 +153,20 @@ def test_leaving_a_changed_gesture_asks_first(open_page: OpenPage, library: Libr
     expect(page.get_by_label("Description")).to_have_value("")
 
 
+def test_a_draft_survives_that_its_language_is_deleted_elsewhere(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Description").fill("half finished")
+    expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+    library.client.delete(f"/api/v1/languages/{library.language}").raise_for_status()
+    alert = page.get_by_role("alert").filter(has_text="was deleted elsewhere")
+    expect(page.get_by_role("heading", name="Edit circle")).to_be_hidden()
+    alert.get_by_role("button", name="Bring it back").click()
+    expect(page.get_by_label("Description")).to_have_value("half finished")
+    expect(page.get_by_label("Language", exact=True)).to_have_value(library.language)
+
+
 def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
     open_page: OpenPage, library: Library
 ) -> None:

@@ -163,6 +163,7 @@ def test_a_deleted_clip_comes_back(open_page: OpenPage, library: Library) -> Non
     name = title.inner_text()
     page.get_by_role("button", name=f"Delete {name}").click()
     expect(page.get_by_role("button", name=f"Show {name}")).to_have_count(0)
+    expect(page.locator("#clips .chosen")).to_have_count(1)
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("button", name=f"Show {name}")).to_have_attribute(
         "aria-pressed", "true"

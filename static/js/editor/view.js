@@ -1,10 +1,12 @@
 // One gesture being made or changed: nothing is saved before "Save", and nothing is lost until then.
 
+import * as api from "../api.js";
 import { h } from "../dom.js";
 import { ago } from "../format.js";
 import { bind } from "../keys.js";
+import { choose, reloadLanguages } from "../languages.js";
 import { follow, selectedRange, state } from "../state.js";
-import { complain, toast } from "../toasts.js";
+import { attempt, complain, toast } from "../toasts.js";
 import { tellDone } from "../undo.js";
 import { go, guard } from "../views.js";
 import { written } from "./command.js";
@@ -147,12 +149,33 @@ function close() {
   editor = null;
 }
 
-/** The editor was left: by the browser's Back without being asked, so say that nothing is lost. */
+/** The editor was left without being asked, as by the browser's Back: say that nothing is lost. */
 function left() {
-  const { gesture } = editor?.about ?? {};
+  const { gesture, language } = editor?.about ?? {};
   const kept = editor && isKept();
   close();
-  if (kept) toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, { action: { label: "Go on editing", run: () => go("gesture", { gesture }) } });
+  if (!kept) return;
+  const away = state.view !== "gesture" || state.language !== language.id;
+  const goOn = async () => {
+    if (state.language !== language.id) await choose(language.id);
+    await go("gesture", { gesture });
+  };
+  toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, { action: away ? { label: "Go on editing", run: goOn } : null });
+}
+
+/** The language was deleted elsewhere: another one's gesture of the same label is not what was edited. */
+function bereft() {
+  const { gesture, language: { id, name } } = editor.about;
+  const kept = isKept();
+  close();
+  go(null, { gesture: null });
+  const restore = async () => {
+    await attempt("Bringing the language back", () => api.languages.restore(id));
+    await reloadLanguages();
+    await choose(id);
+    await go("gesture", { gesture });
+  };
+  toast(`\u201c${name}\u201d was deleted elsewhere`, kept ? "The draft is kept, and comes back with the language." : "", { kind: "error", action: { label: "Bring it back", run: restore } });
 }
 
 const leave = () => go(null, { gesture: null });
@@ -168,17 +191,18 @@ function explain(section) {
 
 /** Build the view, and build it anew when something else is edited. */
 export function open(section) {
-  follow(["view", "gesture", "gestures", "language", "clip", "clips", "takes", "timeline", "loaded"], () => {
+  follow(["view", "gesture", "gestures", "languages", "language", "clip", "clips", "takes", "timeline", "loaded"], () => {
     if (state.view !== "gesture") return left();
+    if (editor && !state.languages.some(({ id }) => id === editor.about.language.id)) return bereft();
     const about = subject();
     const known = about && (about.gesture === null || about.language.gestures.some((each) => each.label === about.gesture));
     if (!known) {
-      close();
-      if (state.loaded && state.gestures && (state.gesture || !state.clip)) explain(section);
+      left();
+      if (state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip)) explain(section);
       return undefined;
     }
     if (editor?.about.key === about.key) return adopt(about);
-    close();
+    left();
     return build(section, about);
   });
   // What could not be asked while the server was away is asked now.
