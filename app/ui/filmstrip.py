@@ -73,6 +73,14 @@ class Filmstrip:
         """Count the frames decoded so far."""
         return len(self._indices)
 
+    def kept(self, frame: int) -> int:
+        """Return which of the frames that will be kept is nearest to `frame`."""
+        kept = (self._last - self._first) // self._stride
+        below = min(max((frame - self._first) // self._stride, 0), kept)
+        above = min(below + 1, kept)
+        lower, upper = (self._first + step * self._stride for step in (below, above))
+        return lower if abs(frame - lower) <= abs(upper - frame) else upper
+
     def nearest(self, frame: int) -> tuple[int, Image] | None:
         """Return index and image ``(H, W, 3)`` RGB of the decoded frame nearest to `frame`.
 

@@ -31,6 +31,9 @@ class Position:
         Times as fast as the camera saw it; negative is backwards.
     loop
         Whether the range on display is played over and over.
+    picture
+        Index of the frame whose picture is on display: of a long clip, or while it is still
+        decoded, another one's than `frame`. None while there is no picture.
 
     """
 
@@ -40,6 +43,7 @@ class Position:
     playing: bool
     speed: float
     loop: bool
+    picture: int | None = None
 
 
 class Playback:
@@ -51,17 +55,19 @@ class Playback:
     Parameters
     ----------
     show
-        Draws a frame; called from the playback's own thread.
+        Draws a frame, and returns whose picture that shows, None without one; called from the
+        playback's own thread.
 
     """
 
-    def __init__(self, show: Callable[[int], None]) -> None:
+    def __init__(self, show: Callable[[int], int | None]) -> None:
         self._show = show
         self._listeners: list[Callable[[Position], None]] = []
         self._changed = Condition()
         self._times: tuple[float, ...] = (0.0,)
         self._span = (0, 0)
         self._frame = 0
+        self._picture: int | None = None
         self._speed = 1.0
         self._loop = True
         self._playing = False
@@ -168,7 +174,13 @@ class Playback:
     def _position(self) -> Position:
         frame = self._frame
         return Position(
-            frame, len(self._times), self._times[frame], self._playing, self._speed, self._loop
+            frame=frame,
+            frames=len(self._times),
+            time=self._times[frame],
+            playing=self._playing,
+            speed=self._speed,
+            loop=self._loop,
+            picture=self._picture,
         )
 
     def _play(self, playing: bool) -> None:
@@ -195,8 +207,9 @@ class Playback:
 
     def _run(self) -> None:
         while (frame := self._next()) is not None:
-            self._show(frame)
+            picture = self._show(frame)
             with self._changed:
+                self._picture = picture
                 position, listeners = self._position(), tuple(self._listeners)
             for listener in listeners:
                 listener(position)

@@ -210,8 +210,14 @@ class Workspace:
             self._filmstrip.close()
         if len(view.recording.poses) <= MAX_FRAMES:
             first, last = 0, len(view.recording.poses) - 1
-        self._filmstrip = Filmstrip(view.video, first, last, self.playback.redraw)
+        self._filmstrip = Filmstrip(view.video, first, last, self._picture_arrived)
         self._filmstrip.start()
+
+    def _picture_arrived(self, index: int) -> None:
+        """Draw again if this is as near as pictures will come to the frame on display."""
+        frame = self.playback.frame
+        if self._filmstrip is not None and index == self._filmstrip.kept(frame):
+            self.playback.redraw(frame)
 
     def _draw_scene(self, view: WorkspaceView, shown: Range) -> Trajectory | None:
         """Draw the cube, and return the salient landmarks' trajectory that it shows."""
@@ -232,13 +238,14 @@ class Workspace:
         images = compared_images(view, recognition, shown.poses)
         self._inspector.show_decision(recognition, view.expected, images)
 
-    def _draw(self, frame: int) -> None:
-        """Draw a frame; called by the playback alone."""
+    def _draw(self, frame: int) -> int | None:
+        """Draw a frame, and return whose picture is shown; called by the playback alone."""
         with self._lock:
             if self._view is not None and self._shown is not None:
                 # A frame that was due before another view was shown may lie beyond its end.
                 times = self._view.recording.poses.time
                 self._draw_locked(min(frame, len(times) - 1), self._shown, times)
+            return None if self._painted < 0 else self._painted
 
     def _draw_locked(self, frame: int, shown: Range, times: FloatArray) -> None:
         image = None

@@ -40,6 +40,7 @@ export function buildTransport() {
       button("play", "Play", "Space", toggle),
       button("forth", "One frame on", ".", () => step(1))),
     h("p", { className: "clock", id: "clock" }),
+    h("small", { className: "dim num", id: "picture-of", title: "Of a clip this long not every picture is kept. Choose a take or a shorter range to see them all." }),
     h("label", { className: "visually-hidden", for: "speed" }, "Speed"),
     h("select", { id: "speed", title: "Speed", onchange: () => { if (state.position?.playing) play(speed()); } }, SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`))),
     h("button", { type: "button", className: "quiet icon", id: "do-loop", "aria-label": "Repeat the range", title: "Repeat the range", onclick: () => loop(!state.position?.loop) }, icon("loop")),
@@ -75,6 +76,9 @@ export function drawTransport({ position }) {
     toggles.setAttribute("aria-label", label);
     toggles.title = `${label} (Space)`;
   }
+  // The number is never taken for that of a picture which is another frame's.
+  const other = !playing && position.picture !== null && position.picture !== frame;
+  byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
   byId("do-loop").setAttribute("aria-pressed", String(position.loop));
   byId("clock").replaceChildren(h("b", {}, moment(time)), ` frame ${frame} of ${frames}${playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : ""}`);
 }

@@ -51,6 +51,10 @@ def test_of_a_long_range_every_nth_frame_is_kept(
     monkeypatch.setattr(module, "MAX_FRAMES", 4)
     strip = Filmstrip(clip, 0, 11)
     assert sorted(set(decoded(strip))) == [0, 3, 6, 9]
+    for frame in range(-1, 13):
+        nearest = strip.nearest(frame)
+        assert nearest is not None
+        assert strip.kept(frame) == nearest[0]
 
 
 def test_frames_are_upright_rgb_and_no_wider_than_shown(

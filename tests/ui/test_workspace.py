@@ -16,6 +16,7 @@ from app.recognition import PoseError
 from app.ui.workspace import Range, Workspace, compared_images, first_look
 from tests.api.recordings import recording_of
 from tests.api.running import until
+from tests.recognition.damaged_clips import write_clip
 from tests.ui.views import view_in
 
 
@@ -63,6 +64,24 @@ def test_showing_a_view_stands_where_past_and_future_are_seen(
     assert workspace.playback.frame == shown.first + first_look(frames)
     assert 0 < first_look(frames) < frames - 1
     assert workspace.playback.position.frames == len(view.recording.poses)
+
+
+def test_of_a_long_clip_it_tells_whose_picture_is_shown(
+    workspace: Workspace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("filmstrip", "workspace"):
+        monkeypatch.setattr(f"app.ui.{module}.MAX_FRAMES", 10)
+    view = view_in(tmp_path)
+    frames = len(view.recording.poses)
+    video = write_clip(tmp_path / "long.mp4", frames=frames)
+    view = replace(view, video=video, start=None, end=None)
+    stride = -(-frames // 10)
+    workspace.show(view)
+    workspace.playback.seek(2 * stride + 1)
+    # It comes by itself as soon as it is decoded.
+    until(lambda: workspace.playback.position.picture == 2 * stride)
+    workspace.playback.seek(4 * stride)
+    until(lambda: workspace.playback.position.picture == 4 * stride)
 
 
 def test_a_recognition_of_the_same_take_keeps_the_frame(
