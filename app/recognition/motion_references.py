@@ -194,18 +194,20 @@ class MotionReferences:
 
         """
         paths, squares = self._flat_paths
-        apart = np.append(squares - 2.0 * (paths @ path.ravel()), np.inf)
+        # The last place is of rows that there are not.
+        apart, chosen = np.empty(len(self) + 1), np.zeros(len(self) + 1, dtype=bool)
+        apart[:-1], apart[-1] = squares - 2.0 * (paths @ path.ravel()), np.inf
+        chosen[:-1] = self._shown
         rows = self._rows_by_kind
         nearest = apart.take(rows).argsort(axis=1, kind="stable")[:, :MOST_COMPARED]
-        chosen = np.append(self._shown, False)
-        chosen[np.take_along_axis(rows, nearest, axis=1)] = True
+        chosen[rows[np.arange(len(rows))[:, None], nearest]] = True
         return np.asarray(chosen[:-1].nonzero()[0])
 
     @cached_property
     def _flat_paths(self) -> tuple[FloatArray, FloatArray]:
         """Paths with all steps in a row, ``(R, N D)``, and the sums of their squares, ``(R,)``."""
         paths = self.descriptors["path"].reshape(len(self), -1)
-        return paths, np.einsum("rd,rd->r", paths, paths)
+        return paths, np.vecdot(paths, paths)
 
     @cached_property
     def _shown(self) -> npt.NDArray[np.bool_]:

@@ -87,8 +87,8 @@ class Movement:
     @cached_property
     def under_way(self) -> FloatArray:
         """``(N,)``: each step's distance from the first, as a share of the largest."""
-        way = self.paths - self.paths[0]
-        away = np.sqrt(np.einsum("nld,nld->n", way, way))
+        way = (self.paths - self.paths[0]).reshape(len(self.paths), -1)
+        away = np.sqrt(np.vecdot(way, way))
         return np.asarray(away / max(away.max(), 1e-9))
 
     @property

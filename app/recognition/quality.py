@@ -77,7 +77,7 @@ def fault(
             time, places = time[seen], places[seen]
         lasts = time[1:] - time[:-1]
         steps = places[1:] - places[:-1]
-        far = np.einsum("td,td->t", steps, steps) > (LEAP * unit) ** 2
+        far = np.vecdot(steps, steps) > (LEAP * unit) ** 2
         leaps = np.count_nonzero(far & (lasts <= LEAP_SECONDS)) / len(lasts)
         if leaps > MOST_LEAPS:
             return f"the {readable(name)} leaps over a torso length in {leaps:.0%} of its frames"

@@ -163,7 +163,7 @@ def _blended(trajectory: Trajectory) -> Mask:
         return np.zeros(len(trajectory), dtype=bool)
     first, second = (trajectory.landmarks.index(name) for name in SHOULDERS)
     across = trajectory.xy[:, first] - trajectory.xy[:, second]
-    width = np.sqrt(np.einsum("td,td->t", across, across))
+    width = np.sqrt(np.vecdot(across, across))
     known = width[np.isfinite(width)]
     usual = median(known) if len(known) else 0.0
     return np.asarray(width < (BLENDED * usual if usual > FRONTAL else 0.0))

@@ -89,7 +89,7 @@ def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:
     left = np.empty((*leading, size + 2), dtype=query.dtype)
     left[..., size + 1] = 1.0
     np.multiply(query, -2.0, out=left[..., :size])
-    np.einsum("...d,...d->...", query, query, out=left[..., size])
+    np.vecdot(query, query, out=left[..., size])
     return left
 
 

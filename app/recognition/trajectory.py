@@ -203,10 +203,11 @@ class Trajectory:
 
         """
         self._require_two(count)
-        steps = self.xy[1:] - self.xy[:-1]
-        squares = np.einsum("tkd,tkd->t", steps, steps)
+        places = self.xy.reshape(len(self), -1)
+        steps = places[1:] - places[:-1]
+        squares = np.vecdot(steps, steps)
         if np.isnan(squares).any():
-            squares = np.fmax(steps**2, 0.0).sum(axis=(1, 2))  # NaN: no length
+            squares = np.fmax(steps**2, 0.0).sum(axis=1)  # NaN: no length
         travelled = np.zeros(len(self))
         np.cumsum(np.sqrt(squares), out=travelled[1:])
         if travelled[-1] == 0:

@@ -67,7 +67,7 @@ def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray
     The paper's choice (Sec. IV-D1): cosine similarity would ignore magnitudes.
     """
     apart = references - query
-    return np.asarray(np.sqrt(np.einsum("gd,gd->g", apart, apart)), dtype=np.float64)
+    return np.asarray(np.sqrt(np.vecdot(apart, apart)), dtype=np.float64)
 
 
 def absolute_differences(query: FloatArray, references: FloatArray) -> FloatArray:

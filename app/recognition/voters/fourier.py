@@ -67,7 +67,7 @@ class FourierDescriptors:
             [reals * real + imaginaries * imaginary, imaginaries * real - reals * imaginary], axis=1
         )
         correlation = (products @ _BEGUN).max(axis=1)
-        energy = query @ query + np.einsum("gd,gd->g", references, references)
+        energy = query @ query + np.vecdot(references, references)
         # The difference of nearly equal sums: what is below rounding error is 0.
         squares = energy - 2 * correlation
         squares[squares < 1e-12 * energy] = 0.0

@@ -108,7 +108,7 @@ class Direction(ElasticVoter):
         steps[1:-1] = (paths[2:] - paths[:-2]) / 2
         steps[0], steps[-1] = paths[1] - paths[0], paths[-1] - paths[-2]
         flat = steps.reshape(len(steps), -1)
-        length = np.sqrt(np.einsum("nd,nd->n", flat, flat))
+        length = np.sqrt(np.vecdot(flat, flat))
         return np.asarray(flat / (length + 1e-9)[:, None])
 
 
@@ -167,9 +167,9 @@ class Cloud(UnorderedVoter):
         squares = references.squared_distances(query)
         # Turned before: along the first axis numpy finds the least in a fifth of the time.
         turned = np.ascontiguousarray(squares.swapaxes(0, 1))
-        nearest = np.stack([turned.min(axis=0), squares.min(axis=0)])
+        nearest = np.concatenate([turned.min(axis=0), squares.min(axis=0)])
         nearest[nearest < ROUNDING] = 0.0
-        return np.asarray(np.sqrt(nearest).mean(axis=(0, 1)), dtype=np.float64)
+        return np.asarray(np.add.reduce(np.sqrt(nearest)) / len(nearest), dtype=np.float64)
 
 
 class StrokeDirection:
@@ -204,7 +204,7 @@ class WhichHand:
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(L,)``: each landmark's root mean square, together of norm 1."""
         paths = movement.paths
-        squares = np.einsum("nld,nld->l", paths, paths)
+        squares = np.add.reduce(np.vecdot(paths, paths))
         return np.asarray(np.sqrt(squares / max(squares.sum(), 1e-18)))
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
@@ -223,8 +223,9 @@ class PathLength:
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return the logarithm to base 2 of the length, ``(1,)``."""
-        steps = movement.figure[1:] - movement.figure[:-1]
-        length = float(np.sqrt(np.einsum("nld,nld->n", steps, steps)).sum())
+        figure = movement.figure.reshape(len(movement.figure), -1)
+        steps = figure[1:] - figure[:-1]
+        length = float(np.sqrt(np.vecdot(steps, steps)).sum())
         return np.log2([max(length, SHORTEST_LENGTH)])
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
