@@ -97,9 +97,15 @@ function retry({ key, refused }) {
   return startNext();
 }
 
+/** What is wrong; which file it is stands above already. */
+function withoutName(error, name) {
+  if (error.startsWith(`${name}: `)) return error.slice(name.length + 2);
+  return error.startsWith(name) ? `It${error.slice(name.length)}` : error;
+}
+
 function stage(upload) {
   if (upload.status === "waiting") return "Waiting for the other uploads";
-  if (upload.status === "failed") return upload.error;
+  if (upload.status === "failed") return withoutName(upload.error, upload.file.name);
   if (upload.away) return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; goes on by itself`;
   if (upload.loaded >= upload.total) return "Checking what is in it";
   const { began } = upload;

@@ -35,7 +35,10 @@ def card(page: Page, name: str) -> Locator:
 
 def command(page: Page, name: str, text: str) -> None:
     page.get_by_label(f"What to do with {name}", exact=True).click()
-    card(page, name).get_by_role("button", name=text).click()
+    item = card(page, name).get_by_role("button", name=text)
+    # A click would bring it there.
+    expect(item).to_be_in_viewport()
+    item.click()
 
 
 def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(

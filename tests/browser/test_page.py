@@ -308,7 +308,7 @@ def test_a_file_that_is_no_video_is_refused_with_the_reason(
     drop(page, fake)
     item = page.get_by_role("list", name="Uploads").get_by_role("listitem")
     expect(item.get_by_role("button", name="Retry holiday.mp4")).to_be_visible()
-    expect(item).not_to_contain_text("Uploading")
+    expect(item).to_contain_text("It is neither a video")
     item.get_by_role("button", name="Dismiss holiday.mp4").click()
     expect(item).to_have_count(0)
 
