@@ -193,12 +193,11 @@ class MotionReferences:
         Indices of rows, in order.
 
         """
-        paths, squares = self._flat_paths
+        (paths, squares), rows = self._flat_paths, self._rows_by_kind
         # The last place is of rows that there are not.
         apart, chosen = np.empty(len(self) + 1), np.zeros(len(self) + 1, dtype=bool)
         apart[:-1], apart[-1] = squares - 2.0 * (paths @ path.ravel()), np.inf
         chosen[:-1] = self._shown
-        rows = self._rows_by_kind
         nearest = apart.take(rows).argsort(axis=1, kind="stable")[:, :MOST_COMPARED]
         chosen[rows[np.arange(len(rows))[:, None], nearest]] = True
         return np.asarray(chosen[:-1].nonzero()[0])
