@@ -28,7 +28,6 @@ from app.api.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.gesture import Gesture
 from app.recognition.grammar_entry import grammar_entry_of, grammar_of
-from app.recognition.tuning import AS_THE_PROFILE
 from app.recognition.tuning_entry import tuning_entry_of, tuning_of
 from app.store import LanguageState, LanguageStore
 
@@ -93,7 +92,7 @@ def change_language(
     if "grammar" in change.model_fields_set:
         fields["grammar"] = None if change.grammar is None else grammar_of(change.grammar)
     if "tuning" in change.model_fields_set:
-        fields["tuning"] = AS_THE_PROFILE if change.tuning is None else tuning_of(change.tuning)
+        fields["tuning"] = tuning_of(change.tuning)
     if not fields:
         return answered(studio, studio.languages.get(language_id), response)
     edit = editing(_change_words(fields), lambda language: replace(language, **fields))
@@ -167,7 +166,7 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
         ],
         grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
         profile=language.profile,
-        tuning=None if language.tuning == AS_THE_PROFILE else tuning_entry_of(language.tuning),
+        tuning=tuning_entry_of(language.tuning),
         tuning_words=language.tuning.words,
     )
 

@@ -62,12 +62,12 @@ def jumps(trajectory: Trajectory) -> Mask:
     paths = trajectory.xy.take(followed, axis=1)
     if (unit := body_unit(trajectory)) != 1.0:
         paths /= unit
-    finite = np.isfinite(paths)
-    if finite.all() and not _has_kink(paths).any():
+    finite, kinked = np.isfinite(paths), _has_kink(paths)
+    if finite.all() and not kinked.any():
         return off
     known = np.asarray(finite[..., 0] & finite[..., 1])
     whole: Mask = np.asarray(known.all(axis=0))
-    together = np.flatnonzero(whole & _has_kink(paths))
+    together = np.flatnonzero(whole & kinked)
     if len(together):
         off[:, followed[together]] = _strays(paths.take(together, axis=1), trajectory.time)
     for index in np.flatnonzero(~whole).tolist():

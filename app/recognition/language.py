@@ -218,7 +218,7 @@ class Language:
             thresholds_for=self.thresholds_for,
             grammar=None if self.grammar is None else grammar_entry_of(self.grammar),
             profile=self.profile,
-            tuning=None if self.tuning == AS_THE_PROFILE else tuning_entry_of(self.tuning),
+            tuning=tuning_entry_of(self.tuning),
             gestures=[entry_of(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -250,7 +250,7 @@ class Language:
             thresholds_for=document.thresholds_for,
             grammar=None if document.grammar is None else grammar_of(document.grammar),
             profile=document.profile,
-            tuning=AS_THE_PROFILE if document.tuning is None else tuning_of(document.tuning),
+            tuning=tuning_of(document.tuning),
         )
 
     def save(self, path: str | Path) -> None:

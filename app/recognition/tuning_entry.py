@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from app.recognition.language_schema import TuningEntry
 from app.recognition.trajectory_image import SIMPLIFICATION
-from app.recognition.tuning import Tuning
+from app.recognition.tuning import AS_THE_PROFILE, Tuning
 
 
-def tuning_entry_of(tuning: Tuning) -> TuningEntry:
-    """Return the file's entry of a tuning."""
+def tuning_entry_of(tuning: Tuning) -> TuningEntry | None:
+    """Return the file's entry of a tuning; None where nothing differs from the profile."""
+    if tuning == AS_THE_PROFILE:
+        return None
     return TuningEntry(
         weights=dict(tuning.weights),
         simplification=(None if tuning.simplification == SIMPLIFICATION else tuning.simplification),
@@ -16,8 +18,10 @@ def tuning_entry_of(tuning: Tuning) -> TuningEntry:
     )
 
 
-def tuning_of(entry: TuningEntry) -> Tuning:
-    """Return the tuning of a file's entry."""
+def tuning_of(entry: TuningEntry | None) -> Tuning:
+    """Return the tuning of a file's entry, or where there is none."""
+    if entry is None:
+        return AS_THE_PROFILE
     return Tuning(
         weights=entry.weights,
         simplification=SIMPLIFICATION if entry.simplification is None else entry.simplification,
