@@ -73,7 +73,7 @@ languages: models  ## Rebuild the sample languages from their clips
 
 lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer versions)
 	$(LOCK) $(FOR_STUDIO) --group build --extra studio --output-file requirements.txt
-	$(LOCK) $(FOR_STUDIO) --group build --extra studio --extra test \
+	$(LOCK) $(FOR_STUDIO) --group build --extra studio --extra test --extra docs \
 	  --constraints requirements.txt --output-file requirements-test.txt
 	$(LOCK) $(FOR_STUDIO) --extra mediapipe \
 	  --constraints requirements-test.txt --output-file requirements-mediapipe.txt
