@@ -8,12 +8,18 @@ from typing import get_args
 
 import pytest
 
-from app.recognition import Recording, record
+from app.recognition import Recording
 from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
 
 ROOT = Path(__file__).resolve().parents[1]
+RECORDINGS = ROOT / "tests" / "recordings"
+"""Landmarks of the sample clips as `languages.record` wrote them, one folder a processor."""
+
+PROCESSORS = ("avx2", "avx512")
+"""Processors that round differently: what holds on both does not depend on rounding."""
+
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
 
 
@@ -50,24 +56,14 @@ def installed_models() -> None:
         pytest.skip(f"needs the pose and hand models: {error}")
 
 
-@pytest.fixture(scope="session")
-def sample_recording(
-    tmp_path_factory: pytest.TempPathFactory, sample_clips: Path, installed_models: None
-) -> Callable[[str], Recording]:
-    """Return what finds the poses of a sample clip by its name, once in a run of the tests."""
-    folder = tmp_path_factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        folder = folder.parent  # which the workers have in common
+@pytest.fixture(scope="session", params=PROCESSORS)
+def sample_recording(request: pytest.FixtureRequest) -> Callable[[str], Recording]:
+    """Return what loads the landmark recording of a sample clip by the clip's name.
 
-    def recording_of(name: str) -> Recording:
-        kept = folder / f"{name}.recording"
-        if not kept.exists():
-            own = tmp_path_factory.mktemp("recording") / name
-            record(sample_clips / f"{name}.mp4").save(own)
-            own.replace(kept)
-        return Recording.load(kept)
-
-    return recording_of
+    A test that uses it runs once for each processor on which the clips were recorded.
+    """
+    folder = RECORDINGS / request.param
+    return lambda name: Recording.load(folder / f"{name}.npz")
 
 
 @pytest.fixture

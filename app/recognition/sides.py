@@ -51,6 +51,16 @@ BLENDED = 0.9
 the two: a pose model's own smoothing blends the sides there, and hands lie before the trunk. From
 0.88 to 0.94 one frame or two decide; below, the last of them draws a stroke that was never made."""
 
+ELBOWS = ("left_elbow", "right_elbow")
+
+ARMS_BLENDED = 0.95
+"""Share of the elbows' distance before and after below which a frame of a mistaken recording shows
+blended arms. From 0.9 to 0.97 the sample clip that needs it is read right on every processor."""
+
+BLEND_SECONDS = 0.25
+"""Longest time from a blended frame to one that shows the arms apart: a pose model's smoothing
+has settled by then (from 0.2 to 0.4 s the result is the same)."""
+
 Mask = npt.NDArray[np.bool_]
 SingleArray = npt.NDArray[np.float32]
 
@@ -133,7 +143,7 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
         mistaken = ~mistaken
     exchanged = none.exchanged.copy()
     exchanged[clear] = mistaken
-    return Sides(exchanged, blended)
+    return Sides(exchanged, blended | _blended_arms(trajectory, blended))
 
 
 def exchanged_back(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> FloatArray:
@@ -167,6 +177,35 @@ def _blended(trajectory: Trajectory) -> Mask:
     known = width[np.isfinite(width)]
     usual = median(known) if len(known) else 0.0
     return np.asarray(width < (BLENDED * usual if usual > FRONTAL else 0.0))
+
+
+def _blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
+    """Find ``(T,)`` frames whose elbows lie nearer to each other than shortly before and after.
+
+    The model's smoothing blends arms for longer than shoulders, which are closer to each other.
+    Exchanged sides do not change the distance.
+
+    Parameters
+    ----------
+    trajectory
+        T frames, some of which show exchanged sides.
+    blended
+        ``(T,)``: frames that are known to be blended, and are no measure for others.
+
+    """
+    near = np.zeros(len(trajectory), dtype=bool)
+    if not set(ELBOWS) <= set(trajectory.landmarks):
+        return near
+    first, second = (trajectory.landmarks.index(name) for name in ELBOWS)
+    apart = np.linalg.norm(trajectory.xy[:, first] - trajectory.xy[:, second], axis=1)
+    usable = np.isfinite(apart) & ~blended
+    for index in np.flatnonzero(usable):
+        since = trajectory.time - trajectory.time[index]
+        before = apart[usable & (since < 0) & (since >= -BLEND_SECONDS)]
+        after = apart[usable & (since > 0) & (since <= BLEND_SECONDS)]
+        usual = min(before.max(initial=0.0), after.max(initial=0.0))
+        near[index] = apart[index] < ARMS_BLENDED * usual
+    return near
 
 
 @dataclass(frozen=True, eq=False)

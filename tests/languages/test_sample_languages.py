@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer, Recording, Take, takes_in
+from app.recognition.poses import FloatArray
 from languages.build import FOLDER, LANGUAGES, TABLE_2
-
-# Two dozen clips: minutes on a busy machine, while the limit of the suite is meant for one.
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(1500)]
 
 LABELS = tuple(entry.label for entry in TABLE_2)
 KINDS = ("demonstration", "test-1", "test-2")
@@ -17,9 +15,11 @@ KINDS = ("demonstration", "test-1", "test-2")
 AT_LEAST = {"paper": 12, "full": 16}
 """Of sixteen test takes by other divers, how many each profile must name correctly."""
 
-SAME_PATH = 0.02
-"""Torso lengths, about a centimetre of a diver: processors round differently, and tracking carries
-it along."""
+SAME_PATH = 0.03
+"""Torso lengths, 1.5 cm of a diver, that a path may differ by between two processors."""
+
+SAME_TRIM = 1
+"""Frames by which the ends of a take may differ between two processors."""
 
 Takes = Mapping[str, tuple[Take, ...]]
 
@@ -78,11 +78,19 @@ def test_the_shipped_file_is_what_its_clips_show(table_2: Language, stem: str) -
         assert gesture.salient == rebuilt.salient
         assert gesture.trajectory is not None
         assert rebuilt.trajectory is not None
-        np.testing.assert_allclose(
-            gesture.trajectory.select(gesture.salient).xy,
-            rebuilt.trajectory.select(gesture.salient).xy,
-            atol=SAME_PATH,
-        )
+        shown = gesture.trajectory.select(gesture.salient).xy
+        again = rebuilt.trajectory.select(gesture.salient).xy
+        assert abs(len(shown) - len(again)) <= SAME_TRIM, gesture.label
+        assert largest_deviation(shown, again) <= SAME_PATH, gesture.label
+
+
+def largest_deviation(one: FloatArray, other: FloatArray) -> float:
+    """Slide the shorter path along the longer one, and return the best match's worst moment."""
+    short, long = sorted((one, other), key=len)
+    return min(
+        float(np.abs(long[first : first + len(short)] - short).max())
+        for first in range(len(long) - len(short) + 1)
+    )
 
 
 def test_two_handed_sweep_follows_both_wrists(table_2: Language) -> None:

@@ -78,6 +78,18 @@ def test_a_frame_between_the_sides_is_blended() -> None:
     assert np.flatnonzero(sides.exchanged).tolist() == list(range(20, 40))
 
 
+def test_arms_that_are_still_blended_after_the_shoulders_are_found() -> None:
+    seen = with_sides_exchanged(shown(), list(range(20, 40)))
+    xy = seen.xy.copy()
+    for name in ("elbow", "wrist"):
+        left, right = (seen.landmarks.index(f"{side}_{name}") for side in ("left", "right"))
+        xy[41:43, [left, right]] += 0.1 * (xy[41:43, [right, left]] - xy[41:43, [left, right]])
+    sides = mistaken_sides(
+        Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
+    )
+    assert np.flatnonzero(sides.blended).tolist() == [41, 42]
+
+
 def test_frames_that_show_nothing_are_passed_over() -> None:
     seen = with_sides_exchanged(shown(), list(range(20, 30)))
     xy = seen.xy.copy()
