@@ -1,6 +1,6 @@
 """Run the command line as ``python -m app``."""
 
-from app.cli import main
+from app.cli.application import main
 
 if __name__ == "__main__":
     main()

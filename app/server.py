@@ -20,42 +20,41 @@ from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
 
 from app import __version__, resources
-from app.api import (
-    analyses,
+from app.api.http import problems
+from app.api.ingest.multipart import FRAME_BYTES
+from app.api.live import socket as live
+from app.api.middleware.access import SameOrigin, TokenRequired
+from app.api.middleware.body_limit import BodyLimit
+from app.api.middleware.headers import SecurityHeaders
+from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
+from app.api.routes import (
     checks,
     clips,
-    contrasts,
     events,
     gestures,
     health,
     jobs,
     language_files,
     languages,
-    live,
+    mcap_exports,
+    pair_differences,
     phrases,
-    playback,
     previews,
-    problems,
+    recognition_pages,
     recognitions,
-    resumable,
+    resumable_uploads,
     revisions,
     sample_clips,
     sample_languages,
-    sessions,
     timelines,
-    viser_relay,
-    workspaces,
 )
-from app.api.body_limit import BodyLimit
-from app.api.ending import EndsInTime, OpenRequests, StudioServer
-from app.api.headers import SecurityHeaders
-from app.api.security import SameOrigin, TokenRequired
-from app.api.studio import check_store, running_studio
-from app.api.uploads import FRAME_BYTES
-from app.api.workspace_views import view_of
+from app.api.services.context import check_store, running_studio
+from app.api.viser_workspaces import playback_socket, relay
+from app.api.viser_workspaces import routes as workspaces
+from app.api.viser_workspaces.views import view_of
 from app.settings import Settings
 from app.store import StoreUnavailable
-from app.ui.registry import WorkspaceRegistry
+from app.ui.workspace_registry import WorkspaceRegistry
 
 API = "/api/v1"
 
@@ -104,20 +103,20 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for router in (
         health.router,
         clips.router,
-        resumable.router,
+        resumable_uploads.router,
         timelines.router,
-        sessions.router,
+        mcap_exports.router,
         jobs.router,
         languages.router,
         language_files.router,
         revisions.router,
         checks.router,
-        contrasts.router,
+        pair_differences.router,
         gestures.router,
         phrases.router,
         previews.router,
         recognitions.router,
-        analyses.router,
+        recognition_pages.router,
         sample_clips.router,
         sample_languages.router,
         events.router,
@@ -127,11 +126,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
         responses=problems.documented(404),
     )
-    api.include_router(playback.router(registry))
+    api.include_router(playback_socket.router(registry))
     api.include_router(live.router())
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
-    app.include_router(viser_relay.router(registry.port_of))
+    app.include_router(relay.router(registry.port_of))
     _serve_page(app)
     problems.install(app)
     _describe(app)

@@ -94,11 +94,11 @@ class Settings(BaseSettings):
 
     worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
     """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, and the most
-    frames a clip may have (`app.recognition.video.VideoLimits`) then take 72 minutes."""
+    frames a clip may have (`app.recognition.recording.video.VideoLimits`) then take 72 minutes."""
 
     worker_file_bytes: Annotated[int, Field(ge=0)] = 4 * 512 * MEBIBYTE
     """Largest file that a job may write, while it unpacks a dive recording or copies a video; 0 is
-    no limit. As much as an archive may unpack to (`app.bags.unpacking.MOST_BYTES`)."""
+    no limit. As much as an archive may unpack to (`app.bags.staging.MOST_BYTES`)."""
 
     worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
     """A worker that reports no progress for so long hangs, and is ended."""

@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseError
-from app.recognition.calibrated_vote import VOTERS, CalibratedVote
-from app.recognition.fusion import fused
-from app.recognition.gesture import condensed
-from app.recognition.poses import FloatArray
-from app.recognition.repair import repaired
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
+from app.recognition.decision.fusion import fused
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.repair import repaired
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated

@@ -23,7 +23,7 @@ from time import process_time
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from benchmarks.arguments import set_arguments
 from benchmarks.methods import METHODS, new_method
 from benchmarks.methods.base import Method

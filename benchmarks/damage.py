@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from app.recognition import (
     Language,
     PoseError,
@@ -27,8 +27,8 @@ from app.recognition import (
     record,
     takes_in,
 )
-from app.recognition.sides import exchanged_back
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.preprocessing.side_swaps import exchanged_back
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import recorded_sets
 from benchmarks.shared_sets import demonstrated

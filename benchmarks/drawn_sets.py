@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.recorded_sets import RecordedSet
 
 PEOPLE = 10

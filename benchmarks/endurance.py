@@ -24,11 +24,12 @@ from typing import Final, Protocol
 import numpy as np
 
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.base import FrameLandmarks, Image, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.live import LONGEST_SALUTE
-from app.recognition.takes import LONGEST_TAKE
-from app.recognition.video import FrameReader
+from app.recognition.poses.frame import FrameLandmarks, Image
+from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.segmentation import LONGEST_TAKE
+from app.recognition.recording.video import FrameReader
 from app.resources import samples_dir
 from app.robot import (
     Frame,

@@ -12,11 +12,11 @@ from functools import partial
 from statistics import median
 
 from app.recognition import Language, PoseSequence, Recognizer
-from app.recognition.explanation import explain
-from app.recognition.profile import PROFILES
-from app.recognition.situation import Situation
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import variants
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.explanation import explain
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import variants
 from app.resources import samples_dir
 
 TORSO_PIXELS = 120.0

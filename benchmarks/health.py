@@ -18,13 +18,13 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Language, Recognizer
-from app.recognition.comparison import Comparison
+from app.recognition.decision.rejection import is_rejected
+from app.recognition.decision.score_table import Comparison
 from app.recognition.errors import PoseError
-from app.recognition.health_report import MOST_CONFUSION, MOST_MISSED
-from app.recognition.poses import FloatArray
-from app.recognition.rehearsal import rehearse
-from app.recognition.rejection import is_rejected
-from app.recognition.variation import Person
+from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
+from app.recognition.health.simulated_trials import rehearse
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.variation import Person
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated

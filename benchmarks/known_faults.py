@@ -16,16 +16,16 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.difference import differences
-from app.recognition.gesture import condensed
-from app.recognition.landmarks import other_side
-from app.recognition.movement import part_of
-from app.recognition.pairing import Pairing
-from app.recognition.readings import AS_SHOWN
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import ARM_PARTS, variants
+from app.recognition.explanation.differences import differences
+from app.recognition.explanation.pairing import Pairing
+from app.recognition.features.motion import part_of
+from app.recognition.features.traversals import AS_SHOWN
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import ARM_PARTS, variants
 from app.resources import samples_dir
 
 Fault = Callable[[Trajectory], Trajectory]

@@ -20,7 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from app.recognition import (
     Gesture,
     Language,
@@ -31,9 +31,9 @@ from app.recognition import (
     takes_in,
 )
 from app.recognition.estimation import create_estimator
-from app.recognition.landmark_sets import COCO_17
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.skeletons import COCO_17
 from benchmarks.methods.ours import gesture_of
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets

@@ -13,7 +13,7 @@ from time import process_time
 import numpy as np
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
 
 SIZES = (8, 100, 1000)
 ROUNDS = 15

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 REFUSED = 0.05
 """Share of the true takes refused where false acceptance is reported."""

@@ -18,11 +18,12 @@ import cv2
 import numpy as np
 
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.base import Image, PoseEstimator
-from app.recognition.extraction import record
-from app.recognition.poses import FloatArray
-from app.recognition.salute import ENTER_SCORE, published_rule, salute_score
-from app.recognition.video import ALPHA_BACKGROUND, over_background
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.extraction import record
+from app.recognition.recording.salute import ENTER_SCORE, published_rule, salute_score
+from app.recognition.recording.video import ALPHA_BACKGROUND, over_background
 from app.resources import samples_dir
 from tests.recognition.parametric_hand import labelled_hands
 

@@ -18,7 +18,7 @@ from itertools import chain
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from app.recognition import (
     Gesture,
     Language,
@@ -26,7 +26,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
 from benchmarks.arguments import set_arguments
 from benchmarks.drawn_sets import drawn_sets
 from benchmarks.methods import new_method

@@ -22,8 +22,8 @@ import numpy as np
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.estimation import create_estimator
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.video import read_frames
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
 from benchmarks.recognition import wander
 

@@ -19,11 +19,11 @@ from time import perf_counter
 
 import numpy as np
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 from app.recognition import Language, Recognizer
 from app.recognition.estimation import create_estimator
+from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
-from app.recognition.video import read_frames
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 from benchmarks.streams import Event, Stream, composed, with_body

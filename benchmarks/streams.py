@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import PoseSequence
-from app.recognition.accidental import accidental_movements
-from app.recognition.landmarks import HIPS, SHOULDERS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.accidental_motion import accidental_movements
 from benchmarks.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0

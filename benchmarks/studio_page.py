@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from app.recognition.video import read_frames
+from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
 from app.settings import Settings
 from tests.api.recordings import RATE, recording_of

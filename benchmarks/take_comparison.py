@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.calibrated_vote import VOTERS
-from app.recognition.fusion import fused, says
-from app.recognition.gesture import condensed
-from app.recognition.motion_references import MotionReferences, describe_movement
-from app.recognition.movement import movement
-from app.recognition.poses import FloatArray
-from app.recognition.shape_references import ShapeReferences
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.fused_vote import VOTERS
+from app.recognition.decision.fusion import fused, says
+from app.recognition.decision.motion_references import MotionReferences, describe_movement
+from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.features.motion import movement
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import MOTION_VOTERS
 
 LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")

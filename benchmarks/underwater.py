@@ -21,10 +21,10 @@ import numpy as np
 
 from app.recognition import Language, Recognizer, Recording, record, takes_in
 from app.recognition.estimation import PoseEstimator, create_estimator
-from app.recognition.estimation.base import Image
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.salute import ENTER_SCORE
-from app.recognition.video import read_frames
+from app.recognition.poses.frame import Image
+from app.recognition.recording.salute import ENTER_SCORE
+from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
 from benchmarks.salute import CHANGING_PHASES
 from languages.render.encode import encode

@@ -32,14 +32,14 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
-from app.recognition.calibrated_vote import VOTERS, CalibratedVote
-from app.recognition.calibration import calibrated
-from app.recognition.gesture import condensed
-from app.recognition.poses import FloatArray
-from app.recognition.rejection import is_rejected
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import Person
+from app.evaluation.proportion import Share
+from app.recognition.decision.calibration import calibrated
+from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
+from app.recognition.decision.rejection import is_rejected
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import Person
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated

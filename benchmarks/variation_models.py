@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import SPREADS, Person, variants, varied
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import SPREADS, Person, variants, varied
 
 Model = Callable[[Trajectory, int, int, Person], tuple[Trajectory, ...]]
 """Draws variants: of a demonstration, so many, with a seed, by whom."""

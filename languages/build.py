@@ -10,8 +10,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.recognition import Gesture, Language, find_takes
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import Group, OneOf, Phrase, Slot, SlotType
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import Group, OneOf, Phrase, Slot, SlotType
 
 FOLDER = Path(__file__).resolve().parent
 CREATED = datetime(2026, 11, 21, tzinfo=UTC)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from app.recognition import Recording, record
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from languages.build import FOLDER
 
 PIXEL_PARTS = 64

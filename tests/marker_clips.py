@@ -8,7 +8,7 @@ import av
 import numpy as np
 from av.video.stream import VideoStream
 
-from app.recognition.landmark_sets import COCO_17
+from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.estimation.marker_models import BODY_COLOURS, draw_markers
 from tests.recognition.strategies import BODY, Shape, recording
 

@@ -56,7 +56,7 @@ def test_extras_modules_and_files_that_commands_name_exist() -> None:
 
 
 def test_every_voter_is_documented() -> None:
-    from app.recognition.profile import PROFILES
+    from app.recognition.gestures.profile import PROFILES
 
     text = (ROOT / "docs" / "recognizer.md").read_text()
     voters = {voter.name for profile in PROFILES.values() for voter in profile}
@@ -71,7 +71,7 @@ def test_every_setting_is_documented() -> None:
 
 
 def test_every_command_is_documented() -> None:
-    from app.cli import command_line
+    from app.cli.application import command_line
 
     pages = "".join(page.read_text() for page in PAGES)
     names = [

@@ -22,18 +22,18 @@ for module in pkgutil.walk_packages(app.recognition.__path__, "app.recognition."
 """
 
 WANTED_BY_OPTIONS = {
-    "app.robot.dds",
+    "app.robot.publishing.dds",
     "app.robot.energy",
     "app.robot.stage_profile",
-    "app.robot_stages",
-    "app.ros2_topics",
+    "app.cli.robot_stages",
+    "app.cli.ros2_topics",
 }
 """Modules that `osg-studio robot` needs only where it is asked to publish or to profile."""
 
 SHOW_THE_HELP = """
-import app.cli
+import app.cli.application
 sys.argv[1:] = ["--help"]
-app.cli.main()
+app.cli.application.main()
 """
 
 

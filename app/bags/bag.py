@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from app.bags.definitions import DEFINITIONS
-from app.bags.unpacking import placed
+from app.bags.message_definitions import DEFINITIONS
+from app.bags.staging import placed
 from app.recognition.errors import BagError, RecognitionError, TopicError
 
 if TYPE_CHECKING:

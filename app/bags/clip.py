@@ -6,16 +6,17 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from app.bags.bag import Bag, Topic, opened_bag
-from app.bags.frames import BagFrames
 from app.bags.keypoints import keypoint_recording
+from app.bags.picture_frames import BagFrames
 from app.bags.skeleton_video import show_recording
 from app.bags.video_file import VideoFile
-from app.recognition.estimation.base import FrameLandmarks, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.extraction import Observer, Progress, record_frames
-from app.recognition.recording import Recording
-from app.recognition.video import VideoFrame
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import FrameLandmarks
+from app.recognition.recording.extraction import Observer, Progress, record_frames
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video_limits import VideoLimits
 
 
 def record_bag(
@@ -29,7 +30,7 @@ def record_bag(
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
 ) -> Recording:
-    """Find body and hands in a dive recording, as `app.recognition.extraction.record` in a clip.
+    """Find body and hands in a dive recording, as `extraction.record` in a clip.
 
     Pictures go from the recording to the models directly; recorded keypoints need no models.
 
@@ -43,7 +44,7 @@ def record_bag(
         Where to write a copy that players show (`VideoFile`): the same pictures at the same times,
         or the skeleton on black where only keypoints were recorded. None: nowhere.
     estimator, progress, observer, limits, water
-        See `app.recognition.extraction.record`.
+        See `app.recognition.recording.extraction.record`.
 
     Raises
     ------

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.landmarks import SKELETON
-from app.recognition.poses import FloatArray
+from app.recognition.poses.landmarks import SKELETON
+from app.recognition.poses.sequence import FloatArray
 
 Stamp = dict[str, int]
 

@@ -11,13 +11,13 @@ import numpy as np
 from app.bags.bag import Bag, Message, Topic
 from app.bags.salute_topic import SaluteTrack, salute_track
 from app.recognition.errors import BagError
-from app.recognition.estimation.base import Hand
-from app.recognition.frame_clock import FrameClock
-from app.recognition.landmark_sets import SKELETON_2D, landmark_named, missing_from
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.recording import Recording
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.skeletons import SKELETON_2D, landmark_named, missing_from
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.timestamps import FrameClock
+from app.recognition.recording.video_limits import VideoLimits
 
 ASSUMED_SIZE = (1280, 720)
 """Width and height in pixels where a recording tells fractions of a picture and nothing of the

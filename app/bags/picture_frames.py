@@ -12,16 +12,16 @@ from av.error import FFmpegError
 from app.bags.bag import Bag, Message, Topic
 from app.bags.pictures import PacketDecoder, raw_image
 from app.recognition.errors import BagError, VideoError
-from app.recognition.estimation.base import Image
-from app.recognition.frame_clock import FrameClock
-from app.recognition.video import VideoFrame, VideoInfo
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Image
+from app.recognition.recording.timestamps import FrameClock
+from app.recognition.recording.video import VideoFrame, VideoInfo
+from app.recognition.recording.video_limits import VideoLimits
 
 RAW = "sensor_msgs/msg/Image"
 
 
 class BagFrames(Iterator[VideoFrame]):
-    """The frames of one topic, read one at a time (`app.recognition.video.FrameSource`).
+    """The frames of one topic, read one at a time (`app.recognition.recording.video.FrameSource`).
 
     Time is the stamp in the messages' headers, when the picture was taken; where a topic begins
     without, it is when the messages were received. A last odd row or column of pixels is left out,

@@ -13,8 +13,8 @@ from av.codec.context import CodecContext
 from av.video.codeccontext import VideoCodecContext
 
 from app.recognition.errors import BagError
-from app.recognition.estimation.base import Image
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Image
+from app.recognition.recording.video_limits import VideoLimits
 
 NANOSECONDS = Fraction(1, 1_000_000_000)
 

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from app.bags.bag import Bag, Message, Topic
 from app.recognition.errors import BagError
-from app.recognition.estimation.base import SIDES, Hand
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import SIDES, Hand
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 OURS = "osg_interfaces/msg/Hands"
 PUBLISHED = "std_msgs/msg/Bool"

@@ -16,27 +16,27 @@ from typing import Any
 import numpy as np
 
 from app import __version__
-from app.bags import overlay, schemas
+from app.bags import foxglove_overlay, session_schemas
 from app.bags.bag import INSTALL
 from app.bags.video_file import packets
+from app.recognition.decision.result import Recognition
 from app.recognition.errors import BagError
-from app.recognition.poses import PoseSequence
-from app.recognition.recognition_result import Recognition
-from app.recognition.recording import Recording
-from app.recognition.takes import Take, TakeMachine, takes_in
-from app.recognition.video import read_frames
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.segmentation import Take, TakeMachine, takes_in
+from app.recognition.recording.video import read_frames
 
 Progress = Callable[[int, int], None]
 
-CHANNELS: dict[str, schemas.Schema] = {
-    "/video": schemas.VIDEO,
-    "/pose": schemas.ANNOTATIONS,
-    "/label": schemas.ANNOTATIONS,
-    "/keypoints": schemas.KEYPOINTS,
-    "/salute": schemas.SALUTE,
-    "/takes": schemas.TAKE,
-    "/recognitions": schemas.RECOGNITION,
-    "/log": schemas.LOG,
+CHANNELS: dict[str, session_schemas.Schema] = {
+    "/video": session_schemas.VIDEO,
+    "/pose": session_schemas.ANNOTATIONS,
+    "/label": session_schemas.ANNOTATIONS,
+    "/keypoints": session_schemas.KEYPOINTS,
+    "/salute": session_schemas.SALUTE,
+    "/takes": session_schemas.TAKE,
+    "/recognitions": session_schemas.RECOGNITION,
+    "/log": session_schemas.LOG,
 }
 """Topic and schema. A take and a recognition are logged when they end."""
 
@@ -171,7 +171,7 @@ def _frames(recording: Recording, progress: Progress | None) -> Iterator[_Event]
         machine.update(time, score)
         stamp = stamp_of(time)
         yield _Event(time, "/keypoints", _keypoints(recording, index, stamp))
-        drawn = overlay.skeleton(poses.xy[index], poses.landmarks, poses.frame_size, stamp)
+        drawn = foxglove_overlay.skeleton(poses.xy[index], poses.landmarks, poses.frame_size, stamp)
         yield _Event(time, "/pose", drawn)
         salute = {"timestamp": stamp, "score": round(score, SCORE_DIGITS)}
         state = {"held": machine.trigger.held, "state": machine.state.value}
@@ -186,7 +186,7 @@ def _keypoints(recording: Recording, index: int, stamp: dict[str, int]) -> dict[
     hands = [
         {"side": hand.side, "score": round(hand.score, SCORE_DIGITS), "keypoints": points}
         for hand in recording.hands[index]
-        if (points := overlay.points(hand.xy))
+        if (points := foxglove_overlay.points(hand.xy))
     ]
     return {
         "timestamp": stamp,
@@ -259,8 +259,10 @@ def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
     for each in recognitions:
         shown = each.result.label or f"no gesture, nearest {each.result.nearest}"
         text = f"{shown}  {each.result.confidence:.2f}"
-        events.append(_Event(each.start, "/label", overlay.label("", stamp_of(each.start))))
-        events.append(_Event(each.end, "/label", overlay.label(text, stamp_of(each.end))))
+        events.append(
+            _Event(each.start, "/label", foxglove_overlay.label("", stamp_of(each.start)))
+        )
+        events.append(_Event(each.end, "/label", foxglove_overlay.label(text, stamp_of(each.end))))
     yield from sorted(events, key=lambda event: event.time)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from app.recognition.estimation.base import Image
-from app.recognition.landmarks import POSE_LANDMARKS, SKELETON
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
+from app.recognition.poses.sequence import FloatArray
 
 BONE = (208, 214, 222)
 JOINT = (90, 160, 255)

@@ -10,13 +10,13 @@ import numpy as np
 from app.bags.keypoints import even
 from app.bags.skeleton_picture import skeleton_picture
 from app.bags.video_file import VideoFile
-from app.recognition.estimation.base import Body, FrameLandmarks
-from app.recognition.extraction import Observer, Progress
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.recording import Recording
-from app.recognition.video import VideoFrame
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Body, FrameLandmarks
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.recording.extraction import Observer, Progress
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video_limits import VideoLimits
 
 
 def show_recording(
@@ -34,7 +34,7 @@ def show_recording(
     video
         Where to write them as a video (`VideoFile`); None: nowhere.
     progress, observer
-        See `app.recognition.extraction.record`.
+        See `app.recognition.recording.extraction.record`.
 
     Raises
     ------

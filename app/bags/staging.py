@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
 from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
-from app.bags.kind import METADATA, BagKind, bag_kind, kind_of
+from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
 from app.recognition.errors import BagError
 
 MOST_ENTRIES = 1000

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.bags.bag import Bag, Topic, Use, opened_bag
-from app.bags.frames import BagFrames
 from app.bags.keypoints import keypoint_frame_size
+from app.bags.picture_frames import BagFrames
 from app.recognition.errors import BagError, RecognitionError
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.video_limits import VideoLimits
 
 LONGEST_NAME = 255
 """Characters of a topic's name: as long as ROS allows one to be."""

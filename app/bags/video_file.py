@@ -13,8 +13,8 @@ from av.video.codeccontext import VideoCodecContext
 from av.video.stream import VideoStream
 from typing_extensions import Self
 
-from app.recognition.estimation.base import Image
-from app.recognition.video import VideoFrame
+from app.recognition.poses.frame import Image
+from app.recognition.recording.video import VideoFrame
 
 TICK = Fraction(1, 1_000_000)
 """Seconds: MP4 counts the time between frames in 32 bits, which in microseconds is an hour."""

@@ -18,8 +18,8 @@ import typer
 from pydantic import ValidationError
 
 from app import __version__
-from app.check_command import check
-from app.clip_argument import (
+from app.cli.check import check
+from app.cli.clip_argument import (
     ClipReading,
     Demonstration,
     FrameRateOption,
@@ -31,23 +31,23 @@ from app.clip_argument import (
     read_clip,
     spotted_takes,
 )
-from app.estimator_options import EstimatorOption, HandsOption, WaterOption
-from app.evaluate_command import evaluate
-from app.phrase_command import phrase
+from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
+from app.cli.evaluate import evaluate
+from app.cli.mcap_file import named_recognitions, save_session
+from app.cli.phrase import phrase
+from app.cli.robot import robot
+from app.cli.ros_arguments import apart
+from app.cli.terminal import describe, people, progress_bar, show_explanation, show_recognition
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
-from app.recognition.explanation import Explanation, explain
-from app.recognition.osg_reference import from_reference, is_reference, to_reference
-from app.recognition.profile import PROFILES
-from app.recognition.proteus import SUFFIX as PROTEUS_SUFFIX
-from app.recognition.proteus import to_proteus
-from app.recognition.situation import Situation
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.explanation import Explanation, explain
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
+from app.recognition.language.proteus import to_proteus
 from app.recognition.spotting import Spotter
-from app.robot_command import robot
-from app.ros_arguments import apart
-from app.session_file import named_recognitions, save_session
-from app.terminal import describe, people, progress_bar, show_explanation, show_recognition
 
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2

@@ -8,11 +8,11 @@ from typing import Annotated
 
 import typer
 
-from app.evaluate_command import Person
-from app.health_text import health_text
+from app.cli.check_report import health_text
+from app.cli.evaluate import Person
+from app.cli.terminal import progress_bar
 from app.recognition import Language
-from app.recognition.health import check_health
-from app.terminal import progress_bar
+from app.recognition.health.check import check_health
 
 BELOW_BAR = 1
 """Exit code of a language that should not go to sea like that."""

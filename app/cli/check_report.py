@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from app.recognition.finding import Finding
-from app.recognition.forecast import Forecast
-from app.recognition.health_report import (
+from app.recognition.health.finding import Finding
+from app.recognition.health.report import (
     MOST_CONFUSION,
     MOST_MISSED,
     GestureHealth,
     HealthReport,
 )
+from app.recognition.simulation.rate_estimate import Forecast
 
 MOST_PAIRS = 10
 """Pairs listed, the most confused first: the rest is in the JSON."""

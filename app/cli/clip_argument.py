@@ -12,16 +12,16 @@ import numpy as np
 import typer
 
 from app.bags import bag_and_topic, holds_keypoints, is_bag, record_bag
+from app.cli.terminal import people, progress_bar
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
 from app.recognition.errors import GestureError, KeypointFileError, VideoError
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.requirements import require_landmarks
+from app.recognition.language.requirements import require_landmarks
+from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.spotting import Spotter
-from app.recognition.takes import LONGEST_TAKE
-from app.terminal import people, progress_bar
 
 FrameRateOption = Annotated[
     float | None,

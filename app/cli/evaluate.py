@@ -11,21 +11,21 @@ from typing import Annotated, Any
 
 import typer
 
-from app.clip_argument import (
+from app.cli.clip_argument import (
     FrameRateOption,
     FrameSizeOption,
     LandmarkOption,
     keypoint_options,
 )
+from app.cli.terminal import people, progress_bar
 from app.evaluation.confusion import ConfusionMatrix
-from app.evaluation.confusion_picture import confusion_svg
+from app.evaluation.confusion_chart import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
 from app.evaluation.labelled_takes import Collection, collected
 from app.evaluation.one_shot import one_shot, read_by
 from app.evaluation.protocols import recognised_variants
 from app.recognition import Language
-from app.recognition.profile import PROFILES
-from app.terminal import people, progress_bar
+from app.recognition.gestures.profile import PROFILES
 
 DEFAULT_VARIANTS = 50
 """Of each gesture, as often as the paper shows each of its eight."""

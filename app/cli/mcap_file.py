@@ -10,10 +10,10 @@ from rich.filesize import decimal
 
 from app.bags import bag_and_topic, is_bag
 from app.bags.clip import write_video
-from app.bags.session import NamedRecognition, write_session
+from app.bags.session_writer import NamedRecognition, write_session
+from app.cli.terminal import people, progress_bar
 from app.keypoint_files import is_keypoint_file
 from app.recognition import Language, Recognition, Recording, Take
-from app.terminal import people, progress_bar
 
 
 def save_session(
@@ -30,7 +30,7 @@ def save_session(
     target
         The MCAP file.
     clip, topic
-        Where `recording` was read from, as for `app.clip_argument.read_clip`.
+        Where `recording` was read from, as for `app.cli.clip_argument.read_clip`.
     recording, recognitions
         What was found in the clip, and recognised.
 

@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
+from app.cli.terminal import people
 from app.recognition import Language, LanguageError
-from app.recognition.grammar import Grammar
-from app.recognition.phrase_parser import PhraseEvent, PhraseParser
-from app.terminal import people
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 
 NOT_COMPLETE = 1
 """Exit code when the gestures give the robot nothing to do."""

@@ -16,13 +16,16 @@ from typing import Annotated
 
 import typer
 
-from app.estimator_options import EstimatorOption, HandsOption, WaterOption
+from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
+from app.cli.robot_events import sentence_of
+from app.cli.ros_arguments import BEGIN
+from app.cli.terminal import people
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
-from app.recognition.estimation.base import PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
 from app.robot import (
     Event,
     Hearing,
@@ -33,12 +36,9 @@ from app.robot import (
     open_source,
 )
 from app.robot.messages import line_of
-from app.robot.publishing import Network, open_publisher
+from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
 from app.robot.watched_language import WatchedLanguage
-from app.robot_text import sentence_of
-from app.ros_arguments import BEGIN
-from app.terminal import people
 
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""
@@ -103,7 +103,7 @@ def robot(
         heard = [tell]
         observer: Observer | None = None
         if ros2:
-            from app.ros2_topics import ros2_topics
+            from app.cli.ros2_topics import ros2_topics
 
             topics = opened.enter_context(ros2_topics(context.obj))
             heard.append(lambda event: topics.hear(event, listener.language))
@@ -144,7 +144,7 @@ def profile_until_stopped(
     water: WaterCorrection,
 ) -> None:
     """Tell what the stages cost when the source ends, or somebody stops it."""
-    from app.robot_stages import show_stages
+    from app.cli.robot_stages import show_stages
 
     asked: list[bool] = []
     with signals_heeded(lambda: asked.append(True), lambda: None):

@@ -10,12 +10,12 @@ import typer
 from rich import box
 from rich.table import Table
 
-from app.recognition.estimation.base import PoseEstimator
+from app.cli.terminal import people
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.robot import Hearing, Source
 from app.robot.energy import energy_meter
 from app.robot.stage_profile import STAGES, StageProfile, StageProfiler
-from app.terminal import people
 
 
 def show_stages(

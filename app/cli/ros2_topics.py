@@ -41,7 +41,7 @@ def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
 
     """
     try:
-        from osg_ros.robot_node import published
+        from osg_ros.nodes.robot_node import published
     except ModuleNotFoundError as error:
         raise RecognitionError(
             f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "

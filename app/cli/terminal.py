@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.recognition import Recognition, Take
-from app.recognition.explanation import Explanation
+from app.recognition.explanation.explanation import Explanation
 
 people = Console(stderr=True)
 """Where text for people goes; stdout is for data."""

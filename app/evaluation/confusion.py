@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.evaluation.share import Share
+from app.evaluation.proportion import Share
 
 REFUSED = "(none)"
 """Heading of the column for queries that were given no label; no gesture has a label in brackets

@@ -15,10 +15,10 @@ from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Recording, record, takes_in
-from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError, RecognitionError
 from app.recognition.estimation import PoseEstimator, create_estimator
-from app.recognition.recording import FILE_VERSION
+from app.recognition.recording.recording import FILE_VERSION
+from app.recognition.text.hashing import sha256_of
 
 Progress = Callable[[int, int, str], None]
 """``progress(done, total, name)``: frames of the file of that name."""

@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 from app.evaluation.confusion import ConfusionMatrix
 from app.recognition import Language, PoseError, PoseSequence, RecognitionError, Recognizer
-from app.recognition.gesture import condensed
-from app.recognition.language_schema import MAX_GESTURES
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import Person, variants
+from app.recognition.gestures.gesture import condensed
+from app.recognition.language.schema import MAX_GESTURES
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import Person, variants
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)``, after every query."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 AXES: Final[Mapping[str, str]] = {
     "x": "x",

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from app.keypoint_files.people import prominence_over
+from app.keypoint_files.person_choice import prominence_over
 from app.keypoint_files.table import (
     KeypointOptions,
     KeypointTable,
@@ -24,8 +24,8 @@ from app.keypoint_files.table import (
     visibility_of,
 )
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses import FloatArray
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.video_limits import VideoLimits
 
 LEAST_LIKELIHOOD: Final = 0.6
 """Below it a keypoint is not seen: DeepLabCut's own default (``pcutoff``). What is less likely is

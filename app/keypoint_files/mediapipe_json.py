@@ -15,11 +15,17 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.keypoint_files.columns import AXES, MOST_LANDMARKS, numbered_landmark, plain, time_column
+from app.keypoint_files.column_names import (
+    AXES,
+    MOST_LANDMARKS,
+    numbered_landmark,
+    plain,
+    time_column,
+)
 from app.keypoint_files.mediapipe_table import table_of, times_of
 from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times
 from app.recognition.errors import KeypointFileError, RecognitionError
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
 """Bytes; a quarter of an hour of 33 landmarks with all their digits takes 150 MB."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.keypoint_files.columns import (
+from app.keypoint_files.column_names import (
     AXES,
     MOST_LANDMARKS,
     NAMES,
@@ -24,8 +24,8 @@ from app.keypoint_files.columns import (
 )
 from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only, visibility_of
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses import FloatArray
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.video_limits import VideoLimits
 
 
 def read_mediapipe_table(

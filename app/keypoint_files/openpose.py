@@ -17,12 +17,12 @@ import numpy as np
 
 from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.base import SIDES, Hand
-from app.recognition.landmark_sets import BODY_25, COCO_18, LandmarkSet
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.poses import FloatArray
-from app.recognition.subject import SubjectChoice, boxes_around
-from app.recognition.video_limits import VideoLimits
+from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
+from app.recognition.poses.frame import SIDES, Hand
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import BODY_25, COCO_18, LandmarkSet
+from app.recognition.recording.video_limits import VideoLimits
 
 SETS: Final[dict[int, LandmarkSet]] = {25: BODY_25, 18: COCO_18}
 """By the number of keypoints."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.subject import boxes_around, prominence
+from app.recognition.estimation.person_tracker import boxes_around, prominence
+from app.recognition.poses.sequence import FloatArray
 
 
 def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> float:

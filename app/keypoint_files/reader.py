@@ -16,12 +16,12 @@ from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.sleap import read_sleap
 from app.keypoint_files.table import KeypointOptions, KeypointTable
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
-from app.recognition.estimation.base import Hand
-from app.recognition.landmark_sets import landmark_named, missing_from
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.recording import Recording
-from app.recognition.salute import best_salute
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.skeletons import landmark_named, missing_from
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.salute import best_salute
+from app.recognition.recording.video_limits import VideoLimits
 
 Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
 

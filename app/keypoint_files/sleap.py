@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from app.keypoint_files.people import prominence_over
+from app.keypoint_files.person_choice import prominence_over
 from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses import FloatArray
-from app.recognition.subject import SubjectChoice, boxes_around
-from app.recognition.video_limits import VideoLimits
+from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.video_limits import VideoLimits
 
 
 def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:

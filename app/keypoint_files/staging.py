@@ -12,10 +12,10 @@ from typing import Final
 from zipfile import ZipFile, ZipInfo
 
 from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
-from app.keypoint_files.kind import Ending
+from app.keypoint_files.file_kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
 from app.recognition.errors import KeypointFileError
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.video_limits import VideoLimits
 
 MOST_BYTES: Final = 1024 * 1024 * 1024
 """Unpacked. The most frames there may be, of three people with face and hands at 6 kB each."""

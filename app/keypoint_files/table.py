@@ -9,8 +9,8 @@ from types import MappingProxyType
 import numpy as np
 
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.base import Hand
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import FloatArray
 
 LARGEST_FRACTION = 3.0
 """Coordinates of which nearly all are below this are fractions of the picture: landmarks beyond its

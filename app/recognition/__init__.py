@@ -4,6 +4,7 @@ What is listed here is the public surface. It needs no web framework, database o
 robot installs it alone.
 """
 
+from app.recognition.decision.result import Recognition
 from app.recognition.errors import (
     GestureError,
     LanguageError,
@@ -12,14 +13,13 @@ from app.recognition.errors import (
     RecognitionError,
     VideoError,
 )
-from app.recognition.extraction import extract_poses, record
-from app.recognition.gesture import Gesture
-from app.recognition.language import Language
-from app.recognition.poses import PoseSequence
-from app.recognition.recognition_result import Recognition
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.language import Language
+from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recognizer import Recognizer
-from app.recognition.recording import Recording
-from app.recognition.takes import Take, find_takes, takes_in
+from app.recognition.recording.extraction import extract_poses, record
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.segmentation import Take, find_takes, takes_in
 
 __all__ = [
     "Gesture",

@@ -7,23 +7,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.recognition.calibrated_vote import CalibratedVote
-from app.recognition.comparison import Comparison
+from app.recognition.decision.fused_vote import CalibratedVote
+from app.recognition.decision.rejection import VIEWS
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.decision.trace import Examination
 from app.recognition.errors import LanguageError, PoseError
-from app.recognition.examination import Examination
-from app.recognition.gesture import condensed
-from app.recognition.landmarks import other_side
-from app.recognition.language import Language
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.profile import voters_of
-from app.recognition.quality import fault
-from app.recognition.recognition_result import Recognition
-from app.recognition.rejection import VIEWS
-from app.recognition.repair import Repair, repaired
-from app.recognition.shape_references import ShapeReferences
-from app.recognition.switches import Counting
-from app.recognition.trajectory import Trajectory
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.profile import voters_of
+from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.language.language import Language
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.quality import fault
+from app.recognition.preprocessing.repair import Repair, repaired
 from app.recognition.voters import PAPER_VOTERS
 
 

@@ -13,17 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.recognition.decision.rejection import calibrated_confidence
+from app.recognition.decision.result import Recognition
 from app.recognition.errors import PoseError, RecognitionError
-from app.recognition.jumps import body_unit
-from app.recognition.landmarks import other_side
-from app.recognition.movement import followed_landmarks
-from app.recognition.poses import PoseSequence, joined
-from app.recognition.recognition_result import Recognition
+from app.recognition.features.motion import followed_landmarks
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import PoseSequence, joined
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.outliers import body_unit
+from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, displacements
 from app.recognition.recognizer import Recognizer
-from app.recognition.rejection import calibrated_confidence
-from app.recognition.salience import MIN_DISPLACEMENT, displacements
-from app.recognition.trajectory import Trajectory
-from app.recognition.transit import GRID_STEP, Motion, Span, motion_along, pieces_of
+from app.recognition.recording.trimming import GRID_STEP, Motion, Span, motion_along, pieces_of
 
 CONFIDENT = 0.8
 """Least confidence of a spotted gesture: below, another one of the language is about as near."""

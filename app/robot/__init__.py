@@ -5,6 +5,7 @@ apart: a `Source` gives frames, a `PoseEstimator` finds the landmarks in them, a
 landmarks into takes and recognitions.
 """
 
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
@@ -20,14 +21,13 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.hearing import hearing_of
-from app.robot.listener import Hearing, Listener
-from app.robot.opening import open_source
-from app.robot.phrase_listener import PhraseListener
+from app.robot.listeners.factory import hearing_of
+from app.robot.listeners.phrase_listener import PhraseListener
+from app.robot.listeners.salute_listener import Hearing, Listener
+from app.robot.listeners.spotting_listener import SpottingListener
 from app.robot.runtime import Runtime
-from app.robot.source import Frame, Notice, Quiet, Source
-from app.robot.spoken_language import SpokenLanguage
-from app.robot.spotting_listener import SpottingListener
+from app.robot.sources.registry import open_source
+from app.robot.sources.source import Frame, Notice, Quiet, Source
 
 __all__ = [
     "Event",

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing_extensions import Self
 
 from app.recognition import Language, Recognizer
-from app.recognition.language_file import read_content, seal
+from app.recognition.language.file import read_content, seal
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ from datetime import datetime
 from typing import Any
 
 from app.recognition import Recognition
-from app.recognition.phrase_parser import PhraseEvent
-from app.recognition.takes import TakeState
+from app.recognition.phrases.parser import PhraseEvent
+from app.recognition.recording.segmentation import TakeState
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ from pydantic import (
     model_validator,
 )
 
-from app.recognition.phrase_parser import PhraseEventKind
-from app.recognition.takes import TakeState
+from app.recognition.phrases.parser import PhraseEventKind
+from app.recognition.recording.segmentation import TakeState
 from app.robot.events import (
     Event,
     FramesDropped,

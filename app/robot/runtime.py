@@ -7,11 +7,13 @@ from typing import Final
 
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import landmarks_of
-from app.recognition.estimation.base import FrameLandmarks, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
-from app.recognition.extraction import moment_of
-from app.recognition.requirements import require_landmarks
-from app.recognition.salute import best_salute
+from app.recognition.language.requirements import require_landmarks
+from app.recognition.poses.frame import FrameLandmarks
+from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.salute import best_salute
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
@@ -23,9 +25,8 @@ from app.robot.events import (
     SourceRestored,
     SourceWarned,
 )
-from app.robot.listener import Hearing
-from app.robot.source import Frame, Notice, Quiet, Source
-from app.robot.spoken_language import SpokenLanguage
+from app.robot.listeners.salute_listener import Hearing
+from app.robot.sources.source import Frame, Notice, Quiet, Source
 
 REPORT_SECONDS: Final = 10.0
 """Between two reports of dropped frames: a slow machine drops some all the time, and a log of days

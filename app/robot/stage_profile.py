@@ -11,14 +11,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal, get_args
 
-from app.recognition.estimation.base import PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
-from app.recognition.extraction import moment_of
-from app.recognition.salute import best_salute
+from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.salute import best_salute
 from app.robot.energy import EnergyMeter
 from app.robot.events import TakeRecognized, TakeRejected
-from app.robot.listener import Hearing
-from app.robot.source import Frame, Source
+from app.robot.listeners.salute_listener import Hearing
+from app.robot.sources.source import Frame, Source
 
 Stage = Literal["grab", "pose", "hands", "salute", "recognition"]
 

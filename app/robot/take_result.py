@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from app.recognition import PoseError, Recognition, Take
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import TakeRecognized, TakeRejected
-from app.robot.spoken_language import SpokenLanguage
 
 
 def verdict_on_take(

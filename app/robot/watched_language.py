@@ -10,7 +10,7 @@ from typing import Final
 from typing_extensions import Self
 
 from app.recognition import RecognitionError
-from app.robot.spoken_language import SpokenLanguage
+from app.robot.active_language import SpokenLanguage
 
 LOOK_EVERY: Final = 0.5
 """Seconds between two looks at the file: sooner than a person who copied it wonders, and one call

@@ -2,6 +2,7 @@
 
 from app.store.clips import ClipStore, ClipWithJob
 from app.store.database import Database
+from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
 from app.store.folder_lock import FolderLock
 from app.store.jobs import JobStore
@@ -16,7 +17,6 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.recognitions import RecognitionStore
-from app.store.sources import SourceStore
 from app.store.uploads import Upload, UploadStore
 
 __all__ = [

@@ -12,9 +12,9 @@ from pathlib import Path
 from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, select
 
+from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.database import Database
 from app.store.errors import NotFound
-from app.store.files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.models import Clip, Job, JobStatus, new_id, now
 
 BAG, KEYPOINTS, VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (

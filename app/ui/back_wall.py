@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.outline import BinaryImage
-from app.recognition.trajectory_image import MARGIN, SIZE, Drawing
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.trajectory_image import MARGIN, SIZE, Drawing
 from app.ui.geometry import CubeGeometry
 
 

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Recognition
-from app.recognition.poses import FloatArray
-from app.recognition.wording import readable
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.text.wording import readable
 
 MAX_COLUMNS = 40
 """Gestures shown in the vote table; the farthest of a larger language say nothing about why."""

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import VideoError
-from app.recognition.video import read_frames
+from app.recognition.recording.video import read_frames
 
 Image = npt.NDArray[np.uint8]
 

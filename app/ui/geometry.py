@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.landmarks import LANDMARK_GROUPS, SKELETON
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.landmarks import LANDMARK_GROUPS, SKELETON
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 Points = npt.NDArray[np.float32]
 

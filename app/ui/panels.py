@@ -7,9 +7,9 @@ import numpy.typing as npt
 import viser
 
 from app.recognition import Recognition
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.wording import readable
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.text.wording import readable
 from app.ui import charts
 from app.ui.style import PANEL_STYLE
 

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import PoseError, PoseSequence, Recognition
-from app.recognition.explanation import Explanation
-from app.recognition.landmarks import SKELETON
-from app.recognition.salience import salient_landmarks
-from app.recognition.trajectory import Trajectory
-from app.recognition.video import read_frames
+from app.recognition.explanation.explanation import Explanation
+from app.recognition.poses.landmarks import SKELETON
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import salient_landmarks
+from app.recognition.recording.video import read_frames
 from app.resources import static_dir
 from app.ui import charts
 from app.ui.workspace import Range, WorkspaceView, compared_images

@@ -10,9 +10,9 @@ import numpy.typing as npt
 import viser
 
 from app.recognition import PoseSequence
+from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry, Points, seen
 from app.ui.theme import Rgb, Theme, linear, time_colours
-from app.ui.wall import Wall
 
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""

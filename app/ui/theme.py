@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 Rgb = tuple[int, int, int]
 """sRGB, 0 to 255."""

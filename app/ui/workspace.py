@@ -14,19 +14,19 @@ import numpy.typing as npt
 
 from app.recognition import Language, PoseSequence, Recognition, Recording
 from app.recognition.errors import PoseError
-from app.recognition.poses import FloatArray
-from app.recognition.salience import salient_landmarks
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import draw
-from app.recognition.wording import all_readable
+from app.recognition.features.trajectory_image import draw
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import salient_landmarks
+from app.recognition.text.wording import all_readable
+from app.ui.back_wall import Wall
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
-from app.ui.loopback import quiet, start_server
+from app.ui.loopback_server import quiet, start_server
 from app.ui.panels import Inspector, TimeCursor
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
-from app.ui.wall import Wall
 
 FIRST_LOOK = 0.45
 """Share of a range at which it is first shown: half of the trail is behind it, half ahead, and

@@ -8,7 +8,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Final
 
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
 from benchmarks.methods.base import Method
 from benchmarks.methods.ours import OurProfile
 

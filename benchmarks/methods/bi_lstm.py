@@ -14,7 +14,7 @@ os.environ.setdefault("KERAS_BACKEND", "jax")
 import jax
 import keras
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 UNITS = 32

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from hmmlearn.hmm import GaussianHMM
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.steps import STEPS
 from benchmarks.methods.trained import TrainedOnVariants
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.elastic import elastic_distances
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.matching.dtw import elastic_distances
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from benchmarks.methods.base import Method
 from benchmarks.methods.steps import directions, even_positions
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from benchmarks.methods.base import Method
 from benchmarks.methods.steps import STEPS, even_positions
 

@@ -30,9 +30,9 @@ import numpy.typing as npt
 from skimage.measure import moments, moments_hu
 
 from app.recognition import PoseSequence
-from app.recognition.landmarks import HIPS, SHOULDERS
-from app.recognition.movement import part_of
-from app.recognition.poses import FloatArray
+from app.recognition.features.motion import part_of
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.base import Method
 
 SIZE = 224

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pycrfsuite
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 LEVELS = 7

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseError
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 STEPS = 32
 """As many as profile ``full`` uses."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from sklearn.svm import SVC
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 PENALTY = 10.0

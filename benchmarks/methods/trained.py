@@ -7,9 +7,9 @@ from abc import abstractmethod
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import variants
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import variants
 from benchmarks.methods.base import Method
 from benchmarks.methods.steps import features
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from setuptools import setup
+from setuptools import find_packages, setup
 
 PACKAGE = "osg_ros"
 NODES = ("pose", "hand", "recognition", "visualisation", "command", "gesture")
@@ -16,7 +16,7 @@ def files(pattern: str) -> list[str]:
 setup(
     name=PACKAGE,
     version="0.1.0",
-    packages=[PACKAGE],
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
@@ -30,8 +30,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            *(f"{node}_node = {PACKAGE}.{node}_node:main" for node in NODES),
-            f"gesture_process = {PACKAGE}.gesture_process:main",
+            *(f"{node}_node = {PACKAGE}.nodes.{node}_node:main" for node in NODES),
+            f"gesture_process = {PACKAGE}.nodes.gesture_process:main",
         ]
     },
 )

@@ -2,7 +2,7 @@
 
 import { svg } from "./dom.js";
 
-/** Pairs of landmarks joined by a bone: `SKELETON` in app/recognition/landmarks.py, as positions in `POSE_LANDMARKS`. */
+/** Pairs of landmarks joined by a bone: `SKELETON` in app/recognition/poses/landmarks.py, as positions in `POSE_LANDMARKS`. */
 export const BONES = [
   [11, 12], [11, 13], [13, 15], [12, 14], [14, 16],
   [15, 19], [15, 17], [15, 21], [16, 20], [16, 18], [16, 22],

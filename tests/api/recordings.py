@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.recognition import PoseSequence, Recording
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 if TYPE_CHECKING:
     # What robots run is tested with these recordings where there is no studio, as on Python 3.10.
-    from app.api.studio import Studio
+    from app.api.services.context import Studio
 
 RATE = 20
 SALUTE_SECONDS = 0.6

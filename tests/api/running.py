@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import httpx
 import uvicorn
 
-from app.api.ending import StudioServer
-from app.api.studio import Studio
+from app.api.middleware.shutdown import StudioServer
+from app.api.services.context import Studio
 from app.server import create_app
 from app.settings import Settings
 

@@ -13,11 +13,11 @@ import numpy as np
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from app.bags.definitions import DEFINITIONS
+from app.bags.message_definitions import DEFINITIONS
 from app.recognition import Recording
-from app.recognition.estimation.base import Image
-from app.recognition.landmark_sets import SKELETON_2D
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import SKELETON_2D
 
 START = 1_763_731_234_123_456_789
 """Nanoseconds since 1970: not a round one, so that rounding shows."""

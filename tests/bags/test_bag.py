@@ -13,7 +13,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 
 from app.bags.bag import opened_bag
 from app.bags.clip import record_bag
-from app.bags.frames import BagFrames
+from app.bags.picture_frames import BagFrames
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (

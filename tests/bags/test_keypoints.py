@@ -13,9 +13,9 @@ from app.bags.clip import record_bag
 from app.bags.keypoints import ASSUMED_SIZE
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
-from app.recognition.extraction import Observer
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.video import probe, read_frames
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.recording.extraction import Observer
+from app.recognition.recording.video import probe, read_frames
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (
     Row,

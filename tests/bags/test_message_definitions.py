@@ -8,8 +8,8 @@ import pytest
 from rosbags.typesys import get_types_from_msg
 
 from app.bags.bag import USES
-from app.bags.definitions import DEFINITIONS
 from app.bags.keypoints import _READERS
+from app.bags.message_definitions import DEFINITIONS
 from tests.conftest import ROOT
 
 PACKAGES = ROOT / "ros2"

@@ -14,12 +14,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from app.bags.bag import opened_bag
-from app.bags.frames import BagFrames
+from app.bags.picture_frames import BagFrames
 from app.bags.pictures import raw_image
 from app.recognition.errors import BagError, VideoError
-from app.recognition.estimation.base import Image
-from app.recognition.video import VideoFrame
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Image
+from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video_limits import VideoLimits
 from tests.bags.bag_files import DELAY, START, Row, compressed, header, message, raw, write_bag
 from tests.recognition.damaged_clips import picture
 

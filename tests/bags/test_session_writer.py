@@ -11,7 +11,7 @@ import av
 import numpy as np
 import pytest
 
-from app.bags.session import CHANNELS, NamedRecognition, write_session
+from app.bags.session_writer import CHANNELS, NamedRecognition, write_session
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
 from tests.api.recordings import recording_of

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from app.bags import unpacking
-from app.bags.unpacking import is_bag_archive, placed
+from app.bags import staging
+from app.bags.staging import is_bag_archive, placed
 from app.recognition.errors import BagError
 from tests.bags.bag_files import zip_of
 
@@ -49,7 +49,7 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
     tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = zip_of(tmp_path / "dive.zip", {"dive/dive.mcap": bytes(3_000_000)})
-    monkeypatch.setattr(unpacking, "MOST_BYTES", 2_000_000)
+    monkeypatch.setattr(staging, "MOST_BYTES", 2_000_000)
     with pytest.raises(BagError, match="beyond the limit of"), placed(path):
         pass
     # A lying directory: the size is written twice, and the second one is what is looked at first.
@@ -63,7 +63,7 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
 
 def test_a_million_entries_are_not_walked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = zip_of(tmp_path / "dive.zip", {f"{index}.mcap": b"" for index in range(12)})
-    monkeypatch.setattr(unpacking, "MOST_ENTRIES", 10)
+    monkeypatch.setattr(staging, "MOST_ENTRIES", 10)
     with pytest.raises(BagError, match="12 entries, more than the limit of 10"), placed(path):
         pass
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from app.recognition.estimation import FrameLandmarks, Image
-from app.recognition.live import LONGEST_SALUTE
-from app.recognition.takes import LONGEST_TAKE
+from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.robot import Frame, Listener, Notice
 from benchmarks.endurance import LoopedClip, allocated_bytes, endure, slope_of
 from tests.api.recordings import FRAME_SIZE, RATE, recording_of
 from tests.recognition.damaged_clips import write_clip
-from tests.recognition.test_live import frames_of
+from tests.recognition.recording.test_live_segmentation import frames_of
 from tests.robot.languages import spoken
 
 MINUTES = 6

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from benchmarks.two_samples import coverage, kolmogorov_smirnov, told_apart
 
 

@@ -5,8 +5,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import Person
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import Person
 from benchmarks.recorded_sets import RecordedSet
 from benchmarks.shared_sets import demonstrated
 from benchmarks.take_comparison import FEATURES, TakeComparison, demonstration_of

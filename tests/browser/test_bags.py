@@ -11,7 +11,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.recognition.video import read_frames
+from app.recognition.recording.video import read_frames
 from tests.api.recordings import recording_of
 from tests.api.running import Running
 from tests.bags.bag_files import (

@@ -10,9 +10,9 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
-from app.recognition.landmark_sets import BODY_25
+from app.recognition.poses.skeletons import BODY_25
+from tests.api.ingest.test_keypoint_clips import packed
 from tests.api.running import Running
-from tests.api.test_keypoint_clips import packed
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import library_of

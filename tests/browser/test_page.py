@@ -10,8 +10,8 @@ import httpx
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from app.recognition.landmarks import POSE_LANDMARKS, SKELETON
-from app.recognition.salute import ENTER_SCORE
+from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
+from app.recognition.recording.salute import ENTER_SCORE
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop

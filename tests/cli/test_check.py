@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from app.health_text import health_text
+from app.cli.check_report import health_text
 from app.recognition import Gesture, Language
-from app.recognition.grammar import Grammar
-from app.recognition.health import check_health
-from app.recognition.phrase import OneOf, Phrase
+from app.recognition.health.check import check_health
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.clip_argument import Demonstration, clip_and_span
+from app.cli.clip_argument import Demonstration, clip_and_span
 from app.recognition import GestureError
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition import Language
-from app.recognition.landmark_sets import COCO_17
+from app.recognition.poses.skeletons import COCO_17
 from tests.command_line import OsgStudio
 from tests.documented import documented
 from tests.marker_clips import RATE, marker_clip

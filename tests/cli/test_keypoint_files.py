@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.estimation.base import Hand
-from app.recognition.landmark_sets import BODY_25, COCO_18
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.skeletons import BODY_25, COCO_18
 from tests.command_line import OsgStudio
 from tests.documented import documented
 from tests.keypoint_files.files import (

@@ -15,10 +15,10 @@ import jsonschema
 import pytest
 from typer.main import get_command
 
-from app.cli import command_line
+from app.cli.application import command_line
+from app.cli.ros_arguments import apart
 from app.robot.messages import published_schema
 from app.robot.stage_profile import STAGES
-from app.ros_arguments import apart
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.documented import documented
@@ -33,7 +33,7 @@ ON_A_CLIP = documented("robot", below="Try a clip, then a camera")[0]
 WITHOUT_THE_WEB_APP = f"""
 import sys
 sys.modules.update(dict.fromkeys({sorted(modules_of(requirements_of("studio")))!r}))
-from app.cli import main
+from app.cli.application import main
 main(sys.argv[1:])
 """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.ros_arguments import apart
+from app.cli.ros_arguments import apart
 from tests.command_line import OsgStudio
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from app.cli.terminal import show_explanation
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation import explain
-from app.recognition.situation import Situation
-from app.terminal import show_explanation
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.explanation import explain
 from tests.recognition.strategies import SHAPES, recording
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluation.confusion import REFUSED, ConfusionMatrix
-from app.evaluation.confusion_picture import confusion_svg
+from app.evaluation.confusion_chart import confusion_svg
 
 LABELS = ("circle", "wedge", "<three & more>")
 pairs = st.lists(st.tuples(st.sampled_from(LABELS), st.sampled_from([*LABELS, None])), min_size=1)

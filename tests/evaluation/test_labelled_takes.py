@@ -9,7 +9,7 @@ from app.evaluation.labelled_files import labelled_files
 from app.evaluation.labelled_takes import collected
 from app.keypoint_files import KeypointOptions
 from app.recognition import Recording
-from app.recognition.landmark_sets import BODY_25
+from app.recognition.poses.skeletons import BODY_25
 from tests.evaluation.takes import drawn_takes
 from tests.keypoint_files.files import write_openpose
 from tests.recognition.strategies import circle, recording

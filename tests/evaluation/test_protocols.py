@@ -5,7 +5,7 @@ import pytest
 
 from app.evaluation.protocols import recognised_variants
 from app.recognition import Language, RecognitionError
-from app.recognition.osg_reference import from_reference, to_reference
+from app.recognition.language.osg_reference import from_reference, to_reference
 from tests.conftest import ROOT
 
 

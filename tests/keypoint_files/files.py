@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.estimation.base import Hand
-from app.recognition.landmark_sets import BODY_25, LandmarkSet
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.skeletons import BODY_25, LandmarkSet
 
 
 def write_openpose(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.keypoint_files import KeypointOptions, read_keypoints
 from app.recognition.errors import RecognitionError
-from app.recognition.landmark_sets import BODY_25
+from app.recognition.poses.skeletons import BODY_25
 from tests.keypoint_files.files import (
     write_deeplabcut,
     write_long,

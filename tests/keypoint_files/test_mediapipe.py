@@ -13,9 +13,9 @@ import pytest
 
 from app.keypoint_files import KeypointOptions, read_keypoints
 from app.recognition.errors import KeypointFileError, VideoError
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import PoseSequence
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.video_limits import VideoLimits
 from tests.keypoint_files.files import (
     fractions,
     unseen_frames,

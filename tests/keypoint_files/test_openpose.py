@@ -11,10 +11,10 @@ import pytest
 
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.base import Hand
-from app.recognition.landmark_sets import BODY_25, COCO_18, LandmarkSet
-from app.recognition.poses import PoseSequence
-from app.recognition.salute import ENTER_SCORE
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.poses.skeletons import BODY_25, COCO_18, LandmarkSet
+from app.recognition.recording.salute import ENTER_SCORE
 from tests.keypoint_files.files import unseen_frames, write_openpose
 from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import circle, recording

@@ -9,7 +9,7 @@ import pytest
 
 from app.keypoint_files import keypoint_ending, placed
 from app.recognition.errors import KeypointFileError, VideoError
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.video_limits import VideoLimits
 
 
 def archive_of(path: Path, **entries: str) -> Path:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer, Recording, Take, takes_in
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from languages.build import FOLDER, LANGUAGES, TABLE_2
 
 LABELS = tuple(entry.label for entry in TABLE_2)

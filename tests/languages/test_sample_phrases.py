@@ -2,8 +2,8 @@
 
 import pytest
 
-from app.recognition.ambiguity import find_ambiguities
-from app.recognition.phrase_parser import PhraseParser
+from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.phrases.parser import PhraseParser
 from languages.build import PHRASES
 
 

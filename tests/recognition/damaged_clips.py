@@ -17,7 +17,7 @@ import numpy as np
 from av.container import OutputContainer
 from av.video.stream import VideoStream
 
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 
 WIDTH, HEIGHT = 64, 48
 RATE = 25

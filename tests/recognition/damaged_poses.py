@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.sides import sides_of
+from app.recognition.preprocessing.side_swaps import sides_of
 
 
 def with_sides_exchanged(poses: PoseSequence, frames: Iterable[int]) -> PoseSequence:

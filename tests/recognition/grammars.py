@@ -10,9 +10,9 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from app.recognition import LanguageError
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
-from app.recognition.phrase_automaton import Reading, Said
+from app.recognition.phrases.automaton import Reading, Said
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 
 LABELS = ("a", "b", "c")
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.landmarks import HIPS, SHOULDERS
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 LANDMARKS = (*SHOULDERS, *HIPS, "left_wrist", "right_wrist")
 SALUTE_PLACE = np.array([-0.95, -0.8])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 KNUCKLES = np.array([[0.27, 0.95, 0], [0.04, 1.0, 0], [-0.17, 0.93, 0], [-0.36, 0.83, 0]])
 """Index to little finger."""

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from hypothesis import strategies as st
 
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 Shape = Callable[[FloatArray], FloatArray]
 """Maps shares of the duration ``(T,)`` to points ``(T, 2)`` in torso lengths from its centre."""

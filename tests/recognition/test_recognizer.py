@@ -17,9 +17,9 @@ from app.recognition import (
     RecognitionError,
     Recognizer,
 )
+from app.recognition.features.trajectory_image import Drawing, draw
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import relative_contributions
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import Drawing, draw
 from app.recognition.voters import PAPER_VOTERS
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, rest, wedge
 
@@ -215,7 +215,7 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
         drawn.append(trajectory.landmarks)
         return draw(trajectory, simplification)
 
-    monkeypatch.setattr("app.recognition.shape_references.draw", noted)
+    monkeypatch.setattr("app.recognition.decision.shape_references.draw", noted)
     recognizer.recognize(recording(circle))
     assert sorted(drawn) == [("left_wrist",), ("right_wrist",)]
 

@@ -9,10 +9,10 @@ import time
 from contextlib import closing
 from dataclasses import replace
 
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import OneOf, Phrase
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase
 from app.robot import Event, Listener, PhraseListener, SpokenLanguage
-from app.robot.publishing import open_publisher
+from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import heard, language_of

@@ -10,8 +10,8 @@ from typing import Any, get_args
 import jsonschema
 import pytest
 
-from app.recognition.phrase_parser import PhraseParser
-from app.recognition.takes import TakeState
+from app.recognition.phrases.parser import PhraseParser
+from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     Event,
     FramesDropped,

@@ -13,7 +13,7 @@ import pytest
 from app.recognition import Gesture, Language, PoseSequence, RecognitionError, record
 from app.recognition.errors import LandmarkError, LanguageError
 from app.recognition.estimation import PoseEstimator, create_estimator
-from app.recognition.takes import TakeState
+from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     Event,
     LanguageChanged,
@@ -29,8 +29,8 @@ from app.robot import (
     StateChanged,
     open_source,
 )
-from app.robot.cameras import NetworkStream
-from app.robot.live_source import LiveSource
+from app.robot.sources.cameras import NetworkStream
+from app.robot.sources.live import LiveSource
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.robot.languages import spoken
 from tests.robot.mjpeg_server import MjpegServer

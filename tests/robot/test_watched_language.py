@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition import LanguageError, RecognitionError
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
 from app.robot import SpokenLanguage
 from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
 from tests.robot.languages import language_of, spoken

@@ -12,15 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Language
-from osg_ros.command_dialogue import (
+from osg_ros.commands.dialogue import (
     CommandDialogue,
     Decision,
     HeardGesture,
     HeardPhrase,
     Rules,
 )
-from osg_ros.command_table import read_commands
-from tests.ros2.test_command_dialogue import RULES, TABLE, gestures, shown
+from osg_ros.commands.table import read_commands
+from tests.ros2.commands.test_dialogue import RULES, TABLE, gestures, shown
 from tests.ros2.workspace import ROOT
 
 PHRASES = replace(TABLE, phrase_labels=frozenset({"circle", "line"}))

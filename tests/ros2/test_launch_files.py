@@ -59,7 +59,7 @@ def launch(monkeypatch: pytest.MonkeyPatch) -> None:
         module = ModuleType(name)
         vars(module).update(content)
         monkeypatch.setitem(sys.modules, name, module)
-    monkeypatch.delitem(sys.modules, "osg_ros.launching", raising=False)
+    monkeypatch.delitem(sys.modules, "osg_ros.launch_arguments", raising=False)
 
 
 def described(name: str) -> list[Any]:

@@ -122,7 +122,7 @@ def test_the_parameter_file_names_parameters_that_exist() -> None:
     content = yaml.safe_load((NODES / "config" / "gestures.yaml").read_text(encoding="utf-8"))
     named = set(content["/**"]["ros__parameters"])
     declared = set()
-    for path in (NODES / "osg_ros").glob("*.py"):
+    for path in (NODES / "osg_ros").rglob("*.py"):
         declared |= set(re.findall(r'Setting\(\s*"(\w+)"', path.read_text(encoding="utf-8")))
     assert named <= declared
     assert declared - named == {"language", "autostart", "input", "image_width", "image_height"}
@@ -132,7 +132,7 @@ def test_what_the_documentation_runs_exists() -> None:
     page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
     scripts = setup_arguments()["entry_points"]["console_scripts"]
     executables = {script.split(" = ")[0] for script in scripts}
-    launching = (NODES / "osg_ros" / "launching.py").read_text(encoding="utf-8")
+    launching = (NODES / "osg_ros" / "launch_arguments.py").read_text(encoding="utf-8")
     run = re.findall(r"^ros2 run osg_ros (\w+)", page, re.MULTILINE)
     launched = re.findall(r"^ros2 launch osg_ros (\S+)(.*)$", page, re.MULTILINE)
     assert run
@@ -145,7 +145,7 @@ def test_what_the_documentation_runs_exists() -> None:
 
 def test_every_topic_that_a_node_publishes_is_documented() -> None:
     page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
-    for path in (NODES / "osg_ros").glob("*.py"):
+    for path in (NODES / "osg_ros").rglob("*.py"):
         source = path.read_text(encoding="utf-8")
         topics = re.findall(r'\.publisher\(\s*[^,]+,\s*f?"([^"]+)"', source)
         assert [
@@ -159,13 +159,13 @@ def test_the_nodes_are_written_for_the_python_of_humble(path: Path) -> None:
 
 
 def test_the_command_node_needs_ros_alone() -> None:
-    seen, waiting = set(), ["command_node"]
+    seen, waiting = set(), ["nodes.command_node"]
     while waiting:
         name = waiting.pop()
         seen.add(name)
-        source = (NODES / "osg_ros" / f"{name}.py").read_text(encoding="utf-8")
+        source = (NODES / "osg_ros" / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
         assert not re.search(r"^(from|import) app\b", source, re.MULTILINE), name
-        found = re.findall(r"^from osg_ros\.(\w+) import", source, re.MULTILINE)
+        found = re.findall(r"^from osg_ros\.([\w.]+) import", source, re.MULTILINE)
         waiting += [each for each in found if each not in seen]
     assert len(seen) > 3
 

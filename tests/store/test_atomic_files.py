@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.store.files import publish
+from app.store.atomic_files import publish
 
 
 def test_a_published_file_replaces_what_was_there(tmp_path: Path) -> None:

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseSequence
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import MARGIN, SIZE, draw
+from app.recognition.features.trajectory_image import MARGIN, SIZE, draw
+from app.recognition.poses.trajectory import Trajectory
+from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry
-from app.ui.wall import Wall
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 

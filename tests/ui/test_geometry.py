@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import PoseSequence
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.ui.geometry import (
     DEPTH_LIMITS,
     DEPTH_PER_SECOND,

@@ -10,14 +10,14 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin, Subprotocol
 
-from app.ui import loopback
+from app.ui import loopback_server
 
 PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
 
 
 @pytest.fixture
 def server() -> Iterator[viser.ViserServer]:
-    running = loopback.start_server()
+    running = loopback_server.start_server()
     yield running
     running.stop()
 
@@ -43,8 +43,8 @@ def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> 
     refused = Event()
     tunnels: list[object] = []
     monkeypatch.setattr("viser._viser.ViserTunnel", lambda *_: tunnels.append(1))
-    monkeypatch.setattr(loopback, "no_public_tunnel", lambda *_, **__: refused.set())
-    server = loopback.start_server()
+    monkeypatch.setattr(loopback_server, "no_public_tunnel", lambda *_, **__: refused.set())
+    server = loopback_server.start_server()
     request = msgspec.msgpack.encode({"type": "ShareUrlRequest"})
     try:
         url = f"ws://127.0.0.1:{server.get_port()}"
@@ -57,7 +57,7 @@ def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_nothing_is_printed_for_a_workspace(capsys: pytest.CaptureFixture[str]) -> None:
-    server = loopback.start_server()
-    with loopback.quiet():
+    server = loopback_server.start_server()
+    with loopback_server.quiet():
         server.stop()
     assert capsys.readouterr().out == ""

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from app.ui.analysis import MAX_PICTURES, POLICY, analysis_page
+from app.ui.recognition_page import MAX_PICTURES, POLICY, analysis_page
 from app.ui.workspace import Range, WorkspaceView
 from tests.recognition.damaged_clips import write_clip
 from tests.ui.views import view_in

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import viser
 
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import draw
+from app.recognition.features.trajectory_image import draw
+from app.recognition.poses.trajectory import Trajectory
+from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry
 from app.ui.scene import SpaceTimeCube, text_image
 from app.ui.theme import DARK, LIGHT
-from app.ui.wall import Wall
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 

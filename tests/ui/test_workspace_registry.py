@@ -9,9 +9,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.ui import registry as module
-from app.ui.registry import TooManyWorkspacesError, WorkspaceRegistry
+from app.ui import workspace_registry as module
 from app.ui.workspace import Workspace
+from app.ui.workspace_registry import TooManyWorkspacesError, WorkspaceRegistry
 
 
 @pytest.fixture

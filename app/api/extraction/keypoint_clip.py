@@ -14,8 +14,8 @@ from app.recognition.errors import (
     KeypointFileError,
     RecognitionError,
 )
-from app.recognition.recording import Recording
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
 NO_HANDS = (

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from app.bags.session import NamedRecognition
+from app.bags.session_writer import NamedRecognition
 from app.recognition import Recognition
 
 

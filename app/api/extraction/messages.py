@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import BaseModel, Field, TypeAdapter
 
 if TYPE_CHECKING:
-    from app.recognition.poses import FloatArray
+    from app.recognition.poses.sequence import FloatArray
 
 Pose = tuple[tuple[float, float] | None, ...]
 """A body in one frame, to be drawn: of each of `POSE_LANDMARKS` how far right and how far down it
@@ -20,7 +20,7 @@ POSE_DIGITS = 4
 
 
 class Probed(BaseModel):
-    """What the clip says about itself (`app.recognition.video.VideoInfo`)."""
+    """What the clip says about itself (`app.recognition.recording.video.VideoInfo`)."""
 
     kind: Literal["probed"] = "probed"
     width: int
@@ -49,7 +49,7 @@ class TopicSeen(BaseModel):
 
 
 class BagProbed(BaseModel):
-    """What a dive recording offers (`app.bags.summary.usable_topics`)."""
+    """What a dive recording offers (`app.bags.topic_summary.usable_topics`)."""
 
     kind: Literal["bag_probed"] = "bag_probed"
     topics: tuple[TopicSeen, ...]

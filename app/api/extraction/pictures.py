@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition import video
+from app.recognition.recording import video
 
 Image = npt.NDArray[np.uint8]
 

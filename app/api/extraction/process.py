@@ -33,7 +33,7 @@ PROBE_SECONDS = 30.0
 
 PROBE_BAG_SECONDS = 120.0
 """Longest time for looking into a dive recording. All of it is read once to know how long its
-topics are, and unpacked before: the largest there may be (`app.bags.unpacking.MOST_BYTES`) at
+topics are, and unpacked before: the largest there may be (`app.bags.staging.MOST_BYTES`) at
 20 MB/s, the slowest disk that is still sold."""
 
 _PACKAGE_PARENT = Path(__file__).resolve().parents[3]

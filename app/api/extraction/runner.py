@@ -11,7 +11,7 @@ from pathlib import Path
 
 from starlette.concurrency import run_in_threadpool
 
-from app.api.broadcast import Broadcast
+from app.api.events.broadcast import Broadcast
 from app.api.extraction import process
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.keypoint_source import KeypointSource

@@ -34,10 +34,10 @@ from app.api.extraction.messages import (
 
 if TYPE_CHECKING:
     from app.api.extraction.keypoint_source import KeypointSource
-    from app.recognition.estimation.base import Body, FrameLandmarks
     from app.recognition.estimation.water import WaterCorrection
-    from app.recognition.recording import Recording
-    from app.recognition.video import VideoFrame
+    from app.recognition.poses.frame import Body, FrameLandmarks
+    from app.recognition.recording.recording import Recording
+    from app.recognition.recording.video import VideoFrame
 
 PROGRESS_SECONDS = 0.1
 """Shortest time between two reports: what an eye follows on a progress bar."""
@@ -47,16 +47,16 @@ Report = Callable[[Message], None]
 
 def probe(clip: Path, report: Report) -> None:
     """Report what the clip says about itself."""
-    from app.recognition import video
+    from app.recognition.recording import video
 
     report(Probed(**asdict(video.probe(clip))))
 
 
 def probe_bag(bag: Path, report: Report) -> None:
     """Report which topics of a dive recording a clip can be made of."""
-    from app.bags.kind import HEAD_BYTES, bag_kind
-    from app.bags.summary import usable_topics
-    from app.bags.unpacking import is_bag_archive
+    from app.bags.bag_kind import HEAD_BYTES, bag_kind
+    from app.bags.staging import is_bag_archive
+    from app.bags.topic_summary import usable_topics
 
     with bag.open("rb") as file:
         kind = bag_kind(file.read(HEAD_BYTES))
@@ -70,7 +70,7 @@ def probe_bag(bag: Path, report: Report) -> None:
 def extract(files: ClipFiles, water: WaterCorrection, report: Report) -> None:
     """Write the clip's pictures and recording, reporting progress and the newest pose."""
     from app.api.extraction.pictures import write_poster
-    from app.recognition import extraction
+    from app.recognition.recording import extraction
 
     # First of all: a card with a picture says more than one without.
     write_poster(files.video, files.poster)
@@ -135,11 +135,11 @@ def extract_keypoints(file: Path, told: KeypointSource, files: ClipFiles, report
 
 def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report) -> None:
     """Write a clip's session as MCAP, with the recognitions that the file `wanted` tells."""
-    from app.api.extraction.session_wishes import SessionWishes
-    from app.bags.session import write_session as write
+    from app.api.extraction.mcap_request import SessionWishes
+    from app.bags.session_writer import write_session as write
     from app.recognition.errors import VideoError
-    from app.recognition.recording import Recording
-    from app.recognition.video import probe as probe_video
+    from app.recognition.recording.recording import Recording
+    from app.recognition.recording.video import probe as probe_video
 
     video: Path | None = None
     wishes = SessionWishes.model_validate_json(wanted.read_bytes())

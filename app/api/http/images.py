@@ -7,8 +7,8 @@ from pathlib import Path
 from fastapi import Request
 from fastapi.responses import FileResponse
 
-from app.api.problems import ProblemError
-from app.api.ranges import keep_single_range
+from app.api.http.problems import ProblemError
+from app.api.http.ranges import keep_single_range
 
 
 def sent_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:

@@ -14,7 +14,7 @@ _ISO_BOXES = frozenset({b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"
 def video_type(head: bytes) -> str | None:
     """Return the media type of a video that begins with `head`, or None when it is no video.
 
-    The kinds are those that `app.recognition.video` opens: MP4 and QuickTime, Matroska and WebM,
+    The kinds are those that `recording.video` opens: MP4 and QuickTime, Matroska and WebM,
     AVI, MPEG transport streams.
     """
     if head[4:8] in _ISO_BOXES:

@@ -25,8 +25,8 @@ from app.recognition.errors import (
     TopicError,
     VideoError,
 )
-from app.recognition.language_file import document_steps
-from app.recognition.strict_json import pointer_to
+from app.recognition.language.file import document_steps
+from app.recognition.text.strict_json import pointer_to
 from app.store import Conflict, NotFound, StoreError
 
 MEDIA_TYPE = "application/problem+json"

@@ -6,7 +6,7 @@ import re
 
 from fastapi import Request
 
-from app.api.problems import ProblemError
+from app.api.http.problems import ProblemError
 
 _SINGLE_RANGE = re.compile(r"bytes=(\d{1,18})-(\d{0,18})|bytes=-(\d{1,18})", re.ASCII)
 

@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.extraction.messages import Pose, TopicSeen
-from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
-from app.recognition.grammar_schema import GrammarEntry
-from app.recognition.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
-from app.recognition.language_schema import TuningEntry
-from app.recognition.profile import ProfileName
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.gestures.profile import ProfileName
+from app.recognition.language.grammar_schema import GrammarEntry
+from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+from app.recognition.language.schema import TuningEntry
 from app.store import JobStatus
 
 MOST_SECONDS = 24 * 60 * 60

@@ -7,7 +7,7 @@ from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
-from app.api.problems import Fault, ProblemError
+from app.api.http.problems import Fault, ProblemError
 from app.keypoint_files import KeypointOptions
 
 LONGEST_TOPIC: Final = 255

@@ -10,12 +10,12 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.extraction.keypoint_source import KeypointSource
 from app.api.extraction.messages import Failed, KeypointsProbed, Probed, TopicSeen
-from app.api.media_types import HEAD_BYTES, video_type
-from app.api.problems import ProblemError
-from app.api.schemas import ClipAccepted
-from app.api.studio import Studio
-from app.api.upload_fields import UploadFields
-from app.bags.kind import bag_kind
+from app.api.http.media_types import HEAD_BYTES, video_type
+from app.api.http.problems import ProblemError
+from app.api.http.schemas import ClipAccepted
+from app.api.ingest.fields import UploadFields
+from app.api.services.context import Studio
+from app.bags.bag_kind import bag_kind
 from app.keypoint_files import Ending, keypoint_ending
 from app.store import Clip
 

@@ -16,9 +16,9 @@ from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
 
-from app.api.body_limit import too_large
-from app.api.problems import ProblemError
-from app.api.upload_fields import LONGEST, UploadFields
+from app.api.http.problems import ProblemError
+from app.api.ingest.fields import LONGEST, UploadFields
+from app.api.middleware.body_limit import too_large
 from app.settings import Settings
 
 FRAME_BYTES = 64 * 1024

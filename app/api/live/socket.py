@@ -18,15 +18,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
-from app.api.playback import UNSUPPORTED_DATA
-from app.api.studio import CurrentStudio, Studio
-from app.api.viser_relay import POLICY_VIOLATION, same_origin
-from app.api.watcher import Frame, Watcher
+from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
+from app.api.live.watcher import Frame, Watcher
+from app.api.services.context import CurrentStudio, Studio
 from app.recognition import RecognitionError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.base import PoseEstimator
-from app.recognition.profile import ProfileName
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.gestures.profile import ProfileName
 from app.store import NotFound
 
 MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013

@@ -16,10 +16,11 @@ from pydantic import BaseModel
 from app.api.extraction.messages import Pose, pose_in
 from app.recognition import Recognition, RecognitionError, Recognizer, Take
 from app.recognition.errors import VideoError
-from app.recognition.estimation.base import Image, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
-from app.recognition.live import LiveTakes, Sight
-from app.recognition.takes import TakeState
+from app.recognition.poses.frame import Image
+from app.recognition.recording.live_segmentation import LiveTakes, Sight
+from app.recognition.recording.segmentation import TakeState
 
 MOST_PIXELS: Final = 2_500_000
 """Of one frame, with the margin that FFmpeg adds when it counts: 1920 x 1080 passes, and the page

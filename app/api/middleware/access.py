@@ -17,15 +17,14 @@ from starlette.datastructures import Headers
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.problems import ProblemError
+from app.api.http.problems import ProblemError
+from app.api.http.websockets import POLICY_VIOLATION
 from app.settings import Settings, is_loopback
 
 COOKIE = "osg_studio_session"
 COOKIE_SECONDS = 30 * 24 * 60 * 60
 """A month: as long as a project of designing gestures takes."""
 
-POLICY_VIOLATION = 1008
-"""Websocket close code (RFC 6455, Sec. 7.4.1)."""
 
 OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
 """Answered without a token, for whoever watches whether the server lives."""

@@ -9,12 +9,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Response
 
 from app import __version__
-from app.api.ending import stopping
-from app.api.languages import Revision
-from app.api.problems import ProblemError, documented
-from app.api.studio import CurrentStudio
+from app.api.http.problems import ProblemError, documented
+from app.api.middleware.shutdown import stopping
+from app.api.routes.languages import Revision
+from app.api.services.context import CurrentStudio
 from app.recognition import Language
-from app.recognition.health import Progress, check_health
+from app.recognition.health.check import Progress, check_health
 
 CACHED_REPORTS = 64
 """Reports kept ready: one of twenty gestures is about a hundred kilobytes of Python objects."""

@@ -11,17 +11,17 @@ from fastapi.responses import FileResponse
 from pydantic import TypeAdapter
 from starlette.concurrency import run_in_threadpool
 
-from app.api.intake import client_of, examined, require_place_in_queue, take_in
-from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
-from app.api.problems import ProblemError, documented
-from app.api.ranges import keep_single_range
-from app.api.schemas import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
-from app.api.still_pictures import sent_picture
-from app.api.studio import CurrentStudio, Studio
-from app.api.upload_fields import UploadFields
-from app.api.uploads import receive_file
-from app.recognition.poses import PoseSequence
-from app.recognition.takes import takes_in
+from app.api.http.images import sent_picture
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, listing
+from app.api.http.problems import ProblemError, documented
+from app.api.http.ranges import keep_single_range
+from app.api.http.schemas import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
+from app.api.ingest.fields import UploadFields
+from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.ingest.multipart import receive_file
+from app.api.services.context import CurrentStudio, Studio
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.segmentation import takes_in
 from app.store import ClipStore, ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2

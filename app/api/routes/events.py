@@ -10,10 +10,10 @@ from fastapi import APIRouter
 from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.broadcast import News
-from app.api.jobs import EVENT_STREAM, job_view
-from app.api.problems import documented
-from app.api.studio import CurrentStudio, Studio
+from app.api.events.broadcast import News
+from app.api.http.problems import documented
+from app.api.routes.jobs import EVENT_STREAM, job_view
+from app.api.services.context import CurrentStudio, Studio
 from app.store import NotFound
 
 router = APIRouter(prefix="/events", tags=["events"])

@@ -7,21 +7,21 @@ from functools import partial
 
 from fastapi import APIRouter, Response
 
-from app.api.gesture_edits import (
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import GestureChange, GestureDraft, LanguageView
+from app.api.routes.languages import ExpectedRevision, Revision, announced
+from app.api.services.context import CurrentStudio
+from app.api.services.demonstration_sources import remember
+from app.api.services.gesture_edits import (
     demonstration_at,
     gesture_in,
     require_free,
     switched,
     with_change,
 )
-from app.api.language_drafts import editing
-from app.api.languages import ExpectedRevision, Revision, announced
-from app.api.problems import ProblemError, documented
-from app.api.schemas import GestureChange, GestureDraft, LanguageView
-from app.api.sources import remember
-from app.api.studio import CurrentStudio
+from app.api.services.language_documents import editing
 from app.recognition import Gesture, Language, LanguageError
-from app.recognition.png import encode_png
+from app.recognition.features.png import encode_png
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
 

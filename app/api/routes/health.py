@@ -5,8 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from app import __version__
-from app.api.problems import documented
-from app.api.schemas import Health
+from app.api.http.problems import documented
+from app.api.http.schemas import Health
 from app.recognition.models import installed_models
 
 router = APIRouter(tags=["health"])

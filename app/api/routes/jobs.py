@@ -10,9 +10,9 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
 from app.api.extraction.runner import Progress
-from app.api.problems import documented
-from app.api.schemas import JobView
-from app.api.studio import CurrentStudio, Studio
+from app.api.http.problems import documented
+from app.api.http.schemas import JobView
+from app.api.services.context import CurrentStudio, Studio
 from app.store import Job, JobStatus, NotFound
 
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {

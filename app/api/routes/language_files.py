@@ -10,17 +10,17 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
-from app.api.language_drafts import draft_of
-from app.api.languages import Revision, announced, tag_of
-from app.api.problems import documented
-from app.api.schemas import LanguageView, Name
-from app.api.studio import CurrentStudio, Studio
+from app.api.http.problems import documented
+from app.api.http.schemas import LanguageView, Name
+from app.api.routes.languages import Revision, announced, tag_of
+from app.api.services.context import CurrentStudio, Studio
+from app.api.services.language_documents import draft_of
 from app.recognition import Language
-from app.recognition.language_schema import FORMAT, VERSION
-from app.recognition.osg_reference import from_reference, is_reference, to_reference
-from app.recognition.proteus import SUFFIX as PROTEUS_SUFFIX
-from app.recognition.proteus import to_proteus
-from app.recognition.requirements import requirements_of
+from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
+from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
+from app.recognition.language.proteus import to_proteus
+from app.recognition.language.requirements import requirements_of
+from app.recognition.language.schema import FORMAT, VERSION
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 

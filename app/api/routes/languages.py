@@ -12,10 +12,9 @@ from urllib.parse import quote
 from fastapi import APIRouter, Depends, Header, Query, Response
 from pydantic import TypeAdapter
 
-from app.api.language_drafts import draft_of, editing, name_of_copy
-from app.api.listings import NOT_SENT_AGAIN, KnownTags, listing
-from app.api.problems import ProblemError, documented
-from app.api.schemas import (
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, listing
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import (
     GestureView,
     LanguageChange,
     LanguageDraft,
@@ -23,12 +22,13 @@ from app.api.schemas import (
     LanguageView,
     SourceView,
 )
-from app.api.sources import sources_in
-from app.api.studio import CurrentStudio, Studio
+from app.api.services.context import CurrentStudio, Studio
+from app.api.services.demonstration_sources import sources_in
+from app.api.services.language_documents import draft_of, editing, name_of_copy
 from app.recognition import Language
-from app.recognition.gesture import Gesture
-from app.recognition.grammar_entry import grammar_entry_of, grammar_of
-from app.recognition.tuning_entry import tuning_entry_of, tuning_of
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.grammar_entry import grammar_entry_of, grammar_of
+from app.recognition.language.tuning_entry import tuning_entry_of, tuning_of
 from app.store import LanguageState, LanguageStore
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)

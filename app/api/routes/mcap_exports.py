@@ -11,10 +11,10 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.api.extraction.mcap_request import RecognitionWish, SessionWishes
 from app.api.extraction.messages import Failed
-from app.api.extraction.session_wishes import RecognitionWish, SessionWishes
-from app.api.problems import ProblemError, documented
-from app.api.studio import CurrentStudio, Studio
+from app.api.http.problems import ProblemError, documented
+from app.api.services.context import CurrentStudio, Studio
 
 MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""

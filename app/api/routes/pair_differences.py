@@ -8,12 +8,12 @@ import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from app.api.languages import Revision
-from app.api.problems import ProblemError, documented
-from app.api.schemas import Label
-from app.api.studio import CurrentStudio
-from app.recognition.contrast import Contrast, contrast
-from app.recognition.gesture import Gesture
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import Label
+from app.api.routes.languages import Revision
+from app.api.services.context import CurrentStudio
+from app.recognition.explanation.pair_difference import Contrast, contrast
+from app.recognition.gestures.gesture import Gesture
 
 DIGITS = 3
 """Decimals of places and seconds: a millisecond, and half a millimetre of a diver."""

@@ -9,14 +9,14 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from app.api.languages import Revision
-from app.api.problems import documented
-from app.api.studio import CurrentStudio
+from app.api.http.problems import documented
+from app.api.routes.languages import Revision
+from app.api.services.context import CurrentStudio
 from app.recognition import Language
-from app.recognition.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
-from app.recognition.gesture import MAX_LABEL_LENGTH
-from app.recognition.grammar import Grammar
-from app.recognition.phrase_parser import PhraseEvent, PhraseEventKind, PhraseParser
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
+from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
 
 CACHED_GRAMMARS = 64
 """Revisions whose ambiguities are kept ready: a few sentences each."""

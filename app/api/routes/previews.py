@@ -10,27 +10,27 @@ import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from app.api.demonstrations import Demonstration
-from app.api.gesture_edits import demonstration_at, gesture_in, switched, with_change
-from app.api.languages import Revision
-from app.api.problems import Fault, ProblemError, documented
-from app.api.schemas import Body, GestureChange, Label, PosesView, SwitchPosition
-from app.api.studio import CurrentStudio, Studio
+from app.api.http.problems import Fault, ProblemError, documented
+from app.api.http.schemas import Body, GestureChange, Label, PosesView, SwitchPosition
+from app.api.routes.languages import Revision
+from app.api.services.clip_ranges import Demonstration
+from app.api.services.context import CurrentStudio, Studio
+from app.api.services.gesture_edits import demonstration_at, gesture_in, switched, with_change
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
-from app.recognition.finding import visible_share
-from app.recognition.health_report import MOST_CONFUSION, MOST_MISSED
-from app.recognition.movement import hands_in
-from app.recognition.outlook import outlook
-from app.recognition.png import encode_png
-from app.recognition.repair import repaired
-from app.recognition.salience import (
+from app.recognition.features.motion import hands_in
+from app.recognition.features.png import encode_png
+from app.recognition.gestures.switches import Counting, Switches
+from app.recognition.health.finding import visible_share
+from app.recognition.health.gesture_forecast import outlook
+from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.salience import (
     displacements,
     least_displacement,
     representatives,
     salient_landmarks,
 )
-from app.recognition.switches import Counting, Switches
-from app.recognition.trajectory import Trajectory
 from app.recognition.voters import PAPER_VOTERS
 
 SWITCHES = ("direction", "tempo", "mirror")

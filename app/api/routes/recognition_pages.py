@@ -6,13 +6,13 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Response
 
-from app.api.problems import documented
-from app.api.recognitions import kept_recognition, situation_of
-from app.api.studio import CurrentStudio
-from app.api.workspace_views import view_of
-from app.api.workspaces import ViewRequest
-from app.recognition.explanation import explain
-from app.ui.analysis import analysis_page
+from app.api.http.problems import documented
+from app.api.services.context import CurrentStudio
+from app.api.services.stored_recognitions import load_recognition, load_situation
+from app.api.viser_workspaces.routes import ViewRequest
+from app.api.viser_workspaces.views import view_of
+from app.recognition.explanation.explanation import explain
+from app.ui.recognition_page import analysis_page
 
 router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 
@@ -30,11 +30,11 @@ def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
     record = studio.recognitions.get(recognition_id)
     view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
     meant = record.expected
-    why = None if meant is None else explain(situation_of(record, studio), meant)
+    why = None if meant is None else explain(load_situation(record, studio), meant)
     name = quote(f"{view.title}.html", safe="")
     disposition = f"attachment; filename=\"analysis.html\"; filename*=utf-8''{name}"
     return Response(
-        analysis_page(view, kept_recognition(record), why),
+        analysis_page(view, load_recognition(record), why),
         media_type="text/html",
         headers={"Content-Disposition": disposition},
     )

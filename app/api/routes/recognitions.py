@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query, Response
 
-from app.api.demonstrations import demonstration_in, surroundings_in
-from app.api.problems import ProblemError, documented
-from app.api.schemas import (
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import (
     ExplanationView,
     Label,
     RecognitionRequest,
     RecognitionView,
 )
-from app.api.studio import CurrentStudio, Studio
-from app.recognition import Language, PoseSequence, Recognition, Recognizer
-from app.recognition.explanation import explain
-from app.recognition.language_schema import TuningEntry
-from app.recognition.requirements import require_landmarks
-from app.recognition.situation import Situation
-from app.recognition.tuning_entry import tuning_of
+from app.api.services.clip_ranges import demonstration_in
+from app.api.services.context import CurrentStudio
+from app.api.services.stored_recognitions import (
+    load_situation,
+    tune_recognizer,
+    view_recognition,
+)
+from app.recognition import Language, PoseSequence
+from app.recognition.explanation.explanation import explain
+from app.recognition.language.requirements import require_landmarks
 from app.store import Clip, RecognitionRecord
 
 MOST_LISTED = 500
@@ -40,7 +42,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     profile = request.profile or language.profile
     require_given(studio.clips.get(request.clip_id).clip, recording.poses, language)
     demonstration = demonstration_in(recording, request.start, request.end)
-    recognizer = _tuned(studio.recognizer(state, profile), request.tuning)
+    recognizer = tune_recognizer(studio.recognizer(state, profile), request.tuning)
     told = recognizer.recognize(demonstration.poses).to_dict()
     if request.tuning is not None:
         told["tuning"] = request.tuning.model_dump()
@@ -57,7 +59,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
         )
     )
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
-    return _view(record)
+    return view_recognition(record)
 
 
 @router.get("", responses=documented())
@@ -69,13 +71,13 @@ def list_recognitions(
 ) -> list[RecognitionView]:
     """List recognitions, newest first."""
     found = studio.recognitions.all(clip_id=clip_id, language_id=language_id, limit=limit)
-    return [_view(record) for record in found]
+    return [view_recognition(record) for record in found]
 
 
 @router.get("/{recognition_id}", responses=documented(404))
 def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionView:
     """Return a recognition as it was answered."""
-    return _view(studio.recognitions.get(recognition_id))
+    return view_recognition(studio.recognitions.get(recognition_id))
 
 
 @router.get("/{recognition_id}/explanation", responses=documented(404, 409))
@@ -95,7 +97,7 @@ def explain_recognition(
     if meant is None:
         detail = "say which gesture was meant: add ?expected=LABEL"
         raise ProblemError(422, "expected_missing", detail)
-    situation = situation_of(record, studio)
+    situation = load_situation(record, studio)
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
     return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
@@ -115,30 +117,3 @@ def require_given(clip: Clip, poses: PoseSequence, language: Language) -> None:
     if not clip.shows_pictures:
         given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
         require_landmarks(language, given, clip.name)
-
-
-def situation_of(record: RecognitionRecord, studio: Studio) -> Situation:
-    """Return the situation in which a recognition was made, by the language as it was then."""
-    state = studio.languages.get(record.language_id, record.revision)
-    recording = studio.recording(record.clip_id)
-    return Situation(
-        recognizer=_tuned(studio.recognizer(state, record.profile), _view(record).tuning),
-        poses=demonstration_in(recording, record.start, record.end).poses,
-        whole=surroundings_in(recording, record.start, record.end),
-    )
-
-
-def _tuned(recognizer: Recognizer, asked: TuningEntry | None) -> Recognizer:
-    if asked is None:
-        return recognizer
-    return Recognizer(recognizer.language, recognizer.profile, tuning=tuning_of(asked))
-
-
-def kept_recognition(record: RecognitionRecord) -> Recognition:
-    """Return the recogniser's answer as it was when `record` was made."""
-    result: dict[str, Any] = json.loads(record.result)
-    return Recognition.from_dict(result)
-
-
-def _view(record: RecognitionRecord) -> RecognitionView:
-    return RecognitionView(**(json.loads(record.result) | record.model_dump(exclude={"result"})))

@@ -17,12 +17,12 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 
-from app.api.body_limit import too_large
-from app.api.intake import client_of, examined, require_place_in_queue, take_in
-from app.api.problems import ProblemError, documented
-from app.api.studio import CurrentStudio, Studio
-from app.api.upload_fields import LONGEST, UploadFields
-from app.api.uploads import paced, require_space, shown_name
+from app.api.http.problems import ProblemError, documented
+from app.api.ingest.fields import LONGEST, UploadFields
+from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.ingest.multipart import paced, require_space, shown_name
+from app.api.middleware.body_limit import too_large
+from app.api.services.context import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
 
 VERSION: Final = "1.0.0"

@@ -6,11 +6,8 @@ import json
 
 from fastapi import APIRouter, Response
 
-from app.api.language_comparison import compared, language_words
-from app.api.language_drafts import editing
-from app.api.languages import ExpectedRevision, Revision, announced, gesture_view
-from app.api.problems import documented
-from app.api.schemas import (
+from app.api.http.problems import documented
+from app.api.http.schemas import (
     GestureComparison,
     GestureView,
     LanguageRevert,
@@ -18,8 +15,11 @@ from app.api.schemas import (
     RevisionComparison,
     RevisionView,
 )
-from app.api.studio import CurrentStudio
-from app.recognition.gesture import Gesture
+from app.api.routes.languages import ExpectedRevision, Revision, announced, gesture_view
+from app.api.services.context import CurrentStudio
+from app.api.services.language_diff import compared, language_words
+from app.api.services.language_documents import editing
+from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
 router = APIRouter(prefix="/languages/{language_id}", tags=["revisions"])

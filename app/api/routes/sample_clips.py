@@ -7,11 +7,11 @@ import shutil
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.intake import client_of, examined, require_place_in_queue, take_in
-from app.api.problems import ProblemError, documented
-from app.api.schemas import ClipAccepted, SampleChoice, SampleView
-from app.api.studio import CurrentStudio
-from app.api.uploads import shown_name
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import ClipAccepted, SampleChoice, SampleView
+from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.ingest.multipart import shown_name
+from app.api.services.context import CurrentStudio
 
 router = APIRouter(prefix="/samples", tags=["samples"])
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
-from app.api.languages import announced
-from app.api.problems import ProblemError, documented
-from app.api.schemas import LanguageView, SampleChoice, SampleLanguageView
-from app.api.studio import CurrentStudio
+from app.api.http.problems import ProblemError, documented
+from app.api.http.schemas import LanguageView, SampleChoice, SampleLanguageView
+from app.api.routes.languages import announced
+from app.api.services.context import CurrentStudio
 
 router = APIRouter(prefix="/samples/languages", tags=["samples"])
 

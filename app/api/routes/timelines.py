@@ -10,12 +10,12 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from app.api.extraction.pictures import thumbnails_in
-from app.api.problems import documented
-from app.api.still_pictures import sent_picture
-from app.api.studio import CurrentStudio
+from app.api.http.images import sent_picture
+from app.api.http.problems import documented
+from app.api.services.context import CurrentStudio
 from app.recognition import PoseError, Recording
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 router = APIRouter(prefix="/clips", tags=["clips"])
 

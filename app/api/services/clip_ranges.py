@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.api.problems import Fault, ProblemError
-from app.recognition.poses import PoseSequence
-from app.recognition.recording import Recording
-from app.recognition.takes import Take, takes_in
+from app.api.http.problems import Fault, ProblemError
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.segmentation import Take, takes_in
 
 SAME_MOMENT = 1e-3
 """Seconds within which a given moment is a take's: numbers travel through JSON and text fields

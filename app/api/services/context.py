@@ -15,12 +15,12 @@ from fastapi import Depends
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from app.api.broadcast import Broadcast
+from app.api.events.broadcast import Broadcast
 from app.api.extraction.runner import ExtractionRunner
-from app.api.problems import ProblemError
-from app.api.samples import Samples
+from app.api.http.problems import ProblemError
+from app.api.services.sample_library import Samples
 from app.recognition import Language, Recognizer
-from app.recognition.recording import Recording
+from app.recognition.recording.recording import Recording
 from app.settings import Settings
 from app.store import (
     ClipStore,

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 
-from app.api.demonstrations import Demonstration
-from app.api.schemas import NewDemonstration, SourceView
-from app.api.studio import Studio
+from app.api.http.schemas import NewDemonstration, SourceView
+from app.api.services.clip_ranges import Demonstration
+from app.api.services.context import Studio
 from app.recognition import Gesture, Language
-from app.recognition.takes import takes_in
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.recording.segmentation import takes_in
 from app.store import DemonstrationSource, LanguageState
 
 

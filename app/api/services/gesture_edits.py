@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.api.demonstrations import Demonstration, demonstration_in
-from app.api.problems import Fault, ProblemError
-from app.api.schemas import GestureChange, NewDemonstration, SwitchPosition
-from app.api.studio import Studio
+from app.api.http.problems import Fault, ProblemError
+from app.api.http.schemas import GestureChange, NewDemonstration, SwitchPosition
+from app.api.services.clip_ranges import Demonstration, demonstration_in
+from app.api.services.context import Studio
 from app.recognition import Gesture, GestureError, Language
-from app.recognition.switches import Switches
+from app.recognition.gestures.switches import Switches
 
 WORDS = frozenset({"label", "description", "command"})
 """What of a gesture is for people and the robot, and does not change what is recognised."""

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 
 from app.recognition import Language
-from app.recognition.gesture import Gesture
-from app.recognition.grammar import Grammar
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.phrases.grammar import Grammar
 
 Kind = Literal["added", "removed", "changed", "same"]
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import chain, count
 
 from app.recognition import Language
-from app.recognition.language import MAX_NAME_LENGTH
+from app.recognition.language.language import MAX_NAME_LENGTH
 from app.store import Draft, LanguageRevision
 
 LONGEST_NAME = 200

@@ -6,7 +6,7 @@ import logging
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.api.language_drafts import draft_of
+from app.api.services.language_documents import draft_of
 from app.recognition import Language
 from app.recognition.errors import LanguageError
 from app.store import LanguageState, LanguageStore

@@ -11,12 +11,9 @@ from fastapi import APIRouter, WebSocket
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocketDisconnect
 
-from app.api.viser_relay import POLICY_VIOLATION, same_origin
+from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
 from app.ui.playback import Playback, Position
-from app.ui.registry import WorkspaceRegistry
-
-UNSUPPORTED_DATA = 1007
-"""Websocket close code for a message that is not what it should be (RFC 6455, 7.4.1)."""
+from app.ui.workspace_registry import WorkspaceRegistry
 
 
 class _Wish(BaseModel):

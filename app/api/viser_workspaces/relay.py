@@ -12,7 +12,6 @@ import contextlib
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import urlsplit
 
 import viser
 import websockets
@@ -23,10 +22,9 @@ from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
+from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
 
-POLICY_VIOLATION, SERVICE_RESTART = 1008, 1012
-"""Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
+CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
 
 CONTENT_SECURITY_POLICY: Final = (
     "default-src 'none'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
@@ -79,16 +77,6 @@ def router(port_of: Callable[[str], int | None], prefix: str = "/viser") -> APIR
             await browser.close(code=SERVICE_RESTART)
 
     return routes
-
-
-def same_origin(websocket: WebSocket) -> bool:
-    """Tell whether the page that opens the websocket is one of ours.
-
-    Browsers send Origin with every websocket and let scripts of other sites open them; programs
-    that are no browser need not send it.
-    """
-    origin = websocket.headers.get("origin")
-    return origin is None or urlsplit(origin).netloc == websocket.headers.get("host")
 
 
 def _connect(port: int, subprotocols: list[str]) -> websockets.connect:

@@ -9,8 +9,8 @@ from fastapi import APIRouter, HTTPException, Path, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition.errors import RecognitionError
-from app.ui.registry import TooManyWorkspacesError, WorkspaceRegistry
 from app.ui.workspace import Workspace, WorkspaceView
+from app.ui.workspace_registry import TooManyWorkspacesError, WorkspaceRegistry
 
 WorkspaceId = Annotated[str, Path(max_length=64, pattern="^[A-Za-z0-9_-]+$")]
 

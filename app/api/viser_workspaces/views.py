@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.api.recognitions import kept_recognition
-from app.api.studio import Studio
-from app.api.workspaces import ViewRequest
+from app.api.services.context import Studio
+from app.api.services.stored_recognitions import load_recognition
+from app.api.viser_workspaces.routes import ViewRequest
 from app.recognition import Language
 from app.store import RecognitionRecord
 from app.ui.workspace import WorkspaceView
@@ -36,7 +36,7 @@ def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:
         recording=recording,
         start=start,
         end=end,
-        recognition=kept_recognition(record) if record else None,
+        recognition=load_recognition(record) if record else None,
         expected=record.expected if record else None,
         language=_language(studio, request, record),
     )

@@ -16,17 +16,20 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.calibrated_vote import VOTERS, CalibratedVote
-from app.recognition.forecast import Forecast
-from app.recognition.foreign import foreign_movements
-from app.recognition.fusion import TYPICAL
-from app.recognition.gesture import Gesture, Rates
-from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE, describe_movement
-from app.recognition.poses import FloatArray
-from app.recognition.rejection import novelty, novelty_weights
-from app.recognition.trajectory import Trajectory
-from app.recognition.unforeseen import UNFORESEEN
-from app.recognition.variation import SPREADS, variants
+from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
+from app.recognition.decision.fusion import TYPICAL
+from app.recognition.decision.motion_references import (
+    MAX_GESTURES_READ_OTHERWISE,
+    describe_movement,
+)
+from app.recognition.decision.rejection import novelty, novelty_weights
+from app.recognition.gestures.gesture import Gesture, Rates
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.model_error import UNFORESEEN
+from app.recognition.simulation.negatives import foreign_movements
+from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.variation import SPREADS, variants
 from app.recognition.voters.motion import MOTION_VOTERS
 
 TAKES = 12

@@ -10,19 +10,15 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.comparison import Comparison
-from app.recognition.fusion import contributions, says
-from app.recognition.gesture import Gesture
-from app.recognition.motion_references import (
+from app.recognition.decision.fusion import contributions, says
+from app.recognition.decision.motion_references import (
     MAX_GESTURES_READ_OTHERWISE,
     MotionReferences,
     describe_movement,
     tempo_counts,
     unambiguous,
 )
-from app.recognition.poses import FloatArray
-from app.recognition.recognition_result import Recognition
-from app.recognition.rejection import (
+from app.recognition.decision.rejection import (
     VIEWS,
     calibrated_confidence,
     is_rejected,
@@ -30,10 +26,14 @@ from app.recognition.rejection import (
     novelty_weights,
     thresholds_of,
 )
-from app.recognition.shape_references import ShapeReferences
-from app.recognition.switches import Counting
-from app.recognition.trajectory import Trajectory
-from app.recognition.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters import PAPER_VOTERS
 from app.recognition.voters.motion import MOTION_VOTERS
 

@@ -9,17 +9,17 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.elastic import ElasticReferences, ElasticViews
-from app.recognition.fusion import fused
-from app.recognition.gesture import Gesture
-from app.recognition.movement import followed_landmarks, movement
-from app.recognition.poses import FloatArray
-from app.recognition.readings import Reading
-from app.recognition.shown_gesture import ShownGesture
-from app.recognition.step_distances import StepReferences
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.fusion import fused
+from app.recognition.decision.shown_gesture import ShownGesture
+from app.recognition.features.motion import followed_landmarks, movement
+from app.recognition.features.traversals import Reading
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.matching.dtw import ElasticReferences, ElasticViews
+from app.recognition.matching.dtw_kernel import alignment_costs
+from app.recognition.matching.step_distances import StepReferences
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
-from app.recognition.warping import alignment_costs
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as

@@ -23,8 +23,8 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.gesture import Gesture
-from app.recognition.poses import FloatArray
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.poses.sequence import FloatArray
 
 VIEWS: Final[Mapping[str, Mapping[str, float]]] = MappingProxyType(
     {

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

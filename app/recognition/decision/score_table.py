@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
-from app.recognition.readings import Reading
-from app.recognition.rejection import largest_novelty
+from app.recognition.decision.rejection import largest_novelty
+from app.recognition.features.traversals import Reading
+from app.recognition.poses.sequence import FloatArray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

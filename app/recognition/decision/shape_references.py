@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.gesture import Gesture
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import SIMPLIFICATION, draw
+from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters import PAPER_VOTERS, Voter, describe
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.gesture import Gesture
-from app.recognition.movement import hands_in, movement, on_both_sides
-from app.recognition.poses import FloatArray
-from app.recognition.readings import Reading, readings
-from app.recognition.switches import Switch
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import hands_in, movement, on_both_sides
+from app.recognition.features.traversals import Reading, readings
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.switches import Switch
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import MOTION_VOTERS
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.recognition.comparison import Comparison
-from app.recognition.recognition_result import Recognition
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
+from app.recognition.poses.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -1,22 +1,16 @@
 """Pose and hand landmarks from images: one protocol, several backends."""
 
-from app.recognition.estimation.base import (
-    Body,
-    FrameLandmarks,
-    Hand,
-    Image,
-    PoseEstimator,
-    Side,
-)
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import (
     Backend,
     create_estimator,
     finds_hands,
     landmarks_of,
 )
+from app.recognition.estimation.landmark_models.onnx_session import Provider, available_providers
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
 from app.recognition.estimation.onnx_estimator import OnnxPoseEstimator
-from app.recognition.estimation.session import Provider, available_providers
+from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image, Side
 
 __all__ = [
     "Backend",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
-from app.recognition.estimation.hands import HandTracker
+from app.recognition.estimation.landmark_models.hands import HandTracker
+from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 
 
 class BodyFinder(Protocol):

@@ -6,15 +6,16 @@ from pathlib import Path
 from typing import Final, Literal, Protocol, get_args, runtime_checkable
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.base import PoseEstimator
 from app.recognition.estimation.composed_estimator import (
     BodyFinder,
     ComposedEstimator,
     HandFinder,
     TrackedHands,
 )
-from app.recognition.estimation.diver_hands import DiverHands
-from app.recognition.estimation.hands import HandSearch
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.landmark_models.diver_hands import DiverHands
+from app.recognition.estimation.landmark_models.hands import HandSearch
+from app.recognition.estimation.landmark_models.onnx_session import Provider, check_provider
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
 from app.recognition.estimation.onnx_estimator import (
     DEFAULT_THREADS,
@@ -22,9 +23,8 @@ from app.recognition.estimation.onnx_estimator import (
     body_tracker,
     hand_tracker,
 )
-from app.recognition.estimation.session import Provider, check_provider
 from app.recognition.estimation.yolo_pose import YoloPose
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 Backend = Literal["onnx", "mediapipe"]
 """MediaPipe's models on ONNX Runtime, or the `mediapipe` library."""

@@ -9,10 +9,11 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image, Side, check_image
-from app.recognition.estimation.hands import MOST_HANDS
+from app.recognition.estimation.estimator import check_image
+from app.recognition.estimation.landmark_models.hands import MOST_HANDS
 from app.recognition.models import task_bundle_path
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image, Side
+from app.recognition.poses.sequence import FloatArray
 
 MILLISECONDS: Final = 1000
 """MediaPipe counts time in whole milliseconds."""

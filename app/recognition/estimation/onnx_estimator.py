@@ -8,17 +8,23 @@ from pathlib import Path
 from typing import Final
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.base import FrameLandmarks, Image, check_image
-from app.recognition.estimation.body import POSE_SIGNATURE, BodyTracker
-from app.recognition.estimation.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
-from app.recognition.estimation.hands import (
+from app.recognition.estimation.estimator import check_image
+from app.recognition.estimation.landmark_models.body import POSE_SIGNATURE, BodyTracker
+from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
+from app.recognition.estimation.landmark_models.hands import (
     HAND_SIGNATURE,
     HandModel,
     HandSearch,
     HandTracker,
 )
-from app.recognition.estimation.session import ModelSession, Provider, Signature, check_provider
+from app.recognition.estimation.landmark_models.onnx_session import (
+    ModelSession,
+    Provider,
+    Signature,
+    check_provider,
+)
 from app.recognition.models import ModelName, model_path
+from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2
 """One for the body and one for the hands, which share nothing: on the two cores of a laptop a frame

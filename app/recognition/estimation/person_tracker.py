@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.suppression import overlaps
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import MAX_GAP_SECONDS
+from app.recognition.estimation.landmark_models.suppression import overlaps
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import MAX_GAP_SECONDS
 
 SAME_PERSON: Final = 0.3
 """Least intersection over union of a person's boxes in two frames. An arm that is stretched out

@@ -12,8 +12,9 @@ import cv2
 import numpy as np
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation.base import Image, check_image
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.estimator import check_image
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
 
 WaterCorrection = Literal["auto", "on", "off"]
 """Whether frames are corrected: those that need it, all, or none."""

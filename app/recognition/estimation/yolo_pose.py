@@ -16,14 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import ModelError
-from app.recognition.estimation.base import Body, Image, check_image
-from app.recognition.estimation.letterbox import Letterbox
-from app.recognition.estimation.planar_model import PlanarModel
-from app.recognition.estimation.session import Provider
-from app.recognition.landmark_sets import COCO_17
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
-from app.recognition.subject import SubjectChoice
+from app.recognition.estimation.estimator import check_image
+from app.recognition.estimation.landmark_models.letterbox import Letterbox
+from app.recognition.estimation.landmark_models.onnx_session import Provider
+from app.recognition.estimation.landmark_models.planar_model import PlanarModel
+from app.recognition.estimation.person_tracker import SubjectChoice
+from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import COCO_17
 
 DEFAULT_SIDE: Final = 640
 """Pixels; what Ultralytics trains and exports with. Used where a file leaves its input open."""

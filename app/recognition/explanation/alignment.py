@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.elastic import elastic_pairs
-from app.recognition.gesture import Gesture
-from app.recognition.movement import Movement, hands_in, limbs_of, movement
-from app.recognition.poses import FloatArray
-from app.recognition.readings import AS_SHOWN, Reading, readings
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import Movement, hands_in, limbs_of, movement
+from app.recognition.features.traversals import AS_SHOWN, Reading, readings
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.matching.dtw import elastic_pairs
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import BAND, Direction, HandAttitude, Path, Posture
 
 DIGITS = 4

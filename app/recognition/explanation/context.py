@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from app.recognition.comparison import Comparison
-from app.recognition.examination import Examination
-from app.recognition.gesture import Gesture
-from app.recognition.language import Language
-from app.recognition.poses import PoseSequence
-from app.recognition.recognition_result import Recognition
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.trace import Examination
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.language.language import Language
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
-from app.recognition.takes import Take
-from app.recognition.trajectory import Trajectory
-from app.recognition.tuning import Tuning
+from app.recognition.recording.segmentation import Take
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.candidate import candidates
-from app.recognition.change import Change
 from app.recognition.errors import RecognitionError
-from app.recognition.gesture import condensed
-from app.recognition.situation import Situation
-from app.recognition.trajectory import Trajectory
-from app.recognition.variation import variants
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.interventions import Change
+from app.recognition.explanation.search import candidates
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.variation import variants
 
 MOST = 8
 """Counterfactuals told: more would be a list to search, not an answer."""

@@ -13,17 +13,17 @@ from typing import Any, Literal
 
 import numpy as np
 
-from app.recognition.course import course
-from app.recognition.landmarks import other_side
-from app.recognition.motion_references import CLEARLY_SLOWER
-from app.recognition.movement import STEPS, limbs_of, movement
-from app.recognition.pairing import ALIKE, Pairing
-from app.recognition.poses import FloatArray
-from app.recognition.sides import exchanged_back, mistaken_sides
-from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
-from app.recognition.trajectory_image import MIN_EXTENT
+from app.recognition.decision.motion_references import CLEARLY_SLOWER
+from app.recognition.explanation.divergence import course
+from app.recognition.explanation.pairing import ALIKE, Pairing
+from app.recognition.features.motion import STEPS, limbs_of, movement
+from app.recognition.features.trajectory_image import MIN_EXTENT
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.preprocessing.side_swaps import exchanged_back, mistaken_sides
+from app.recognition.text.wording import readable
 from app.recognition.voters.wrist_bend import WristBend
-from app.recognition.wording import readable
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.alignment import Alignment, align
-from app.recognition.movement import STEPS
-from app.recognition.pairing import Pairing
-from app.recognition.poses import FloatArray
+from app.recognition.explanation.alignment import Alignment, align
+from app.recognition.explanation.pairing import Pairing
+from app.recognition.features.motion import STEPS
+from app.recognition.poses.sequence import FloatArray
 
 DIRECTIONS = (
     "right",

@@ -10,17 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.alignment import Alignment, Example, align, nearest_example
-from app.recognition.comparison import Comparison
-from app.recognition.counterfactual import NONE_NEEDED, Counterfactuals, counterfactuals
-from app.recognition.difference import Difference, differences
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
 from app.recognition.errors import RecognitionError
-from app.recognition.movement import movement
-from app.recognition.pairing import Pairing
-from app.recognition.recognition_result import Recognition
-from app.recognition.sentence import in_words
-from app.recognition.situation import Situation
-from app.recognition.verdict import Verdict, verdicts
+from app.recognition.explanation.alignment import Alignment, Example, align, nearest_example
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.counterfactual import NONE_NEEDED, Counterfactuals, counterfactuals
+from app.recognition.explanation.differences import Difference, differences
+from app.recognition.explanation.pairing import Pairing
+from app.recognition.explanation.sentence import in_words
+from app.recognition.explanation.vote_breakdown import Verdict, verdicts
+from app.recognition.features.motion import movement
 from app.recognition.voters.motion import Path, Posture
 
 

@@ -10,11 +10,11 @@ from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Literal
 
-from app.recognition.gesture import Gesture
-from app.recognition.situation import Situation
-from app.recognition.switches import Switch
-from app.recognition.tuning import repair_words, simplification_words, weight_words
-from app.recognition.wording import all_readable, listed
+from app.recognition.explanation.context import Situation
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.switches import Switch
+from app.recognition.gestures.tuning import repair_words, simplification_words, weight_words
+from app.recognition.text.wording import all_readable, listed
 
 SwitchName = Literal["direction", "tempo", "mirror"]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.recognition.alignment import Alignment, align
-from app.recognition.course import course_of
-from app.recognition.difference import differences
-from app.recognition.gesture import condensed
-from app.recognition.pairing import Pairing
+from app.recognition.explanation.alignment import Alignment, align
+from app.recognition.explanation.differences import differences
+from app.recognition.explanation.divergence import course_of
+from app.recognition.explanation.pairing import Pairing
+from app.recognition.gestures.gesture import condensed
 from app.recognition.recognizer import Recognizer
-from app.recognition.wording import readable
+from app.recognition.text.wording import readable
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,14 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
-from app.recognition.alignment import Example
-from app.recognition.fusion import TYPICAL
-from app.recognition.gesture import Gesture
-from app.recognition.landmarks import other_side
-from app.recognition.movement import Movement, hands_in, movement
-from app.recognition.poses import FloatArray
-from app.recognition.readings import Reading, readings
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.fusion import TYPICAL
+from app.recognition.explanation.alignment import Example
+from app.recognition.features.motion import Movement, hands_in, movement
+from app.recognition.features.traversals import Reading, readings
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import Path
 
 ALIKE = TYPICAL["path"].within

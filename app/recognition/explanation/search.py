@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.recognition.change import (
+from app.recognition.decision.motion_references import CLEARLY_SLOWER
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.interventions import (
     Change,
     KeypointRepair,
     NewDemonstration,
@@ -19,13 +21,11 @@ from app.recognition.change import (
     Trim,
     VoterWeight,
 )
-from app.recognition.gesture import Gesture
-from app.recognition.motion_references import CLEARLY_SLOWER
-from app.recognition.profile import PROFILES
-from app.recognition.repair import repaired
-from app.recognition.salience import salient_landmarks
-from app.recognition.situation import Situation
-from app.recognition.switches import Switch
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.gestures.switches import Switch
+from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.salience import salient_landmarks
 
 TRIM_STEP = 0.1
 """Share of the stroke by which it is trimmed earlier or later, step by step."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from app.recognition.difference import Difference
-from app.recognition.wording import all_readable, listed
+from app.recognition.explanation.differences import Difference
+from app.recognition.text.wording import all_readable, listed
 
 if TYPE_CHECKING:
-    from app.recognition.explanation import Explanation
+    from app.recognition.explanation.explanation import Explanation
 
 NUMBERS = (
     "none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",

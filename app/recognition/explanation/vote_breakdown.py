@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.recognition.comparison import Comparison
-from app.recognition.profile import PROFILES
-from app.recognition.recognition_result import Recognition
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import Comparison
+from app.recognition.gestures.profile import PROFILES
 
 
 @dataclass(frozen=True, kw_only=True)

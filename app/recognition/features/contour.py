@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.closing import closed
+from app.recognition.features.morphology import closed
 
 CLOSING_DIAMETER = 28
 """Diameter in pixels of the disc that closes gaps between strokes before the outline is taken.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 HIGHEST_POWER = 8
 """Of x and of y: the highest degree that a voter asks for."""

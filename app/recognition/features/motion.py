@@ -16,9 +16,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.landmarks import other_side
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 STEPS = 32
 """Steps that a movement is resampled to.

@@ -8,7 +8,7 @@ import zlib
 import cv2
 import numpy as np
 
-from app.recognition.outline import BinaryImage
+from app.recognition.features.contour import BinaryImage
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _HEADER = struct.Struct(">IIBBBBB")

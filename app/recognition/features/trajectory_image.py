@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.outline import BinaryImage, Outline
-from app.recognition.poses import FloatArray
-from app.recognition.stroke_moments import StrokeMoments
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.contour import BinaryImage, Outline
+from app.recognition.features.moments import StrokeMoments
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 SIZE = 224
 """Width and height in pixels: the published implementation's, so that its files can be read."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.movement import STEPS, Movement
+from app.recognition.features.motion import STEPS, Movement
 
 BACKWARD_PENALTY = 1.5
 """Factor on the distances to a gesture read backwards.

@@ -11,21 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
-from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
-from app.recognition.outline import CLOSING_DIAMETER, BinaryImage
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.quality import fault
-from app.recognition.repair import repaired
-from app.recognition.salience import (
-    MIN_DISPLACEMENT,
-    chosen_landmarks,
-    displacements,
-    salient_landmarks,
-)
-from app.recognition.strict_json import read_json
-from app.recognition.switches import AUTOMATIC, Switches
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import (
+from app.recognition.features.contour import CLOSING_DIAMETER, BinaryImage
+from app.recognition.features.trajectory_image import (
     MARGIN,
     MIN_EXTENT,
     SIMPLIFICATION,
@@ -34,6 +21,19 @@ from app.recognition.trajectory_image import (
     Drawing,
     draw,
 )
+from app.recognition.gestures.switches import AUTOMATIC, Switches
+from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.quality import fault
+from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.salience import (
+    MIN_DISPLACEMENT,
+    chosen_landmarks,
+    displacements,
+    salient_landmarks,
+)
+from app.recognition.text.strict_json import read_json
 from app.recognition.voters import PAPER_VOTERS, describe
 from app.recognition.voters.fourier import HARMONICS, SAMPLES
 from app.recognition.voters.hu import FLOOR

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Final, Literal
 
 from app.recognition.errors import RecognitionError
+from app.recognition.text.wording import listed
 from app.recognition.voters import PAPER_VOTERS, Voter
 from app.recognition.voters.motion import MOTION_VOTERS, MotionVoter
-from app.recognition.wording import listed
 
 ProfileName = Literal["paper", "full"]
 

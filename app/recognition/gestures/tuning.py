@@ -10,9 +10,9 @@ from types import MappingProxyType
 import numpy as np
 
 from app.recognition.errors import RecognitionError
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import SIMPLIFICATION
-from app.recognition.wording import listed, readable
+from app.recognition.features.trajectory_image import SIMPLIFICATION
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.text.wording import listed, readable
 
 MAX_FACTOR = 100.0
 """Most that a voter's say is multiplied by: beside it, the others have none left."""

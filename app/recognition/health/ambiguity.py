@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from app.recognition.finding import Finding
-from app.recognition.grammar import Grammar
-from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
-from app.recognition.wording import listed
+from app.recognition.health.finding import Finding
+from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.text.wording import listed
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
 

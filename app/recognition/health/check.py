@@ -8,13 +8,14 @@ from itertools import combinations
 
 import numpy as np
 
-from app.recognition.alarm import Alarm, alarms
-from app.recognition.ambiguity import find_ambiguities
-from app.recognition.contrast import Contrast, contrast
-from app.recognition.finding import Finding, demonstration_findings, visible_share
-from app.recognition.forecast import Forecast
-from app.recognition.gesture import Gesture, condensed
-from app.recognition.health_report import (
+from app.recognition.explanation.pair_difference import Contrast, contrast
+from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.health.embedding import placed
+from app.recognition.health.false_alarms import Alarm, alarms
+from app.recognition.health.finding import Finding, demonstration_findings, visible_share
+from app.recognition.health.remedy import Rehearsing, Remedy, pair_remedies
+from app.recognition.health.report import (
     MOST_CONFUSION,
     MOST_MISSED,
     GestureHealth,
@@ -22,14 +23,13 @@ from app.recognition.health_report import (
     LandmarkHealth,
     PairHealth,
 )
-from app.recognition.language import Language
-from app.recognition.language_map import placed
-from app.recognition.poses import FloatArray
+from app.recognition.health.simulated_trials import Rehearsal
+from app.recognition.language.language import Language
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.preprocessing.salience import displacements
 from app.recognition.recognizer import Recognizer
-from app.recognition.rehearsal import Rehearsal
-from app.recognition.remedy import Rehearsing, Remedy, pair_remedies
-from app.recognition.salience import displacements
-from app.recognition.variation import Person
+from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.variation import Person
 
 MOST_ALARMS = 0.1
 """Share of the library of accidental movements from which a warning is given. It is no bar: between

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.recognition.gesture import Gesture
-from app.recognition.landmarks import other_side
-from app.recognition.movement import SIDES, hands_in, part_of
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import SIDES, hands_in, part_of
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 LARGER = 1.5
 """Factor of size: half as large again is seen at once, and within an arm's reach for any gesture

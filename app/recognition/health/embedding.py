@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 
 def placed(distances: FloatArray) -> FloatArray:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.recognition.accidental import accidental_movements
 from app.recognition.errors import PoseError
-from app.recognition.gesture import condensed
+from app.recognition.gestures.gesture import condensed
 from app.recognition.recognizer import Recognizer
+from app.recognition.simulation.accidental_motion import accidental_movements
 
 
 @dataclass(frozen=True)

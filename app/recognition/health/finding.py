@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.gesture import MAX_MOMENTS, Gesture
-from app.recognition.remedy import Remedy
-from app.recognition.salience import MIN_DISPLACEMENT, displacements
-from app.recognition.salute import HOLD_SECONDS
-from app.recognition.trajectory import Trajectory
+from app.recognition.gestures.gesture import MAX_MOMENTS, Gesture
+from app.recognition.health.remedy import Remedy
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, displacements
+from app.recognition.recording.salute import HOLD_SECONDS
 
 SHORTEST_SECONDS = 0.5
 """A single reach takes half a second (Flash and Hogan 1985); what is shorter is a twitch of which

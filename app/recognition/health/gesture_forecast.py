@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.forecast import Forecast
-from app.recognition.gesture import condensed
-from app.recognition.health import TAKES, pair_health
-from app.recognition.health_report import PairHealth
+from app.recognition.gestures.gesture import condensed
+from app.recognition.health.check import TAKES, pair_health
+from app.recognition.health.report import PairHealth
+from app.recognition.health.simulated_trials import rehearse
 from app.recognition.recognizer import Recognizer
-from app.recognition.rehearsal import rehearse
+from app.recognition.simulation.rate_estimate import Forecast
 
 MOST_NEIGHBOURS = 3
 """Gestures rehearsed beside the one in question, the nearest: farther ones are hardly ever confused

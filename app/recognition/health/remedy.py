@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from app.recognition.alteration import Alteration, alterations_of, switch_alterations
-from app.recognition.forecast import Forecast
-from app.recognition.gesture import Gesture
-from app.recognition.language import Language
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.edits import Alteration, alterations_of, switch_alterations
+from app.recognition.health.simulated_trials import Rehearsal, rehearse
+from app.recognition.language.language import Language
 from app.recognition.recognizer import Recognizer
-from app.recognition.rehearsal import Rehearsal, rehearse
-from app.recognition.variation import Person
+from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.variation import Person
 
 TRIAL_TAKES = 5
 """Takes of each of the two gestures with which a change is tried: enough to order changes whose

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.finding import Finding
-from app.recognition.forecast import DIGITS, Forecast
-from app.recognition.poses import FloatArray
-from app.recognition.remedy import worse
-from app.recognition.variation import Person
+from app.recognition.health.finding import Finding
+from app.recognition.health.remedy import worse
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.rate_estimate import DIGITS, Forecast
+from app.recognition.simulation.variation import Person
 
 MOST_CONFUSION = 0.05
 """Bar for a pair of gestures: a robot that does the wrong thing once in twenty commands is trusted

@@ -12,14 +12,14 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.forecast import Forecast
-from app.recognition.gesture import condensed
-from app.recognition.poses import FloatArray
+from app.recognition.decision.rejection import SCORE_FLOOR
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
-from app.recognition.rejection import SCORE_FLOOR
-from app.recognition.trajectory import Trajectory
-from app.recognition.unforeseen import UNFORESEEN, Unforeseen
-from app.recognition.variation import Person, variants
+from app.recognition.simulation.model_error import UNFORESEEN, Unforeseen
+from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.variation import Person, variants
 
 WIDEST_MARGIN = 4.0
 """Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be

@@ -10,14 +10,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.recognition.errors import LanguageError
-from app.recognition.language_schema import (
+from app.recognition.language.schema import (
     FORMAT,
     MAX_FILE_BYTES,
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
 )
-from app.recognition.strict_json import (
+from app.recognition.text.strict_json import (
     MAX_FAULTS,
     Fault,
     StrictJSONError,

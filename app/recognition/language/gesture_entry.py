@@ -9,15 +9,15 @@ from itertools import pairwise
 import numpy as np
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gesture import Gesture, Rates, checked_command, checked_label
-from app.recognition.language_schema import GestureEntry, PathEntry, RatesEntry, TrajectoryEntry
-from app.recognition.outline import BinaryImage
-from app.recognition.png import decode_png, encode_png
-from app.recognition.poses import FloatArray
-from app.recognition.strict_json import pointer_to
-from app.recognition.switches import Switches
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import SIZE
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.png import decode_png, encode_png
+from app.recognition.features.trajectory_image import SIZE
+from app.recognition.gestures.gesture import Gesture, Rates, checked_command, checked_label
+from app.recognition.gestures.switches import Switches
+from app.recognition.language.schema import GestureEntry, PathEntry, RatesEntry, TrajectoryEntry
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.text.strict_json import pointer_to
 from app.recognition.voters import PAPER_VOTERS
 
 

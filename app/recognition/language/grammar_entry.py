@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from app.recognition.errors import LanguageError
-from app.recognition.grammar import Grammar
-from app.recognition.grammar_schema import (
+from app.recognition.language.grammar_schema import (
     GesturesEntry,
     GrammarEntry,
     GroupEntry,
@@ -14,8 +13,9 @@ from app.recognition.grammar_schema import (
     SlotTypeEntry,
     SlotValueEntry,
 )
-from app.recognition.phrase import Group, OneOf, Part, Phrase, Slot, SlotType, Value
-from app.recognition.strict_json import pointer_to
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType, Value
+from app.recognition.text.strict_json import pointer_to
 
 
 def grammar_entry_of(grammar: Grammar) -> GrammarEntry:

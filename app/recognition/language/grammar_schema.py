@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
-from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
-from app.recognition.phrase import MAX_REPEAT
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.phrases.phrase import MAX_REPEAT
 
 MAX_ENTRIES = 100
 """Of every list: what is longer is refused before it is looked at."""

@@ -10,25 +10,25 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from app.recognition.calibration import RULE, calibrated
+from app.recognition.decision.calibration import RULE, calibrated
 from app.recognition.errors import LanguageError, RecognitionError
-from app.recognition.gesture import SETTINGS, Gesture
-from app.recognition.gesture_entry import entry_of, gesture_of
-from app.recognition.grammar import Grammar
-from app.recognition.grammar_entry import grammar_entry_of, grammar_of
-from app.recognition.landmarks import SKELETON
-from app.recognition.language_file import read_content, read_document, write_document
-from app.recognition.language_schema import (
+from app.recognition.gestures.gesture import SETTINGS, Gesture
+from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, voters_of
+from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.language.file import read_content, read_document, write_document
+from app.recognition.language.gesture_entry import entry_of, gesture_of
+from app.recognition.language.grammar_entry import grammar_entry_of, grammar_of
+from app.recognition.language.schema import (
     FORMAT,
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
 )
-from app.recognition.profile import DEFAULT_PROFILE, ProfileName, voters_of
-from app.recognition.strict_json import pointer_to
-from app.recognition.tuning import AS_THE_PROFILE, Tuning
-from app.recognition.tuning_entry import tuning_entry_of, tuning_of
-from app.recognition.wording import listed
+from app.recognition.language.tuning_entry import tuning_entry_of, tuning_of
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.poses.landmarks import SKELETON
+from app.recognition.text.strict_json import pointer_to
+from app.recognition.text.wording import listed
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 

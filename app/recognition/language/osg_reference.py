@@ -13,13 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gesture import Gesture
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.language import Language
-from app.recognition.language_schema import MAX_GESTURES
-from app.recognition.outline import BinaryImage
-from app.recognition.strict_json import StrictJSONError, pointer_to, read_json
-from app.recognition.trajectory_image import SIZE
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.trajectory_image import SIZE
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.language import Language
+from app.recognition.language.schema import MAX_GESTURES
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.text.strict_json import StrictJSONError, pointer_to, read_json
 
 MAX_FILE_BYTES = 100_000_000
 """Over a hundred gestures: the published files take 850 kB each, the largest a few megabytes."""

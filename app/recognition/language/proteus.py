@@ -18,9 +18,9 @@ from collections.abc import Collection
 from typing import Literal
 from xml.etree import ElementTree
 
-from app.recognition.gesture import Gesture
-from app.recognition.grammar import FRAME
-from app.recognition.language import Language
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.language import Language
+from app.recognition.phrases.grammar import FRAME
 
 SUFFIX = ".ldf"
 

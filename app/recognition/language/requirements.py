@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import get_args
 
 from app.recognition.errors import LandmarkError
-from app.recognition.landmarks import HIPS, SHOULDERS
-from app.recognition.language import Language
+from app.recognition.features.motion import followed_landmarks, limbs_of
+from app.recognition.language.language import Language
 from app.recognition.models import ModelName
-from app.recognition.movement import followed_landmarks, limbs_of
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
-from app.recognition.grammar_schema import GrammarEntry
-from app.recognition.profile import DEFAULT_PROFILE, ProfileName
-from app.recognition.switches import Switch
-from app.recognition.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
+from app.recognition.gestures.switches import Switch
+from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
+from app.recognition.language.grammar_schema import GrammarEntry
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.recognition.language_schema import TuningEntry
-from app.recognition.trajectory_image import SIMPLIFICATION
-from app.recognition.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.features.trajectory_image import SIMPLIFICATION
+from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.language.schema import TuningEntry
 
 
 def tuning_entry_of(tuning: Tuning) -> TuningEntry | None:

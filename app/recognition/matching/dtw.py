@@ -13,14 +13,14 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
-from app.recognition.step_distances import (
+from app.recognition.matching.dtw_kernel import StepCosts, alignment_costs, half_of
+from app.recognition.matching.step_distances import (
     Precision,
     for_query,
     for_references,
     squared_distances,
 )
-from app.recognition.warping import StepCosts, alignment_costs, half_of
+from app.recognition.poses.sequence import FloatArray
 
 
 def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
-from app.recognition.step_distances import ROUNDING
+from app.recognition.matching.step_distances import ROUNDING
+from app.recognition.poses.sequence import FloatArray
 
 StepCosts = npt.NDArray[np.float32]
 """Costs of prepared references: half the memory of doubles, through which most of the time goes.

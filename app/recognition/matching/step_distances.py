@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 Precision = TypeVar("Precision", np.float32, np.float64)
 

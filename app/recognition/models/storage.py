@@ -13,7 +13,6 @@ from typing import Final, Literal
 
 import platformdirs
 
-from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
     INSTALLED_FILES,
@@ -23,6 +22,7 @@ from app.recognition.models.catalogue import (
     ModelName,
     TaskBundleName,
 )
+from app.recognition.text.hashing import sha256_of
 
 State = Literal["ok", "missing", "damaged"]
 """Intact; not there; there, but its content is not the pinned one."""

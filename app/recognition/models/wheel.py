@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from app.recognition.checksum import sha256_of
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import WHEEL
+from app.recognition.text.hashing import sha256_of
 
 OFFLINE_WAY: Final = (
     "or, without network, run `osg-studio models export DIR` where the models are installed and "

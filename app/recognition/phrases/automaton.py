@@ -13,8 +13,8 @@ from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import Group, OneOf, Part, Value
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import Group, OneOf, Part, Value
 
 BEFORE = -1
 """The position before the first gesture."""

@@ -11,9 +11,9 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from app.recognition.errors import LanguageError
-from app.recognition.grammar_rules import check_grammar
-from app.recognition.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
-from app.recognition.strict_json import pointer_to
+from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
+from app.recognition.phrases.validation import check_grammar
+from app.recognition.text.strict_json import pointer_to
 
 DEFAULT_TIMEOUT = 10.0
 """Seconds: as long as attention stays with a dialogue that does not answer (Nielsen 1993)."""

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import Phrase, Slot, Value
-from app.recognition.phrase_automaton import Reading
-from app.recognition.placeholders import SlotValue, filled, spoken, whole_placeholder, words
+from app.recognition.phrases.automaton import Reading
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import Phrase, Slot, Value
+from app.recognition.phrases.templates import SlotValue, filled, spoken, whole_placeholder, words
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from app.recognition.grammar import Grammar
-from app.recognition.mission import Mission, mission_of
-from app.recognition.phrase_automaton import BEFORE, PhraseAutomaton, Reading
-from app.recognition.wording import listed
+from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.interpretation import Mission, mission_of
+from app.recognition.text.wording import listed
 
 PhraseEventKind = Literal[
     "continues",

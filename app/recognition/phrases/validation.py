@@ -8,13 +8,22 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, checked_command
-from app.recognition.phrase import MAX_REPEAT, Group, OneOf, Part, Phrase, Slot, SlotType, Value
-from app.recognition.placeholders import placeholders_in, template_fault
-from app.recognition.strict_json import pointer_to
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, checked_command
+from app.recognition.phrases.phrase import (
+    MAX_REPEAT,
+    Group,
+    OneOf,
+    Part,
+    Phrase,
+    Slot,
+    SlotType,
+    Value,
+)
+from app.recognition.phrases.templates import placeholders_in, template_fault
+from app.recognition.text.strict_json import pointer_to
 
 if TYPE_CHECKING:
-    from app.recognition.grammar import Grammar
+    from app.recognition.phrases.grammar import Grammar
 
 MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""

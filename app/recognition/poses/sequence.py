@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import PoseError
-from app.recognition.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
 
 FloatArray = npt.NDArray[np.float64]
 

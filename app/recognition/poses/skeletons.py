@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection
 from typing import Final
 
-from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY
+from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY
 
 LandmarkSet = tuple[str | None, ...]
 

@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.landmarks import other_side
-from app.recognition.poses import FloatArray, PoseSequence, columns_of
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray, PoseSequence, columns_of
 
 Result = TypeVar("Result")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.landmarks import HIPS, SHOULDERS
-from app.recognition.movement import SIDES, limbs_of, part_of
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import SIDES, limbs_of, part_of
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 SHARE_OF_TORSO = {"elbow": 0.65, "wrist": 0.51}
 """Length of the bone that ends there, in torso lengths: upper arm 0.186, forearm 0.146 and trunk

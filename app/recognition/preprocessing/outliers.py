@@ -13,10 +13,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.landmarks import POSE_LANDMARKS, UPPER_BODY
-from app.recognition.poses import FloatArray
-from app.recognition.salience import displacements
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import displacements
 
 LONGEST_JUMP = 0.25
 """Seconds between the moments around a jump, at most. In that time a hand can go half a torso

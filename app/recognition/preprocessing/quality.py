@@ -11,10 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.jumps import body_unit
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
-from app.recognition.wording import readable
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.preprocessing.outliers import body_unit
+from app.recognition.text.wording import readable
 
 FEWEST_FRAMES = 5
 """Frames of a recording, at least: a corner takes three, and the simplest gestures have two strokes

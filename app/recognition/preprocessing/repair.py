@@ -14,10 +14,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.jumps import jumps
-from app.recognition.poses import PoseSequence
-from app.recognition.sides import exchanged_back, mistaken_sides
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.outliers import jumps
+from app.recognition.preprocessing.side_swaps import exchanged_back, mistaken_sides
 
 ROUNDS = 16
 """Most rounds of looking for faults: what one round takes away shows others. Damaged beyond use,

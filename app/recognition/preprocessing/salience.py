@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.recognition.errors import GestureError
-from app.recognition.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS
+from app.recognition.poses.trajectory import Trajectory
 
 MIN_DISPLACEMENT = 0.3
 """Peak-to-peak displacement, in the trajectory's unit, from which a landmark can be salient.

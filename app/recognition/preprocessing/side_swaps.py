@@ -16,12 +16,12 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.jumps import body_unit
-from app.recognition.landmarks import SHOULDERS, other_side
-from app.recognition.middle import median
-from app.recognition.movement import part_of
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.median import median
+from app.recognition.features.motion import part_of
+from app.recognition.poses.landmarks import SHOULDERS, other_side
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.outliers import body_unit
 
 TOLL = 0.5
 """What a change of sides must save at least, as a share of the distance between the sides.

@@ -9,15 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
-from app.recognition.estimation.base import FrameLandmarks, Hand, PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, corrected
-from app.recognition.landmark_sets import missing_from
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import PoseSequence, joined
-from app.recognition.recording import Recording
-from app.recognition.salute import ENTER_SCORE, best_salute
-from app.recognition.video import FrameSource, VideoFrame, VideoInfo, read_frames
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import FrameLandmarks, Hand
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import PoseSequence, joined
+from app.recognition.poses.skeletons import missing_from
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.salute import ENTER_SCORE, best_salute
+from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
+from app.recognition.recording.video_limits import VideoLimits
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.

@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-from app.recognition.estimation.base import FrameLandmarks
-from app.recognition.extraction import moment_of
-from app.recognition.poses import PoseSequence, joined
-from app.recognition.salute import best_salute
-from app.recognition.takes import LONGEST_TAKE, Take, TakeMachine, TakeState, take_from
+from app.recognition.poses.frame import FrameLandmarks
+from app.recognition.poses.sequence import PoseSequence, joined
+from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.salute import best_salute
+from app.recognition.recording.segmentation import (
+    LONGEST_TAKE,
+    Take,
+    TakeMachine,
+    TakeState,
+    take_from,
+)
 
 LONGEST_SALUTE = 10.0
 """Seconds of a start salute that are remembered beside the longest take: the way of the hand from

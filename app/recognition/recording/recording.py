@@ -13,9 +13,9 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.estimation.base import Hand
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 FILE_VERSION = 1
 """Of the file that `Recording.save` writes; raised when a reader of today could misread it."""

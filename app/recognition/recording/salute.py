@@ -18,9 +18,9 @@ from operator import itemgetter
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.estimation.base import Hand
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 FINGERS = ("index_finger", "middle_finger", "ring_finger", "pinky")
 _JOINTS = [

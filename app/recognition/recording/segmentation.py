@@ -7,14 +7,14 @@ from enum import Enum
 from pathlib import Path
 
 from app.recognition.errors import PoseError
-from app.recognition.estimation.base import PoseEstimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.extraction import Progress, record
-from app.recognition.poses import PoseSequence
-from app.recognition.recording import Recording
-from app.recognition.repair import repaired
-from app.recognition.salute import SaluteTrigger
-from app.recognition.transit import Span, find_stroke
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.preprocessing.repair import repaired
+from app.recognition.recording.extraction import Progress, record
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.salute import SaluteTrigger
+from app.recognition.recording.trimming import Span, find_stroke
 
 SHORTEST_TAKE = 0.8
 """Seconds between two salutes, at least. A reach, a stroke and a reach back take 0.5 s each at
@@ -219,7 +219,7 @@ def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
         What was found in a clip.
     trim
         Whether to leave the hand's way from and to the salute out of the stroke
-        (`app.recognition.transit`).
+        (`app.recognition.recording.trimming`).
 
     Returns
     -------
@@ -246,7 +246,7 @@ def find_takes(
     trim: bool = True,
     water: WaterCorrection = "auto",
 ) -> tuple[Take, ...]:
-    """Find the takes of a clip; see `app.recognition.extraction.record` and `takes_in`."""
+    """Find the takes of a clip; see `extraction.record` and `takes_in`."""
     recording = record(clip, estimator=estimator, progress=progress, water=water)
     return takes_in(recording, trim=trim)
 

@@ -10,7 +10,7 @@ cameras record moving pictures at by default (PAL), so that repaired time rather
 
 SHORTEST_STEP, LONGEST_STEP = 1 / 1000, 0.5
 """Believable seconds between neighbouring frames: from a high-speed camera's 1000 frames a second
-to the longest gap that a trajectory bridges (`app.recognition.trajectory.MAX_GAP_SECONDS`).
+to the longest gap that a trajectory bridges (`app.recognition.poses.trajectory.MAX_GAP_SECONDS`).
 A container's nominal rate is often wrong (a WebM recorded by a browser says 1000 per second)."""
 
 NUDGE = 0.25

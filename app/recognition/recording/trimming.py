@@ -20,9 +20,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.landmarks import SHOULDERS
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import SHOULDERS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
 
 WRISTS = ("left_wrist", "right_wrist")
 

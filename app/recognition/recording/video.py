@@ -23,9 +23,9 @@ from av.video.stream import VideoStream
 from typing_extensions import Self
 
 from app.recognition.errors import VideoError
-from app.recognition.estimation.base import Image
-from app.recognition.frame_clock import FALLBACK_STEP, FrameClock
-from app.recognition.video_limits import VideoLimits
+from app.recognition.poses.frame import Image
+from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
+from app.recognition.recording.video_limits import VideoLimits
 
 __all__ = [
     "FrameReader",

@@ -15,8 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 RATE = 25.0
 """Moments per second: a usual camera's frames."""

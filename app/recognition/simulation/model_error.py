@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from app.recognition.variation import Person
+from app.recognition.simulation.variation import Person
 
 
 @dataclass(frozen=True)

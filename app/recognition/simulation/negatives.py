@@ -12,9 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.recognition.accidental import accidental_movements
-from app.recognition.gesture import Gesture, condensed
-from app.recognition.trajectory import Trajectory
+from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.accidental_motion import accidental_movements
 
 MOST_SPLICES = 16
 """Splices made of a language, as many as there are kinds of accidental movements."""

@@ -13,8 +13,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from app.recognition.poses import FloatArray
-from app.recognition.unforeseen import Unforeseen
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.model_error import Unforeseen
 
 STANDARD_ERRORS = 1.96
 """Standard errors to either side that hold 95 % of a normal distribution."""

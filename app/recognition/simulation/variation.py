@@ -30,10 +30,10 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import RecognitionError
-from app.recognition.limb_reach import within_reach
-from app.recognition.movement import SIDES, part_of
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import SIDES, part_of
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.limb_length import within_reach
 
 Person = Literal["same", "another"]
 

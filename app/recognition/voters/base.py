@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 
 
 class Voter(Protocol):

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.outline import Contour
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.contour import Contour
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.base import euclidean_distances
 
 FLOOR = 1e-2

@@ -7,10 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from app.recognition.elastic import ElasticReferences
-from app.recognition.movement import LIMBS, Movement, sized
-from app.recognition.poses import FloatArray
-from app.recognition.step_distances import ROUNDING, StepReferences
+from app.recognition.features.motion import LIMBS, Movement, sized
+from app.recognition.matching.dtw import ElasticReferences
+from app.recognition.matching.step_distances import ROUNDING, StepReferences
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.base import absolute_differences, euclidean_distances
 from app.recognition.voters.wrist_bend import WristBend
 

@@ -5,8 +5,8 @@ from math import log2, pi
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.base import absolute_differences
 
 

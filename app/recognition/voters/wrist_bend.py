@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.movement import LIMBS, Movement
-from app.recognition.poses import FloatArray
+from app.recognition.features.motion import LIMBS, Movement
+from app.recognition.poses.sequence import FloatArray
 
 FOREARM = LIMBS.index(("elbow", "wrist"))
 HAND = [

@@ -5,8 +5,8 @@ from math import comb, factorial
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.base import euclidean_distances
 
 DEGREE = 8

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.recognition.spotting import LONGEST_MEMORY
-from app.robot.listener import Listener
-from app.robot.phrase_listener import PhraseListener
-from app.robot.spoken_language import SpokenLanguage
-from app.robot.spotting_listener import SpottingListener
+from app.robot.active_language import SpokenLanguage
+from app.robot.listeners.phrase_listener import PhraseListener
+from app.robot.listeners.salute_listener import Listener
+from app.robot.listeners.spotting_listener import SpottingListener
 
 
 def hearing_of(language: SpokenLanguage, *, without_salutes: bool = False) -> PhraseListener:

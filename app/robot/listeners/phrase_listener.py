@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.recognition import PoseSequence
-from app.recognition.phrase_parser import PhraseEvent, PhraseParser
-from app.recognition.takes import TakeState
+from app.recognition.phrases.parser import PhraseEvent, PhraseParser
+from app.recognition.recording.segmentation import TakeState
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
-from app.robot.listener import Hearing
-from app.robot.spoken_language import SpokenLanguage
+from app.robot.listeners.salute_listener import Hearing
 
 
 class PhraseListener:

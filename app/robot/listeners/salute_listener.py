@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 from app.recognition import PoseSequence, Take
-from app.recognition.live import LiveTakes
-from app.recognition.takes import LONGEST_TAKE, TakeState
+from app.recognition.recording.live_segmentation import LiveTakes
+from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import Event, StateChanged
-from app.robot.spoken_language import SpokenLanguage
-from app.robot.verdict import rejection, verdict_on_take
+from app.robot.take_result import rejection, verdict_on_take
 
 NOT_ENDED_IN_TIME = (
     f"no salute ended it within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver swam away"
@@ -89,9 +89,9 @@ class Listener:
         Parameters
         ----------
         moment
-            The body in that frame alone (`app.recognition.extraction.moment_of`).
+            The body in that frame alone (`extraction.moment_of`).
         salute
-            In [0, 1]: how much the best hand salutes (`app.recognition.salute.best_salute`).
+            In [0, 1]: how much the best hand salutes (`salute.best_salute`).
 
         Returns
         -------

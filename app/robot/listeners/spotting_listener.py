@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from app.recognition import PoseSequence
+from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import Spotted, Spotter
-from app.recognition.takes import TakeState
+from app.robot.active_language import SpokenLanguage
 from app.robot.events import Event, StateChanged
-from app.robot.listener import break_between
-from app.robot.spoken_language import SpokenLanguage
-from app.robot.verdict import verdict
+from app.robot.listeners.salute_listener import break_between
+from app.robot.take_result import verdict
 
 
 class SpottingListener:

@@ -19,7 +19,6 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
-from app.robot.dds_messages import GestureRecognition, Header, Phrase, String, Time
 from app.robot.events import (
     Event,
     LanguageChanged,
@@ -29,6 +28,7 @@ from app.robot.events import (
     TakeRejected,
 )
 from app.robot.messages import line_of
+from app.robot.publishing.dds_messages import GestureRecognition, Header, Phrase, String, Time
 
 NAMESPACE: Final = "osg"
 """Of the topics: ``/osg/events`` and so on."""

@@ -33,7 +33,7 @@ def open_publisher(network: Network) -> Publisher:
 
     """
     try:
-        from app.robot.dds import DdsPublisher
+        from app.robot.publishing.dds import DdsPublisher
     except ModuleNotFoundError as error:
         raise PublishError(
             f"publishing over {network} needs {error.name}, which is not installed; install it "

@@ -6,10 +6,10 @@ from contextlib import ExitStack
 
 from app.bags import bag_and_topic
 from app.bags.bag import opened_bag
-from app.bags.frames import BagFrames
+from app.bags.picture_frames import BagFrames
 from app.recognition.errors import BagError
-from app.recognition.video_limits import VideoLimits
-from app.robot.recorded_source import RecordedSource
+from app.recognition.recording.video_limits import VideoLimits
+from app.robot.sources.recorded import RecordedSource
 
 
 def open_bag(text: str, limits: VideoLimits | None = None) -> RecordedSource:

@@ -12,7 +12,7 @@ import numpy as np
 from av.container import InputContainer
 
 from app.recognition.errors import SourceError
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 
 OPEN_SECONDS: Final = 10.0
 """For a stream to say what it holds: RTSP cameras send a picture that can be decoded alone every
@@ -20,7 +20,7 @@ few seconds."""
 
 SILENT_SECONDS: Final = 5.0
 """Without a frame for so long, a stream counts as lost. The slowest that a gesture could be seen in
-gives two frames a second (`app.recognition.trajectory.MAX_GAP_SECONDS`)."""
+gives two frames a second (`app.recognition.poses.trajectory.MAX_GAP_SECONDS`)."""
 
 MOST_PIXELS: Final = 16_000_000
 """Of one frame, as for clips (`VideoLimits`)."""
@@ -61,7 +61,7 @@ class CameraDevice:
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
-        """Wait for the next frame; see `app.robot.live_source.Camera`."""
+        """Wait for the next frame; see `app.robot.sources.live.Camera`."""
         got, image = self._capture.read()
         if not got or image is None:
             raise SourceError(f"{self._name} gave no frame: unplugged, or its driver stopped")
@@ -99,7 +99,7 @@ class NetworkStream:
         self._frames = self._container.decode(stream)
 
     def read(self) -> Image:
-        """Wait for the next frame; see `app.robot.live_source.Camera`."""
+        """Wait for the next frame; see `app.robot.sources.live.Camera`."""
         while True:
             try:
                 frame = next(self._frames)

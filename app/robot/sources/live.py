@@ -10,9 +10,9 @@ from datetime import datetime, timezone
 from typing import Final, Protocol
 
 from app.recognition.errors import SourceError
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 from app.robot.events import SourceLost, SourceRestored
-from app.robot.source import Frame, Notice, Quiet
+from app.robot.sources.source import Frame, Notice, Quiet
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
 """Seconds before a lost camera is opened again, doubled with every attempt that fails: a loose plug

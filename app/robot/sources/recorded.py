@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from app.recognition.video import FrameSource
+from app.recognition.recording.video import FrameSource
 from app.robot.events import SourceWarned
-from app.robot.source import Frame, Notice
+from app.robot.sources.source import Frame, Notice
 
 
 class RecordedSource:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.bags import bag_and_topic, is_bag
-from app.recognition.video import FrameReader
-from app.robot.bag_source import open_bag
-from app.robot.cameras import CameraDevice, NetworkStream, is_address, without_password
-from app.robot.live_source import LiveSource
-from app.robot.recorded_source import RecordedSource
-from app.robot.source import Source
+from app.recognition.recording.video import FrameReader
+from app.robot.sources.bag import open_bag
+from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
+from app.robot.sources.live import LiveSource
+from app.robot.sources.recorded import RecordedSource
+from app.robot.sources.source import Source
 
 
 @dataclass(frozen=True)

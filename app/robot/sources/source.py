@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Protocol
 
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 from app.robot.events import SourceLost, SourceRestored, SourceWarned
 
 

@@ -4,7 +4,7 @@ ros2 launch osg_ros gestures.launch.py language:=/data/pool.json image:=/camera/
 """
 
 from launch import LaunchDescription
-from osg_ros.launching import arguments, node, switch
+from osg_ros.launch_arguments import arguments, node, switch
 
 
 def generate_launch_description() -> LaunchDescription:

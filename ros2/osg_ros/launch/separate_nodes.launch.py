@@ -4,7 +4,7 @@ ros2 launch osg_ros separate_nodes.launch.py language:=/data/pool.json pose:=fal
 """
 
 from launch import LaunchDescription
-from osg_ros.launching import arguments, switch
+from osg_ros.launch_arguments import arguments, switch
 
 
 def generate_launch_description() -> LaunchDescription:

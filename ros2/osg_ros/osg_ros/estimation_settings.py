@@ -7,7 +7,7 @@ from typing import Final, get_args
 from app.recognition.estimation import Provider
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
-from osg_ros.settings import Setting
+from osg_ros.parameters import Setting
 
 WATER: Final = Setting(
     "water",

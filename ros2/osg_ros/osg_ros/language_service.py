@@ -8,11 +8,11 @@ from typing import Final
 from osg_interfaces.srv import ReloadLanguage
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 
-from app.recognition.profile import PROFILES
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.spotting import LONGEST_MEMORY
 from app.robot import SpokenLanguage
-from osg_ros.managed_node import ManagedNode
-from osg_ros.settings import Setting
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.parameters import Setting
 
 LANGUAGE: Final = Setting("language", "", "Path of the language file on the robot.")
 PROFILE: Final = Setting(

@@ -97,7 +97,7 @@ export function figure(onPick) {
   return { element, show, draw };
 }
 
-/** The landmarks in the order of `BONES`: `POSE_LANDMARKS` in app/recognition/landmarks.py. */
+/** The landmarks in the order of `BONES`: `POSE_LANDMARKS` in app/recognition/poses/landmarks.py. */
 const LANDMARKS = [
   "nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye", "right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right",
   ...["shoulder", "elbow", "wrist", "pinky", "index", "thumb", "hip", "knee", "ankle", "heel", "foot_index"].flatMap((part) => [`left_${part}`, `right_${part}`]),

@@ -14,10 +14,10 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.api.routes.test_clips import CLIPS, upload
+from tests.api.routes.test_jobs import JOBS
 from tests.api.running import assert_problem, until
 from tests.api.serving import SERVE, served
-from tests.api.test_clips import CLIPS, upload
-from tests.api.test_jobs import JOBS
 from tests.api.workers import alive, linux, workers_of
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool

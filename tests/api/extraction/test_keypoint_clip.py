@@ -10,7 +10,7 @@ from app.api.extraction.keypoint_clip import DRAWN, NO_HANDS, read_recording
 from app.api.extraction.keypoint_source import KeypointSource
 from app.api.extraction.messages import Failed
 from app.keypoint_files import Ending
-from app.recognition.recording import Recording
+from app.recognition.recording.recording import Recording
 from tests.keypoint_files.files import renamed, write_named, write_numbered
 from tests.recognition.strategies import circle, recording
 

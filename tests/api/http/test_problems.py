@@ -8,7 +8,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
-from app.api.problems import problem_of
+from app.api.http.problems import problem_of
 from app.recognition.errors import (
     GestureError,
     LanguageError,

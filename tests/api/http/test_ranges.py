@@ -3,8 +3,8 @@
 import httpx
 import pytest
 
+from tests.api.routes.test_clips import CLIPS
 from tests.api.running import assert_problem
-from tests.api.test_clips import CLIPS
 
 
 @pytest.mark.parametrize(

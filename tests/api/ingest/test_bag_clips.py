@@ -11,7 +11,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.recognition.video import probe
+from app.recognition.recording.video import probe
 from app.settings import Settings
 from tests.api.recordings import recording_of
 from tests.api.running import assert_problem, running, until

@@ -10,11 +10,11 @@ import httpx
 import numpy as np
 import pytest
 
-from app.recognition.landmark_sets import BODY_25
-from app.recognition.video import probe
+from app.recognition.poses.skeletons import BODY_25
+from app.recognition.recording.video import probe
 from app.settings import Settings
+from tests.api.ingest.test_bag_clips import CLIPS, assert_nothing_kept, finished, upload
 from tests.api.running import assert_problem
-from tests.api.test_bag_clips import CLIPS, assert_nothing_kept, finished, upload
 from tests.keypoint_files.files import (
     renamed,
     write_named,

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.api.uploads import LONGEST_NAME, MOST_PARTS, shown_name
+from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, shown_name
 from app.settings import Settings
+from tests.api.routes.test_clips import CLIPS, assert_nothing_kept, upload
 from tests.api.running import Running, assert_problem, running, until
-from tests.api.test_clips import CLIPS, assert_nothing_kept, upload
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
 PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\r\n'

@@ -19,11 +19,11 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 from websockets.typing import Origin
 
-from app.api.live import MESSAGE_TOO_BIG, MOST_VIEWS, TRY_AGAIN_LATER
-from app.api.playback import UNSUPPORTED_DATA
-from app.api.watcher import decoded
+from app.api.http.websockets import UNSUPPORTED_DATA
+from app.api.live.socket import MESSAGE_TOO_BIG, MOST_VIEWS, TRY_AGAIN_LATER
+from app.api.live.watcher import decoded
 from app.recognition.errors import VideoError
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 from app.settings import Settings
 from tests.api.running import Running, until
 from tests.conftest import ROOT

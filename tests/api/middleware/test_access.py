@@ -8,7 +8,7 @@ from pydantic import SecretStr
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from app.api.security import COOKIE
+from app.api.middleware.access import COOKIE
 from app.settings import Settings
 from tests.api.running import Running, assert_problem, running
 

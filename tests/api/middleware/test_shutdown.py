@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.ending import EndsInTime, OpenRequests
+from app.api.middleware.shutdown import EndsInTime, OpenRequests
 
 SCOPE: Scope = {"type": "http", "method": "GET", "path": "/", "headers": []}
 

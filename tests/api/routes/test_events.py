@@ -6,8 +6,8 @@ from typing import Any
 import httpx
 
 from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.routes.test_clips import CLIPS
 from tests.api.running import Running
-from tests.api.test_clips import CLIPS
 
 
 def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> None:

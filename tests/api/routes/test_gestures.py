@@ -5,8 +5,8 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.studio import Studio
-from app.recognition.png import decode_png
+from app.api.services.context import Studio
+from app.recognition.features.png import decode_png
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem

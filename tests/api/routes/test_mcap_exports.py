@@ -7,10 +7,10 @@ from pathlib import Path
 import httpx
 
 from app.settings import Settings
+from tests.api.ingest.test_bag_clips import finished, upload
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import recording_of
 from tests.api.running import assert_problem
-from tests.api.test_bag_clips import finished, upload
 from tests.bags.bag_files import file_of, published_rows, write_bag
 from tests.bags.sessions import checked
 

@@ -3,8 +3,8 @@
 import httpx
 import pytest
 
-from app.api.studio import Studio
-from app.recognition.profile import PROFILES
+from app.api.services.context import Studio
+from app.recognition.gestures.profile import PROFILES
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem

@@ -14,9 +14,9 @@ import pytest
 from app.settings import Settings
 from app.store import UploadStore
 from app.store.models import now
+from tests.api.ingest.test_bag_clips import two_divers
+from tests.api.routes.test_clips import CLIPS, assert_nothing_kept
 from tests.api.running import Running, assert_problem, running, until
-from tests.api.test_bag_clips import two_divers
-from tests.api.test_clips import CLIPS, assert_nothing_kept
 from tests.bags.bag_files import file_of, write_bag
 
 UPLOADS = "/api/v1/uploads"

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.api.demonstrations import demonstration_in
-from app.api.problems import ProblemError
-from app.recognition.takes import takes_in
+from app.api.http.problems import ProblemError
+from app.api.services.clip_ranges import demonstration_in
+from app.recognition.recording.segmentation import takes_in
 from tests.api.recordings import recording_of
 
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.api.language_comparison import compared, language_words
+from app.api.services.language_diff import compared, language_words
 from app.recognition import Gesture, Language
-from app.recognition.switches import Switches
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.switches import Switches
+from app.recognition.gestures.tuning import Tuning
 from tests.api.recordings import recording_of
 
 

@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 from websockets.typing import Origin
 
-from app.api.playback import UNSUPPORTED_DATA
+from app.api.http.websockets import UNSUPPORTED_DATA
 from tests.api.running import Running
 
 

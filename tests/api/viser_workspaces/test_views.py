@@ -5,9 +5,9 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.api.studio import Studio
-from app.api.workspace_views import view_of
-from app.api.workspaces import ViewRequest
+from app.api.services.context import Studio
+from app.api.viser_workspaces.routes import ViewRequest
+from app.api.viser_workspaces.views import view_of
 from app.store import Clip, NotFound
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.running import assert_problem

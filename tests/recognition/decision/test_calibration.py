@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.calibration import REACH, calibrated
-from app.recognition.gesture import condensed
-from app.recognition.switches import Switches
-from app.recognition.variation import variants
+from app.recognition.decision.calibration import REACH, calibrated
+from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.switches import Switches
+from app.recognition.simulation.variation import variants
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
 
 
@@ -81,7 +81,7 @@ def test_a_changed_language_is_calibrated_anew(language: Language) -> None:
 def test_thresholds_by_another_rule_are_made_anew(
     language: Language, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.recognition.language.RULE", "another")
+    monkeypatch.setattr("app.recognition.language.language.RULE", "another")
     assert language.calibrated().thresholds_for != language.thresholds_for
 
 

@@ -15,11 +15,11 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.calibrated_vote import VOTERS
-from app.recognition.landmarks import other_side
-from app.recognition.motion_references import MAX_GESTURES_READ_OTHERWISE
-from app.recognition.poses import FloatArray
-from app.recognition.switches import Switches
+from app.recognition.decision.fused_vote import VOTERS
+from app.recognition.decision.motion_references import MAX_GESTURES_READ_OTHERWISE
+from app.recognition.gestures.switches import Switches
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.strategies import (
     SHAPES,
     Shape,

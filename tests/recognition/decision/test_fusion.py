@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.recognition.calibrated_vote import VOTERS
-from app.recognition.fusion import TYPICAL, fused, says
+from app.recognition.decision.fused_vote import VOTERS
+from app.recognition.decision.fusion import TYPICAL, fused, says
 
 
 def say_of(voter: str, between: float, landmarks: int = 1, pairs: int = 10) -> float:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.landmark_sets import COCO_17
+from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.strategies import SHAPES, Shape, recording
 
 FINGERS = {"pinky": (0.04, 0.13), "index": (-0.03, 0.15), "thumb": (-0.07, 0.09)}

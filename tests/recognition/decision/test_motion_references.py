@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.gesture import condensed
-from app.recognition.motion_references import MotionReferences, describe_movement
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.motion_references import MotionReferences, describe_movement
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import MOTION_VOTERS
 from tests.recognition.demonstrations import ARMS, shown
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge

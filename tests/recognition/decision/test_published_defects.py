@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
-from app.recognition.gesture import condensed
-from app.recognition.outline import Outline
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import draw
+from app.recognition.features.contour import Outline
+from app.recognition.features.trajectory_image import draw
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters import PAPER_VOTERS, describe
 from tests.recognition.strategies import SHAPES, circle, line, recording, rest, wedge
 from tests.recognition.voters.figures import drawing_of

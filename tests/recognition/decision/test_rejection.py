@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.calibrated_vote import VOTERS
-from app.recognition.calibration import REACH
-from app.recognition.poses import FloatArray
-from app.recognition.rejection import (
+from app.recognition.decision.calibration import REACH
+from app.recognition.decision.fused_vote import VOTERS
+from app.recognition.decision.rejection import (
     VIEWS,
     calibrated_confidence,
     is_rejected,
@@ -15,7 +14,8 @@ from app.recognition.rejection import (
     novelty_weights,
     thresholds_of,
 )
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.strategies import SHAPES, circle, line, recording
 
 TAUGHT = ("circle", "wedge", "infinity", "square")

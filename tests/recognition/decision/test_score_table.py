@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.comparison import Comparison
-from app.recognition.gesture import condensed
-from app.recognition.profile import PROFILES
-from app.recognition.switches import Switches
-from app.recognition.trajectory import Trajectory
+from app.recognition.decision.score_table import Comparison
+from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.gestures.switches import Switches
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
 
 LANGUAGE = Language(

@@ -25,8 +25,8 @@ from app.recognition.estimation import (
     OnnxPoseEstimator,
     PoseEstimator,
 )
-from app.recognition.poses import FloatArray
-from app.recognition.video import VideoFrame
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 
 UPPER_BODY = slice(0, 23)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from app.recognition.video import VideoFrame, read_frames
+from app.recognition.recording.video import VideoFrame, read_frames
 
 
 def clip_frames(clip: Path, count: int, *, every: int = 1) -> Iterator[VideoFrame]:

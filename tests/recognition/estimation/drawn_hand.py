@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 
 def flat_hand(*, size: float = 100.0) -> FloatArray:

@@ -17,10 +17,10 @@ import numpy.typing as npt
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
-from app.recognition.estimation.base import Image
-from app.recognition.landmark_sets import COCO_17
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import COCO_17
 
 COLOURS = tuple(
     colour for colour in product((0, 85, 170, 255), repeat=3) if max(colour) == 255 > min(colour)

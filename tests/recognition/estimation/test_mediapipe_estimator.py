@@ -9,7 +9,7 @@ import pytest
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import MediaPipeEstimator
-from app.recognition.video import VideoFrame
+from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.video import VideoFrame
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 
 LEFT_WRIST, RIGHT_WRIST = POSE_LANDMARKS.index("left_wrist"), POSE_LANDMARKS.index("right_wrist")

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.poses import FloatArray
-from app.recognition.subject import PATIENCE_SECONDS, SubjectChoice, boxes_around
+from app.recognition.estimation.person_tracker import PATIENCE_SECONDS, SubjectChoice, boxes_around
+from app.recognition.poses.sequence import FloatArray
 
 BOTH = np.array([0.9, 0.9])
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.recognition.estimation import OnnxPoseEstimator
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.clip_frames import clip_frames
 
 TOLERANCE = 0.01

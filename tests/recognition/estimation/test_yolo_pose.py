@@ -9,11 +9,11 @@ import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
-from app.recognition.estimation.base import Body, Image
 from app.recognition.estimation.yolo_pose import YoloPose, decoded
-from app.recognition.landmark_sets import COCO_17
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.estimation.marker_models import (
     BODY_COLOURS,
     draw_markers,

@@ -5,19 +5,19 @@ from collections import Counter
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.counterfactual import (
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.counterfactual import (
     MOST,
     MOST_OF_A_KIND,
     Counterfactuals,
     counterfactuals,
     margin,
 )
-from app.recognition.landmarks import POSE_LANDMARKS, other_side
-from app.recognition.profile import PROFILES
-from app.recognition.situation import Situation
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
 from tests.recognition.damaged_poses import with_sides_exchanged
+from tests.recognition.explanation.test_differences import HOOK, corners
 from tests.recognition.strategies import SHAPES, recording, wedge
-from tests.recognition.test_difference import HOOK, corners
 
 LANGUAGE = Language(
     "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.difference import Difference, differences
-from app.recognition.gesture import condensed
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.pairing import Pairing
-from app.recognition.poses import FloatArray
-from app.recognition.readings import AS_SHOWN
-from app.recognition.trajectory import Trajectory
+from app.recognition.explanation.differences import Difference, differences
+from app.recognition.explanation.pairing import Pairing
+from app.recognition.features.traversals import AS_SHOWN
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given, settings
 
 from app.recognition import Gesture, Language, PoseSequence, RecognitionError, Recognizer
-from app.recognition.explanation import Explanation, explain
-from app.recognition.profile import PROFILES
-from app.recognition.situation import Situation
-from app.recognition.tuning import Tuning
-from app.recognition.wording import readable
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.explanation import Explanation, explain
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.text.wording import readable
 from tests.recognition.damaged_poses import with_sides_exchanged
+from tests.recognition.explanation.test_differences import corners
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
-from tests.recognition.test_difference import corners
 
 LANGUAGE = Language(
     "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]

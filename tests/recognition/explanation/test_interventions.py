@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer, Take
-from app.recognition.change import (
+from app.recognition.explanation.context import Situation
+from app.recognition.explanation.interventions import (
     Change,
     KeypointRepair,
     NewDemonstration,
@@ -17,8 +18,7 @@ from app.recognition.change import (
     Trim,
     VoterWeight,
 )
-from app.recognition.situation import Situation
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
 
 LANGUAGE = Language(

@@ -3,8 +3,8 @@
 import numpy as np
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.contrast import contrast
-from app.recognition.poses import FloatArray
+from app.recognition.explanation.pair_difference import contrast
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line
 

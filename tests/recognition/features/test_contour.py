@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from app.recognition.outline import BinaryImage, Outline
-from app.recognition.trajectory_image import STROKE_WIDTH
+from app.recognition.features.contour import BinaryImage, Outline
+from app.recognition.features.trajectory_image import STROKE_WIDTH
 
 
 def blank() -> BinaryImage:

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.middle import median
+from app.recognition.features.median import median
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40))

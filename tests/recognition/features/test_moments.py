@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.stroke_moments import HIGHEST_POWER, StrokeMoments
+from app.recognition.features.moments import HIGHEST_POWER, StrokeMoments
 
 
 @given(

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.closing import closed
+from app.recognition.features.morphology import closed
 
 
 @given(

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.recognition.landmarks import other_side
-from app.recognition.movement import (
+from app.recognition.features.motion import (
     STEPS,
     followed_landmarks,
     hands_in,
@@ -15,7 +14,8 @@ from app.recognition.movement import (
     on_both_sides,
     part_of,
 )
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import circle, recording
 
 WRIST = ("right_wrist",)

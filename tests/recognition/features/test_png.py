@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.outline import BinaryImage
-from app.recognition.png import decode_png, encode_png
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.png import decode_png, encode_png
 
 
 def checkered(height: int, width: int, seed: int = 0) -> BinaryImage:

@@ -9,11 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import PoseSequence
-from app.recognition.gesture import condensed
-from app.recognition.outline import BinaryImage
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import (
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.trajectory_image import (
     MARGIN,
     MIN_EXTENT,
     SIZE,
@@ -21,6 +18,9 @@ from app.recognition.trajectory_image import (
     draw,
     simplified,
 )
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, strokes
 
 SAME_SHAPE = 0.7

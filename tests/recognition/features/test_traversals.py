@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.recognition.movement import STEPS, Movement, movement
-from app.recognition.readings import (
+from app.recognition.features.motion import STEPS, Movement, movement
+from app.recognition.features.traversals import (
     AS_SHOWN,
     BACKWARD_PENALTY,
     SIDES_EXCHANGED,
@@ -11,7 +11,7 @@ from app.recognition.readings import (
     is_closed,
     readings,
 )
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
 

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, RecognitionError, Recognizer
-from app.recognition.gesture import condensed
-from app.recognition.profile import voters_of
-from app.recognition.trajectory import Trajectory
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.profile import voters_of
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 

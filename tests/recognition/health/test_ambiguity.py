@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 
-from app.recognition.ambiguity import find_ambiguities
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import Phrase, Slot, SlotType
-from app.recognition.phrase_automaton import Reading
-from app.recognition.phrase_parser import PhraseParser
+from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.phrases.automaton import Reading
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseParser
+from app.recognition.phrases.phrase import Phrase, Slot, SlotType
 from tests.recognition.grammars import MISSIONS, PHOTO, grammars, one, sentences
 
 DOUBLE = {"same_sequence", "overlap", "run_together"}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.health import check_health
-from app.recognition.health_report import MOST_CONFUSION, HealthReport
+from app.recognition.health.check import check_health
+from app.recognition.health.report import MOST_CONFUSION, HealthReport
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from app.recognition.alteration import (
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.edits import (
     LARGER,
     alterations_of,
     backwards,
@@ -16,9 +17,8 @@ from app.recognition.alteration import (
     wider,
     with_switch,
 )
-from app.recognition.gesture import Gesture
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.demonstrations import shown
 from tests.recognition.strategies import circle, line, wedge
 

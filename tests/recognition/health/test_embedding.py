@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.language_map import placed
+from app.recognition.health.embedding import placed
 
 
 def between(places: np.ndarray) -> np.ndarray:

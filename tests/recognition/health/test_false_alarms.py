@@ -1,10 +1,10 @@
 """Alarms: a language that asks for a reach is set off by reaching, one of figures is not."""
 
 from app.recognition import Language, Recognizer
-from app.recognition.accidental import MANNERS, accidental_movements
-from app.recognition.alarm import alarms
-from app.recognition.gesture import Gesture
-from app.recognition.poses import PoseSequence
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.false_alarms import alarms
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.simulation.accidental_motion import MANNERS, accidental_movements
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, infinity
 

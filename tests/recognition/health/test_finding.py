@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.recognition.accidental import accidental_movements
-from app.recognition.finding import demonstration_findings, longest_held_up, visible_share
-from app.recognition.gesture import Gesture
-from app.recognition.poses import FloatArray
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.finding import demonstration_findings, longest_held_up, visible_share
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.accidental_motion import accidental_movements
 from tests.recognition.demonstrations import shown
 from tests.recognition.strategies import circle, line
 

@@ -1,7 +1,7 @@
 """Remedies: proposed only where rehearsing the changed language shows that they help."""
 
 from app.recognition import Language, Recognizer
-from app.recognition.remedy import HELPS, MOST_PROPOSED, Rehearsing, pair_remedies
+from app.recognition.health.remedy import HELPS, MOST_PROPOSED, Rehearsing, pair_remedies
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, infinity, line
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Language, Recognizer
-from app.recognition.rehearsal import rehearse
+from app.recognition.health.simulated_trials import rehearse
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line, wedge
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from app.recognition import Gesture, Language, LanguageError
-from app.recognition.language_file import seal
-from app.recognition.language_schema import MAX_FILE_BYTES, MAX_GESTURES
+from app.recognition.language.file import seal
+from app.recognition.language.schema import MAX_FILE_BYTES, MAX_GESTURES
 from tests.recognition.strategies import circle, line, recording
 
 Content = dict[str, Any]

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 
 from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
-from app.recognition.gesture import MAX_LANDMARKS
-from app.recognition.language_schema import MAX_GESTURES
+from app.recognition.gestures.gesture import MAX_LANDMARKS
+from app.recognition.language.schema import MAX_GESTURES
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
 
-GOLDEN = Path(__file__).parents[1] / "golden" / "language.json"
+GOLDEN = Path(__file__).parents[2] / "golden" / "language.json"
 KILOBYTES_A_GESTURE = 40
 
 

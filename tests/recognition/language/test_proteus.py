@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.phrase import SlotType
-from app.recognition.proteus import to_proteus
+from app.recognition.language.proteus import to_proteus
+from app.recognition.phrases.phrase import SlotType
 from tests.recognition.grammars import MISSIONS
 from tests.recognition.strategies import circle, recording
 

@@ -4,9 +4,9 @@ import pytest
 
 from app.recognition import Gesture, Language
 from app.recognition.errors import LandmarkError
-from app.recognition.landmark_sets import COCO_17
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.requirements import require_landmarks, requirements_of
+from app.recognition.language.requirements import require_landmarks, requirements_of
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.strategies import circle, line, recording
 
 

@@ -6,9 +6,9 @@ import jsonschema
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.language_schema import SCHEMA_FILE, generated_schema, published_schema
+from app.recognition.language.schema import SCHEMA_FILE, generated_schema, published_schema
+from tests.recognition.language.test_language import GOLDEN
 from tests.recognition.strategies import circle, recording
-from tests.recognition.test_language import GOLDEN
 
 SCHEMA = json.loads(published_schema())
 

@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.elastic import (
+from app.recognition.matching.dtw import (
     ElasticReferences,
     ElasticViews,
     elastic_distances,
     elastic_pairs,
 )
-from app.recognition.poses import FloatArray
-from app.recognition.step_distances import squared_distances
-from app.recognition.warping import alignment_costs
+from app.recognition.matching.dtw_kernel import alignment_costs
+from app.recognition.matching.step_distances import squared_distances
+from app.recognition.poses.sequence import FloatArray
 
 
 def plain_loop(query: FloatArray, reference: FloatArray, band: int) -> float:

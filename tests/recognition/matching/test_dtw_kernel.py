@@ -4,9 +4,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from app.recognition.elastic import elastic_distances
-from app.recognition.poses import FloatArray
-from app.recognition.warping import alignment_costs, half_of
+from app.recognition.matching.dtw import elastic_distances
+from app.recognition.matching.dtw_kernel import alignment_costs, half_of
+from app.recognition.poses.sequence import FloatArray
 
 BAND, STEPS = 4, 12
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.step_distances import StepReferences, squared_distances
+from app.recognition.matching.step_distances import StepReferences, squared_distances
 
 
 @given(

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, LanguageError
-from app.recognition.grammar import DEFAULT_TIMEOUT, Grammar
-from app.recognition.language_file import seal
-from app.recognition.language_schema import published_schema
-from app.recognition.phrase import OneOf
-from app.recognition.phrase_parser import PhraseParser
+from app.recognition.language.file import seal
+from app.recognition.language.schema import published_schema
+from app.recognition.phrases.grammar import DEFAULT_TIMEOUT, Grammar
+from app.recognition.phrases.parser import PhraseParser
+from app.recognition.phrases.phrase import OneOf
 from tests.recognition.grammars import MISSIONS
+from tests.recognition.language.test_language import GOLDEN
 from tests.recognition.strategies import circle, recording
-from tests.recognition.test_language import GOLDEN
 
 Entry = dict[str, Any]
 LABELS = tuple(dict.fromkeys(use.label for use in MISSIONS.uses()))

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.ambiguity import find_ambiguities
-from app.recognition.grammar import Grammar
-from app.recognition.mission import mission_of
-from app.recognition.phrase import Phrase, Slot
-from app.recognition.phrase_parser import PhraseEvent, PhraseParser
+from app.recognition.health.ambiguity import find_ambiguities
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.interpretation import mission_of
+from app.recognition.phrases.parser import PhraseEvent, PhraseParser
+from app.recognition.phrases.phrase import Phrase, Slot
 from tests.recognition.grammars import LABELS, MISSIONS, NUMBER, grammars, one, sentences
 
 OPEN = Grammar(

@@ -1,6 +1,6 @@
 """The names of landmarks are MediaPipe's, complete and consistent."""
 
-from app.recognition.landmarks import (
+from app.recognition.poses.landmarks import (
     HAND_LANDMARKS,
     HIPS,
     LANDMARK_GROUPS,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseError, PoseSequence
-from app.recognition.poses import SHOULDER_WIDTHS_PER_TORSO, FloatArray
+from app.recognition.poses.sequence import SHOULDER_WIDTHS_PER_TORSO, FloatArray
 from tests.recognition.strategies import circle, recording
 
 WRIST_AND_NOSE = {

@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.landmark_sets import (
+from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, UPPER_BODY
+from app.recognition.poses.skeletons import (
     BODY_25,
     COCO_17,
     COCO_18,
@@ -12,7 +13,6 @@ from app.recognition.landmark_sets import (
     landmark_named,
     missing_from,
 )
-from app.recognition.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, UPPER_BODY
 
 
 @pytest.mark.parametrize(("landmarks", "count"), [(COCO_17, 17), (COCO_18, 18), (BODY_25, 25)])

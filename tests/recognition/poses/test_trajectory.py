@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import PoseError, PoseSequence
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
 from tests.recognition.strategies import circle, recording, recordings
 
 HAND_ONLY = ("right_wrist",)

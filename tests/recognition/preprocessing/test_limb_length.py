@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.recognition.limb_reach import LEEWAY, SHARE_OF_TORSO, within_reach
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.limb_length import LEEWAY, SHARE_OF_TORSO, within_reach
 
 ARM = ("right_shoulder", "right_elbow", "right_wrist", "right_index")
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.jumps import MOST_JUMPS, jumps
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.outliers import MOST_JUMPS, jumps
 from tests.recognition.strategies import Shape, circle, line, recording, square, strokes, wedge
 
 COLUMN = Trajectory.from_poses(recording(circle)).landmarks.index("right_wrist")

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.quality import fault
-from app.recognition.sides import sides_of
-from app.recognition.switches import Switches
+from app.recognition.gestures.switches import Switches
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.preprocessing.quality import fault
+from app.recognition.preprocessing.side_swaps import sides_of
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
 WRIST = POSE_LANDMARKS.index("right_wrist")

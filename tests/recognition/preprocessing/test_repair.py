@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.repair import repaired
-from app.recognition.sides import sides_of
-from app.recognition.tuning import Tuning
+from app.recognition.gestures.tuning import Tuning
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.side_swaps import sides_of
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 

@@ -8,15 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import GestureError, PoseSequence
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
-from app.recognition.salience import (
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import (
     MIN_DISPLACEMENT,
     chosen_landmarks,
     displacements,
     salient_landmarks,
 )
-from app.recognition.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, rest, strokes
 
 

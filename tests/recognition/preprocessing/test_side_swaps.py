@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.recognition.landmarks import POSE_LANDMARKS, other_side
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.sides import mistaken_sides, sides_of
-from app.recognition.trajectory import Trajectory
+from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.side_swaps import mistaken_sides, sides_of
 from tests.recognition.strategies import circle, recording
 
 HANDS = ("left_wrist", "right_wrist")

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import VideoError
-from app.recognition.estimation.base import Body, FrameLandmarks, Hand, Image
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.extraction import extract_poses, record
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.takes import takes_in
-from app.recognition.video import VideoFrame
+from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.recording.extraction import extract_poses, record
+from app.recognition.recording.segmentation import takes_in
+from app.recognition.recording.video import VideoFrame
 from languages.render.encode import encode
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
 from tests.recognition.parametric_hand import hand_xy, salute

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.recognition.estimation.base import Body, FrameLandmarks, Hand
-from app.recognition.extraction import moment_of
-from app.recognition.live import LONGEST_SALUTE, LiveTakes, Sight
-from app.recognition.poses import joined
-from app.recognition.recording import Recording
-from app.recognition.salute import best_salute
-from app.recognition.takes import LONGEST_TAKE, TakeState, takes_in
+from app.recognition.poses.frame import Body, FrameLandmarks, Hand
+from app.recognition.poses.sequence import joined
+from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.live_segmentation import LONGEST_SALUTE, LiveTakes, Sight
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.salute import best_salute
+from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState, takes_in
 from tests.api.recordings import FRAME_SIZE, recording_of
 from tests.recognition.parametric_hand import Finger, hand_xy, salute
 

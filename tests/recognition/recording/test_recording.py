@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import PoseError
-from app.recognition.estimation.base import Hand
-from app.recognition.poses import PoseSequence
-from app.recognition.recording import FILE_VERSION, Recording
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.recording import FILE_VERSION, Recording
 from tests.recognition.parametric_hand import hand_xy, salute
 
 FRAMES = 7

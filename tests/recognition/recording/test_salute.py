@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from app.recognition.errors import PoseError
-from app.recognition.estimation.base import Hand
-from app.recognition.poses import FloatArray
-from app.recognition.salute import (
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.salute import (
     HOLD_SECONDS,
     SaluteTrigger,
     best_salute,

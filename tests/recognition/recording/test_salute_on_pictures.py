@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.base import PoseEstimator
-from app.recognition.salute import published_rule
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.recording.salute import published_rule
 from benchmarks.salute import Picture, Rates, clip_pictures, image_pictures, salutes
 
 

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition.errors import PoseError
-from app.recognition.poses import FloatArray
-from app.recognition.recording import Recording
-from app.recognition.takes import (
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.segmentation import (
     LONGEST_TAKE,
     SHORTEST_TAKE,
     Bracket,

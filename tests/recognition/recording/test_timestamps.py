@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.frame_clock import FALLBACK_STEP, FrameClock
+from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
 
 stamps = st.lists(st.none() | st.floats(-1e5, 1e5, allow_nan=False), min_size=1, max_size=60)
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.transit import LARGEST_SHARE, Span, find_stroke
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.recording.trimming import LARGEST_SHARE, Span, find_stroke
 from tests.recognition.motions import (
     RESTING_PLACE,
     SALUTE_PLACE,

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import VideoError
-from app.recognition.estimation.base import Image
-from app.recognition.video import (
+from app.recognition.poses.frame import Image
+from app.recognition.recording.video import (
     FrameReader,
     VideoFrame,
     VideoLimits,

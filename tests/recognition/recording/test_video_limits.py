@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from app.recognition.errors import VideoError
-from app.recognition.video_limits import VideoLimits
+from app.recognition.recording.video_limits import VideoLimits
 
 LIMITS = VideoLimits(pixels=100, frames=10, seconds=2.5)
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from app.recognition.accidental import (
+from app.recognition.preprocessing.salience import displacements
+from app.recognition.simulation.accidental_motion import (
     MANNERS,
     TREMOR,
     UPPER_ARM,
     AccidentalMovement,
     accidental_movements,
 )
-from app.recognition.salience import displacements
 
 MOVEMENTS = accidental_movements(4, seed=3)
 BY_KIND = {movement.kind: movement for movement in MOVEMENTS}

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.accidental import MANNERS
-from app.recognition.foreign import MOST_SPLICES, foreign_movements, spliced, splices
-from app.recognition.gesture import condensed
-from app.recognition.trajectory import Trajectory
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.simulation.accidental_motion import MANNERS
+from app.recognition.simulation.negatives import MOST_SPLICES, foreign_movements, spliced, splices
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
 
 WRIST = ("right_wrist",)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.forecast import Forecast
-from app.recognition.unforeseen import Unforeseen
+from app.recognition.simulation.model_error import Unforeseen
+from app.recognition.simulation.rate_estimate import Forecast
 
 MARGINS = st.lists(st.floats(-5, 5), min_size=2, max_size=40).map(np.array)
 SPREADS = st.floats(0.1, 2)

@@ -9,16 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition import Language, PoseSequence
-from app.recognition.calibrated_vote import CalibratedVote
+from app.recognition.decision.fused_vote import CalibratedVote
 from app.recognition.errors import RecognitionError
-from app.recognition.gesture import condensed
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory, Unit
-from app.recognition.variation import SPREADS, Person, Spread, variants, varied
+from app.recognition.gestures.gesture import condensed
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory, Unit
+from app.recognition.simulation.variation import SPREADS, Person, Spread, variants, varied
 from tests.recognition.strategies import SHAPES, recording, recordings
 
 PEOPLE = tuple(SPREADS)
-SAMPLE_LANGUAGE = Path(__file__).resolve().parents[2] / "languages" / "osg-table-2.json"
+SAMPLE_LANGUAGE = Path(__file__).resolve().parents[3] / "languages" / "osg-table-2.json"
 seeds = st.integers(0, 2**32 - 1)
 people = st.sampled_from(PEOPLE)
 

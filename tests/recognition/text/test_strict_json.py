@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.strict_json import (
+from app.recognition.text.strict_json import (
     MAX_DEPTH,
     MAX_FAULTS,
     MAX_SAFE_INTEGER,

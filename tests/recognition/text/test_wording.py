@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.recognition.wording import all_readable, listed, readable
+from app.recognition.text.wording import all_readable, listed, readable
 
 
 def test_identifiers_are_said_as_words() -> None:

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory import Trajectory
-from app.recognition.trajectory_image import Drawing, draw
+from app.recognition.features.trajectory_image import Drawing, draw
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import SHAPES, circle
 
 FIGURES: Mapping[str, FloatArray] = {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
 from app.recognition.voters import PAPER_VOTERS, Voter, describe
 from app.recognition.voters.base import DESCRIPTOR_DIGITS, euclidean_distances
 from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of

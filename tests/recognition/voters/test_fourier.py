@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters import FourierDescriptors
 from tests.recognition.strategies import Shape, strokes
 from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of, turned

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters import HuMoments
 from app.recognition.voters.hu import FLOOR
 from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of, turned

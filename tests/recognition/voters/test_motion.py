@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.movement import Movement, movement
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import Movement, movement
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import (
     MOTION_VOTERS,
     Cloud,

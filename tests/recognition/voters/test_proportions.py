@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
 from app.recognition.voters import AspectRatio, Circularity, PathComplexity, Solidity
 from tests.recognition.strategies import Shape, strokes
 from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of

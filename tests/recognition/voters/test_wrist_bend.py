@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.movement import movement
-from app.recognition.poses import FloatArray, PoseSequence
-from app.recognition.trajectory import Trajectory
+from app.recognition.features.motion import movement
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import HandAttitude, MotionVoter, Path
 from app.recognition.voters.wrist_bend import WristBend
 from tests.recognition.strategies import recording, rest

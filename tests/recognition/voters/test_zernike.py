@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.poses import FloatArray
-from app.recognition.trajectory_image import Drawing
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters import ZernikeMoments
 from app.recognition.voters.zernike import DEGREE, ORDERS, zernike_magnitudes
 from tests.recognition.strategies import Shape, strokes

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import OneOf, Phrase, Slot, SlotType
-from app.recognition.takes import TakeState
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
+from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     Event,
     Listener,
@@ -20,7 +20,7 @@ from app.robot import (
 )
 from tests.api.recordings import recording_of
 from tests.robot.languages import heard, language_of, moments_of, spoken
-from tests.robot.test_listener import cut, moved
+from tests.robot.listeners.test_salute_listener import cut, moved
 
 PHOTO = Phrase(
     "photo",

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition import PoseSequence, Recording, takes_in
-from app.recognition.live import LONGEST_SALUTE
-from app.recognition.takes import LONGEST_TAKE, TakeState
+from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot import Event, Listener, StateChanged, TakeRecognized, TakeRejected
 from tests.api.recordings import RATE, recording_of
 from tests.robot.languages import heard, moments_of, spoken

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from app.recognition.errors import PublishError
-from app.robot.publishing import open_publisher
+from app.robot.publishing.publisher import open_publisher
 from tests.conftest import ROOT
 
 DEFINITIONS = ROOT / "ros2" / "osg_interfaces" / "msg"
@@ -17,7 +17,7 @@ DEFINITIONS = ROOT / "ros2" / "osg_interfaces" / "msg"
 def test_without_its_library_publishing_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.delitem(sys.modules, "app.robot.dds", raising=False)
+    monkeypatch.delitem(sys.modules, "app.robot.publishing.dds", raising=False)
     for name in [each for each in sys.modules if each.split(".")[0] == "cyclonedds"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "cyclonedds", None)
@@ -40,7 +40,7 @@ def test_a_message_has_the_fields_of_its_definition_in_order(name: str) -> None:
     pytest.importorskip("cyclonedds", reason="needs the extra dds")
     from cyclonedds.idl import types
 
-    from app.robot import dds_messages
+    from app.robot.publishing import dds_messages
 
     kinds = {
         "std_msgs/Header": dds_messages.Header,

@@ -9,8 +9,8 @@ import pytest
 
 from app.recognition.errors import BagError, TopicError
 from app.robot.events import SourceWarned
-from app.robot.opening import open_source
-from app.robot.source import Frame
+from app.robot.sources.registry import open_source
+from app.robot.sources.source import Frame
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import START, Row, published_rows, raw, write_bag
 from tests.recognition.damaged_clips import picture

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import SourceError
-from app.recognition.estimation.base import Image
+from app.recognition.poses.frame import Image
 from app.robot import Frame, Notice, Quiet, SourceLost, SourceRestored
-from app.robot.cameras import SILENT_SECONDS, NetworkStream
-from app.robot.live_source import LiveSource
-from app.robot.opening import open_source
+from app.robot.sources.cameras import SILENT_SECONDS, NetworkStream
+from app.robot.sources.live import LiveSource
+from app.robot.sources.registry import open_source
 from tests.robot.mjpeg_server import FRAME_SIZE, MjpegServer
 from tests.robot.rtsp_server import RtspServer
 

@@ -12,7 +12,7 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
-from osg_ros.managed_node import ManagedNode
+from osg_ros.nodes.managed_node import ManagedNode
 
 PATIENCE = 180.0
 """Seconds to wait for what must come; only a failing test takes so long."""

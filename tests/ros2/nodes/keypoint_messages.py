@@ -9,8 +9,8 @@ from std_msgs.msg import Header
 
 from app.recognition import Recording
 from app.recognition.estimation import Body
-from osg_ros.bodies import body_message
-from osg_ros.stamps import stamp_of
+from osg_ros.topics.body_messages import body_message
+from osg_ros.topics.stamps import stamp_of
 
 BEGAN = 1_700_000_000_123_456_789
 """Nanoseconds since 1970 of the first picture: as a camera stamps it, with no zero at the end."""

@@ -14,17 +14,17 @@ from keypoints_interfaces.msg import (
 from std_msgs.msg import Header
 
 from app.recognition.estimation import Body, Hand
-from app.recognition.landmark_sets import SKELETON_2D
-from app.recognition.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
-from app.recognition.salute import best_salute
-from osg_ros.bodies import (
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
+from app.recognition.poses.skeletons import SKELETON_2D
+from app.recognition.recording.salute import best_salute
+from osg_ros.topics.body_messages import (
     body_in,
     body_message,
     published_keypoints,
     published_moment,
     skeleton_message,
 )
-from osg_ros.hands import hands_message, published_hand_keypoints
+from osg_ros.topics.hand_messages import hands_message, published_hand_keypoints
 from tests.recognition.parametric_hand import hand_xy, salute
 
 SIZE = (640, 480)

@@ -10,8 +10,8 @@ from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRec
 from std_msgs.msg import Header
 
 from app.robot import SpokenLanguage
-from osg_ros.command_node import CommandNode
-from osg_ros.stamps import nanoseconds_of, stamp_of
+from osg_ros.nodes.command_node import CommandNode
+from osg_ros.topics.stamps import nanoseconds_of, stamp_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 
 PROMPT = 8.0

@@ -14,15 +14,15 @@ from osg_interfaces.msg import RecognizerState
 from rclpy.lifecycle import TransitionCallbackReturn
 
 from app.recognition import RecognitionError
-from osg_ros.command_node import CommandNode
-from osg_ros.gesture_node import GestureNode
-from osg_ros.hand_node import HandNode
-from osg_ros.managed_node import ManagedNode
-from osg_ros.pose_node import PoseNode
-from osg_ros.recognition_node import RecognitionNode
-from osg_ros.robot_node import published
-from osg_ros.spinning import running
-from osg_ros.visualisation_node import VisualisationNode
+from osg_ros.nodes.command_node import CommandNode
+from osg_ros.nodes.gesture_node import GestureNode
+from osg_ros.nodes.hand_node import HandNode
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.nodes.pose_node import PoseNode
+from osg_ros.nodes.process import running
+from osg_ros.nodes.recognition_node import RecognitionNode
+from osg_ros.nodes.robot_node import published
+from osg_ros.nodes.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench, state_of
 
 NODES = (

@@ -11,10 +11,10 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from sensor_msgs.msg import Image
 
 from app.recognition import Gesture, Language
-from app.recognition.video import read_frames
-from osg_ros.gesture_node import GestureNode
-from osg_ros.pictures import picture_message
-from osg_ros.stamps import nanoseconds_of, stamp_of
+from app.recognition.recording.video import read_frames
+from osg_ros.nodes.gesture_node import GestureNode
+from osg_ros.topics.image_messages import picture_message
+from osg_ros.topics.stamps import nanoseconds_of, stamp_of
 from tests.marker_clips import marker_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.estimation.marker_models import save_yolo_pose

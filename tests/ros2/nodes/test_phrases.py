@@ -19,12 +19,12 @@ from osg_interfaces.msg import (
 from rosgraph_msgs.msg import Clock
 
 from app.recognition import Recording, takes_in
-from app.recognition.grammar import Grammar
-from app.recognition.phrase import OneOf
-from app.recognition.phrase import Phrase as LanguagePhrase
-from osg_ros.command_node import CommandNode
-from osg_ros.recognition_node import RecognitionNode
-from osg_ros.stamps import nanoseconds_of, stamp_of
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf
+from app.recognition.phrases.phrase import Phrase as LanguagePhrase
+from osg_ros.nodes.command_node import CommandNode
+from osg_ros.nodes.recognition_node import RecognitionNode
+from osg_ros.topics.stamps import nanoseconds_of, stamp_of
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of, stamped

@@ -9,7 +9,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from app.recognition import RecognitionError
 from app.recognition.estimation import Image as RGBImage
-from osg_ros.pictures import PictureDecoder, picture_message
+from osg_ros.topics.image_messages import PictureDecoder, picture_message
 
 
 def picture() -> RGBImage:

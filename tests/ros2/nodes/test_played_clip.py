@@ -18,9 +18,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from osg_interfaces.msg import GestureRecognition, Hands
 from sensor_msgs.msg import Image
 
-from app.recognition.video import read_frames
-from osg_ros.pictures import picture_message
-from osg_ros.stamps import nanoseconds_of, stamp_of
+from app.recognition.recording.video import read_frames
+from osg_ros.topics.image_messages import picture_message
+from osg_ros.topics.stamps import nanoseconds_of, stamp_of
 from tests.documented import documented
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import BEST_EFFORT, PATIENCE, RELIABLE, Bench

@@ -22,10 +22,10 @@ from vision_msgs.msg import Classification
 
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.estimation import Body
-from osg_ros.bodies import published_keypoints
-from osg_ros.managed_node import ManagedNode
-from osg_ros.recognition_node import RecognitionNode
-from osg_ros.stamps import nanoseconds_of, stamp_of
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.nodes.recognition_node import RecognitionNode
+from osg_ros.topics.body_messages import published_keypoints
+from osg_ros.topics.stamps import nanoseconds_of, stamp_of
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of, stamped

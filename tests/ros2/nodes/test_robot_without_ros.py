@@ -15,7 +15,7 @@ from std_msgs.msg import String
 
 from app.robot import PhraseHeard, TakeRecognized, TakeRejected
 from app.robot.messages import MESSAGES, line_of
-from osg_ros.stamps import nanoseconds_of
+from osg_ros.topics.stamps import nanoseconds_of
 from tests.robot.publishing_robot import told
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import PATIENCE, RELIABLE, Bench

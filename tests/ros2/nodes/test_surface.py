@@ -15,11 +15,11 @@ from rcl_interfaces.srv import DescribeParameters, ListParameters
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
-from osg_ros.command_node import CommandNode
-from osg_ros.gesture_node import GestureNode
-from osg_ros.managed_node import ManagedNode
-from osg_ros.recognition_node import RecognitionNode
-from osg_ros.visualisation_node import VisualisationNode
+from osg_ros.nodes.command_node import CommandNode
+from osg_ros.nodes.gesture_node import GestureNode
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.nodes.recognition_node import RecognitionNode
+from osg_ros.nodes.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.test_lifecycle import NODES
 from tests.ros2.workspace import ROOT

@@ -6,8 +6,8 @@ import numpy as np
 from osg_interfaces.msg import BodyKeypoints, Hands
 from sensor_msgs.msg import Image
 
-from osg_ros.pictures import PictureDecoder, picture_message
-from osg_ros.visualisation_node import BODY, VisualisationNode
+from osg_ros.nodes.visualisation_node import BODY, VisualisationNode
+from osg_ros.topics.image_messages import PictureDecoder, picture_message
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import BEST_EFFORT, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of

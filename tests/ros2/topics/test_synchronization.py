@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from osg_ros.pairing import MOST_WAITING, StampPairs
+from osg_ros.topics.synchronization import MOST_WAITING, StampPairs
 
 arrivals = st.lists(st.tuples(st.booleans(), st.integers(0, 40)), max_size=200)
 

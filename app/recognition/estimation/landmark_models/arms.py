@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.base import Body, Hand, Side
-from app.recognition.estimation.hand_regions import palm_size, up_of
-from app.recognition.estimation.region import Region, upright
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.estimation.landmark_models.hand_regions import palm_size, up_of
+from app.recognition.estimation.landmark_models.region import Region, upright
+from app.recognition.poses.frame import Body, Hand, Side
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 LEAST_VISIBILITY: Final = 0.1
 """Visibility of a wrist from which its hand is looked for, as in MediaPipe Holistic."""

@@ -6,13 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.base import Body, Image
-from app.recognition.estimation.detector import Detector
-from app.recognition.estimation.refinement import refine, sigmoid
-from app.recognition.estimation.region import REPLICATED_BORDER, Region
-from app.recognition.estimation.session import ModelSession, Signature
-from app.recognition.estimation.smoothing import ExponentialFilter, OneEuroFilter
-from app.recognition.landmarks import POSE_LANDMARKS
+from app.recognition.estimation.landmark_models.detector import Detector
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.refinement import refine, sigmoid
+from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
+from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
+from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 INPUT_SIZE: Final = 256
 """Side of the landmark model's input in pixels."""

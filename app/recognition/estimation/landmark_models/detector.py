@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.estimation.base import Image
-from app.recognition.estimation.refinement import sigmoid
-from app.recognition.estimation.region import ZERO_BORDER, Region
-from app.recognition.estimation.session import ModelSession, Signature
-from app.recognition.estimation.suppression import Detection, blend_overlapping
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.refinement import sigmoid
+from app.recognition.estimation.landmark_models.region import ZERO_BORDER, Region
+from app.recognition.estimation.landmark_models.suppression import Detection, blend_overlapping
+from app.recognition.poses.frame import Image
 
 LEAST_SCORE: Final = 0.5
 """Below it a detection is dropped; MediaPipe's default minimum detection confidence."""

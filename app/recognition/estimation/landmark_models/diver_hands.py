@@ -16,14 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import ModelError
-from app.recognition.estimation.base import SIDES, Body, Hand, Image, Side, check_image
-from app.recognition.estimation.hands import MOST_HANDS
-from app.recognition.estimation.letterbox import Letterbox
-from app.recognition.estimation.planar_model import PlanarModel
-from app.recognition.estimation.region import ZERO_BORDER, Region
-from app.recognition.estimation.session import Provider
-from app.recognition.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.estimator import check_image
+from app.recognition.estimation.landmark_models.hands import MOST_HANDS
+from app.recognition.estimation.landmark_models.letterbox import Letterbox
+from app.recognition.estimation.landmark_models.onnx_session import Provider
+from app.recognition.estimation.landmark_models.planar_model import PlanarModel
+from app.recognition.estimation.landmark_models.region import ZERO_BORDER, Region
+from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 DETECTOR_SIDE: Final = 416
 KEYPOINTS_SIDE: Final = 192

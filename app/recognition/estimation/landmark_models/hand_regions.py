@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.region import Region, upright
-from app.recognition.estimation.suppression import Detection
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.region import Region, upright
+from app.recognition.estimation.landmark_models.suppression import Detection
+from app.recognition.poses.sequence import FloatArray
 
 PALM_SCALE: Final = 2.6
 PALM_SHIFT: Final = 0.5

@@ -8,19 +8,19 @@ from typing import Final, Literal
 
 import numpy as np
 
-from app.recognition.estimation.arms import REACH, region_of_wrist, wrist_distance
-from app.recognition.estimation.base import SIDES, Body, Hand, Image, Side
-from app.recognition.estimation.detector import Detector
-from app.recognition.estimation.hand_regions import (
+from app.recognition.estimation.landmark_models.arms import REACH, region_of_wrist, wrist_distance
+from app.recognition.estimation.landmark_models.detector import Detector
+from app.recognition.estimation.landmark_models.hand_regions import (
     box_of,
     palm_size,
     region_of_hand,
     region_of_palm,
 )
-from app.recognition.estimation.region import REPLICATED_BORDER, Region
-from app.recognition.estimation.session import ModelSession, Signature
-from app.recognition.estimation.suppression import overlaps
-from app.recognition.landmarks import HAND_LANDMARKS
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
+from app.recognition.estimation.landmark_models.suppression import overlaps
+from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
 
 INPUT_SIZE: Final = 224
 """Side of the landmark model's input in pixels."""

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.estimation.base import Image
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
 
 BAR: Final = (114, 114, 114)
 """The grey of the bars: what YOLO's models saw there while they were trained."""

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import ModelError
-from app.recognition.estimation.session import Provider, check_provider, opened
+from app.recognition.estimation.landmark_models.onnx_session import Provider, check_provider, opened
 
 TYPES: Final = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 """What exports take: single or half precision."""

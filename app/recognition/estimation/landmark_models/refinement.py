@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 REACH: Final = 3
 """Heat-map cells looked at on each side of a landmark: the 7 x 7 window of MediaPipe Tasks."""

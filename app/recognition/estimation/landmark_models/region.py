@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Self
 
-from app.recognition.estimation.base import LARGEST_SIDE, Image
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.estimator import LARGEST_SIDE
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
 
 TINIEST_SIDE: Final = 1.0
 """Pixels. A region smaller than one pixel shows nothing, whatever the model answers to it."""

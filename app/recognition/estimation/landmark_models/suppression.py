@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.poses import FloatArray
+from app.recognition.poses.sequence import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from osg_ros.command_dialogue import CommandTable
+from osg_ros.commands.dialogue import CommandTable
 
 
 def command_text(command: str | dict[str, Any] | None) -> str:

@@ -11,7 +11,7 @@ from typing import Any, Final
 from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
-from osg_ros.command_dialogue import (
+from osg_ros.commands.dialogue import (
     CONFIRM_SECONDS,
     STALE_SECONDS,
     CommandDialogue,
@@ -21,11 +21,11 @@ from osg_ros.command_dialogue import (
     HeardPhrase,
     Rules,
 )
-from osg_ros.command_table import read_commands
-from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
-from osg_ros.settings import Setting
-from osg_ros.spinning import spin
-from osg_ros.stamps import NANOSECONDS, nanoseconds_of, stamp_of
+from osg_ros.commands.table import read_commands
+from osg_ros.nodes.managed_node import LATCHED, RESULTS, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.parameters import Setting
+from osg_ros.topics.stamps import NANOSECONDS, nanoseconds_of, stamp_of
 
 LANGUAGE: Final = Setting(
     "language", "", "Path of the language file, for where nobody tells the topic `language`."

@@ -19,16 +19,16 @@ from app.recognition.estimation import (
     finds_hands,
     landmarks_of,
 )
-from app.recognition.requirements import require_landmarks
+from app.recognition.language.requirements import require_landmarks
 from app.robot import Event, Frame, PhraseListener, SpokenLanguage, hearing_of
 from osg_ros.estimation_settings import ESTIMATOR, HANDS, PROVIDER, THREADS, WATER
-from osg_ros.gesture_topics import GestureTopics
-from osg_ros.gesture_worker import GestureWorker
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
-from osg_ros.managed_node import SENSOR_DATA, ManagedNode
-from osg_ros.pictures import TRANSPORT, picture_topic
-from osg_ros.spinning import spin
-from osg_ros.topic_source import TopicSource
+from osg_ros.nodes.gesture_worker import GestureWorker
+from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.topics.gesture_topics import GestureTopics
+from osg_ros.topics.image_messages import TRANSPORT, picture_topic
+from osg_ros.topics.topic_source import TopicSource
 
 
 class GestureNode(ManagedNode):

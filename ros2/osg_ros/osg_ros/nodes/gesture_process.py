@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from osg_ros.command_node import CommandNode
-from osg_ros.gesture_node import GestureNode
-from osg_ros.spinning import spin
+from osg_ros.nodes.command_node import CommandNode
+from osg_ros.nodes.gesture_node import GestureNode
+from osg_ros.nodes.process import spin
 
 
 def main() -> None:

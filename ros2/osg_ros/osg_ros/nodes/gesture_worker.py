@@ -10,7 +10,7 @@ from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.robot import Event, Frame, PhraseListener, Runtime, SpokenLanguage
-from osg_ros.topic_source import TopicSource
+from osg_ros.topics.topic_source import TopicSource
 
 LONGEST_FRAME = 10.0
 """Seconds that the last frame may take when the thread is stopped; a slow robot needs one."""

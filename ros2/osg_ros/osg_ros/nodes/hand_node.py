@@ -7,17 +7,17 @@ from typing import Any
 from osg_interfaces.msg import BodyKeypoints
 
 from app.recognition.errors import RecognitionError
-from app.recognition.estimation.hands import HandTracker
+from app.recognition.estimation.landmark_models.hands import HandTracker
 from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.estimation.water import corrected
-from osg_ros.bodies import body_in
-from osg_ros.body_topics import HandTopics
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
-from osg_ros.managed_node import SENSOR_DATA, ManagedNode
-from osg_ros.pairing import StampPairs
-from osg_ros.pictures import TRANSPORT, PictureDecoder, picture_topic
-from osg_ros.spinning import spin
-from osg_ros.stamps import nanoseconds_of
+from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.topics.body_messages import body_in
+from osg_ros.topics.body_topics import HandTopics
+from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, picture_topic
+from osg_ros.topics.stamps import nanoseconds_of
+from osg_ros.topics.synchronization import StampPairs
 
 
 class HandNode(ManagedNode):

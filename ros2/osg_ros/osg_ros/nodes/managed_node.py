@@ -21,8 +21,8 @@ from rclpy.qos import (
 )
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from osg_ros.health import Health
-from osg_ros.settings import Setting, Settings
+from osg_ros.diagnostics import Health
+from osg_ros.parameters import Setting, Settings
 
 SENSOR_DATA = qos_profile_sensor_data
 """Pictures and what is computed from each: the newest counts, a lost one is not sent again."""

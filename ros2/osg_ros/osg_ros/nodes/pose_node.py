@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from app.recognition.errors import RecognitionError
-from app.recognition.estimation.body import BodyTracker
+from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.onnx_estimator import body_tracker
 from app.recognition.estimation.water import corrected
-from osg_ros.body_topics import BodyTopics
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
-from osg_ros.managed_node import NEWEST, ManagedNode
-from osg_ros.pictures import TRANSPORT, PictureDecoder, picture_topic
-from osg_ros.spinning import spin
-from osg_ros.stamps import Stopwatch, nanoseconds_of
+from osg_ros.nodes.managed_node import NEWEST, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.topics.body_topics import BodyTopics
+from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, picture_topic
+from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
 
 
 class PoseNode(ManagedNode):

@@ -14,7 +14,7 @@ from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 
-from osg_ros.managed_node import ManagedNode
+from osg_ros.nodes.managed_node import ManagedNode
 
 NOT_STARTED = 1
 """Exit code where a node that shall start by itself could not; the log says why."""

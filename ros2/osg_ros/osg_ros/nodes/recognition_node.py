@@ -10,8 +10,8 @@ from osg_interfaces.msg import BodyKeypoints, Hands
 from std_msgs.msg import Bool
 
 from app.recognition import PoseSequence
-from app.recognition.estimation.base import FrameLandmarks
-from app.recognition.extraction import moment_of
+from app.recognition.poses.frame import FrameLandmarks
+from app.recognition.recording.extraction import moment_of
 from app.robot import (
     PhraseHeard,
     PhraseListener,
@@ -21,15 +21,15 @@ from app.robot import (
     TakeRejected,
     hearing_of,
 )
-from osg_ros.bodies import body_in, published_moment
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
-from osg_ros.managed_node import SENSOR_DATA, ManagedNode
-from osg_ros.optional_messages import message_type
-from osg_ros.pairing import StampPairs
-from osg_ros.recognition_topics import RecognitionTopics
-from osg_ros.settings import Setting
-from osg_ros.spinning import spin
-from osg_ros.stamps import Stopwatch, nanoseconds_of
+from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.parameters import Setting
+from osg_ros.topics.body_messages import body_in, published_moment
+from osg_ros.topics.optional_messages import message_type
+from osg_ros.topics.recognition_topics import RecognitionTopics
+from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
+from osg_ros.topics.synchronization import StampPairs
 
 INPUT: Final = Setting(
     "input",

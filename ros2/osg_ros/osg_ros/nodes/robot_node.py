@@ -14,10 +14,10 @@ from std_msgs.msg import Header
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SourceOpened, SpokenLanguage
-from osg_ros.gesture_topics import GestureTopics
-from osg_ros.managed_node import ManagedNode
-from osg_ros.spinning import running, start
-from osg_ros.stamps import NANOSECONDS, Stopwatch
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.nodes.process import running, start
+from osg_ros.topics.gesture_topics import GestureTopics
+from osg_ros.topics.stamps import NANOSECONDS, Stopwatch
 
 FRAME_ID = "camera"
 """Of the headers: the robot's own camera."""

@@ -11,12 +11,12 @@ from sensor_msgs.msg import Image
 
 from app.recognition.errors import RecognitionError
 from app.recognition.estimation import Image as RGBImage
-from app.recognition.landmarks import SKELETON
-from osg_ros.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
-from osg_ros.pairing import StampPairs
-from osg_ros.pictures import TRANSPORT, PictureDecoder, picture_message, picture_topic
-from osg_ros.spinning import spin
-from osg_ros.stamps import nanoseconds_of
+from app.recognition.poses.landmarks import SKELETON
+from osg_ros.nodes.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
+from osg_ros.nodes.process import spin
+from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, picture_message, picture_topic
+from osg_ros.topics.stamps import nanoseconds_of
+from osg_ros.topics.synchronization import StampPairs
 
 BODY, HAND, SALUTE = (64, 224, 255), (255, 200, 64), (64, 255, 96)
 """Colours, RGB: far apart for colour-blind eyes and bright against water."""

@@ -8,9 +8,9 @@ import numpy as np
 from osg_interfaces.msg import BodyKeypoints, Keypoint
 from std_msgs.msg import Header
 
-from app.recognition.estimation.base import Body
-from app.recognition.landmarks import POSE_LANDMARKS, SHOULDERS
-from app.recognition.poses import FloatArray, PoseSequence
+from app.recognition.poses.frame import Body
+from app.recognition.poses.landmarks import POSE_LANDMARKS, SHOULDERS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 DIVER = "diver"
 """The id of the one body that the pose model follows."""

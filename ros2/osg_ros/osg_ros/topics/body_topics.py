@@ -11,18 +11,18 @@ from collections.abc import Sequence
 from osg_interfaces.msg import BodyKeypoints, Hands
 from std_msgs.msg import Bool, Header
 
-from app.recognition.estimation.base import Body, Hand
-from app.recognition.salute import ENTER_SCORE, best_salute
-from osg_ros.bodies import (
+from app.recognition.poses.frame import Body, Hand
+from app.recognition.recording.salute import ENTER_SCORE, best_salute
+from osg_ros.nodes.managed_node import RESULTS, SENSOR_DATA, ManagedNode
+from osg_ros.topics.body_messages import (
     DIVER,
     FrameSize,
     body_message,
     published_keypoints,
     skeleton_message,
 )
-from osg_ros.hands import hands_message, published_hand_keypoints
-from osg_ros.managed_node import RESULTS, SENSOR_DATA, ManagedNode
-from osg_ros.optional_messages import message_type
+from osg_ros.topics.hand_messages import hands_message, published_hand_keypoints
+from osg_ros.topics.optional_messages import message_type
 
 
 class BodyTopics:

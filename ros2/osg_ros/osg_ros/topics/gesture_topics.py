@@ -18,10 +18,10 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
-from osg_ros.body_topics import BodyTopics, HandTopics
-from osg_ros.managed_node import ManagedNode
-from osg_ros.recognition_topics import RecognitionTopics
-from osg_ros.stamps import Stopwatch
+from osg_ros.nodes.managed_node import ManagedNode
+from osg_ros.topics.body_topics import BodyTopics, HandTopics
+from osg_ros.topics.recognition_topics import RecognitionTopics
+from osg_ros.topics.stamps import Stopwatch
 
 
 class GestureTopics:

@@ -10,10 +10,10 @@ from osg_interfaces.msg import Hand as HandMessage
 from osg_interfaces.msg import Hands, Keypoint
 from std_msgs.msg import Header
 
-from app.recognition.estimation.base import Hand
-from app.recognition.landmarks import HAND_LANDMARKS
-from app.recognition.salute import best_salute
-from osg_ros.bodies import FrameSize
+from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.recording.salute import best_salute
+from osg_ros.topics.body_messages import FrameSize
 
 
 def hands_message(header: Header, size: FrameSize, hands: Sequence[Hand]) -> Hands:

@@ -10,8 +10,8 @@ from sensor_msgs.msg import CompressedImage, Image
 from app.bags.pictures import PacketDecoder, raw_image
 from app.recognition.errors import VideoError
 from app.recognition.estimation import Image as RGBImage
-from app.recognition.video_limits import VideoLimits
-from osg_ros.settings import Setting
+from app.recognition.recording.video_limits import VideoLimits
+from osg_ros.parameters import Setting
 
 TRANSPORT: Final = Setting(
     "image_transport",

@@ -9,9 +9,9 @@ from rclpy.duration import Duration
 from std_msgs.msg import Header
 
 from app.robot import PhraseHeard, SpokenLanguage
-from osg_ros.bodies import DIVER
-from osg_ros.managed_node import RESULTS, ManagedNode
-from osg_ros.stamps import Stopwatch
+from osg_ros.nodes.managed_node import RESULTS, ManagedNode
+from osg_ros.topics.body_messages import DIVER
+from osg_ros.topics.stamps import Stopwatch
 
 
 class PhraseTopic:

@@ -9,7 +9,7 @@ from osg_interfaces.msg import ActiveLanguage, GestureRecognition, RecognizerSta
 from rclpy.duration import Duration
 from std_msgs.msg import Header, String
 
-from app.recognition.takes import TakeState
+from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     PhraseHeard,
     SpokenLanguage,
@@ -17,12 +17,12 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
-from osg_ros.bodies import DIVER
-from osg_ros.command_table import command_text
-from osg_ros.managed_node import LATCHED, RESULTS, ManagedNode
-from osg_ros.optional_messages import message_type
-from osg_ros.phrase_topic import PhraseTopic, phrase_labels
-from osg_ros.stamps import Stopwatch
+from osg_ros.commands.table import command_text
+from osg_ros.nodes.managed_node import LATCHED, RESULTS, ManagedNode
+from osg_ros.topics.body_messages import DIVER
+from osg_ros.topics.optional_messages import message_type
+from osg_ros.topics.phrase_topic import PhraseTopic, phrase_labels
+from osg_ros.topics.stamps import Stopwatch
 
 LONGEST_DELIVERY = 2.0
 """Seconds to wait for a subscriber that may be gone."""

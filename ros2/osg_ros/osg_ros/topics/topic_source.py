@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from app.recognition.errors import RecognitionError
 from app.robot import Frame, Notice, Quiet
-from osg_ros.pictures import PictureDecoder
-from osg_ros.stamps import Stopwatch, nanoseconds_of
+from osg_ros.topics.image_messages import PictureDecoder
+from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
 
 QUIET_SECONDS: Final = 0.2
 """Without a picture for so long the runtime is let look for a new language or its end."""

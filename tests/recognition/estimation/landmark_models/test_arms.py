@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.arms import REACH, region_of_wrist, wrist_distance
-from app.recognition.estimation.base import SIDES, Body, Hand, Side
-from app.recognition.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.arms import REACH, region_of_wrist, wrist_distance
+from app.recognition.poses.frame import SIDES, Body, Hand, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
 
 HAND_POINTS = {"wrist": "wrist", "pinky": "pinky_mcp", "index": "index_finger_mcp"}

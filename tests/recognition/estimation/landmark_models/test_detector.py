@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.recognition.estimation.detector import PALM_LAYOUT, PERSON_LAYOUT, DetectorLayout
+from app.recognition.estimation.landmark_models.detector import (
+    PALM_LAYOUT,
+    PERSON_LAYOUT,
+    DetectorLayout,
+)
 
 
 @pytest.mark.parametrize(("layout", "count"), [(PERSON_LAYOUT, 2254), (PALM_LAYOUT, 2016)])

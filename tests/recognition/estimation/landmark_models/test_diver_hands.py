@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.base import Body, Hand, Image
-from app.recognition.estimation.diver_hands import DiverHands, peaks
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
-from app.recognition.salute import ENTER_SCORE, best_salute
+from app.recognition.estimation.landmark_models.diver_hands import DiverHands, peaks
+from app.recognition.poses.frame import Body, Hand, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.salute import ENTER_SCORE, best_salute
 from tests.recognition.estimation.marker_models import (
     HAND_COLOURS,
     draw_markers,

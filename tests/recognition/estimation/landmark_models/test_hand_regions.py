@@ -8,9 +8,13 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.hand_regions import PALM_TURN, region_of_hand, region_of_palm
-from app.recognition.estimation.suppression import Detection
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.hand_regions import (
+    PALM_TURN,
+    region_of_hand,
+    region_of_palm,
+)
+from app.recognition.estimation.landmark_models.suppression import Detection
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
 
 ANGLES = st.floats(-math.pi, math.pi)

@@ -12,13 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
-from app.recognition.estimation.arms import wrist_distance
-from app.recognition.estimation.base import SIDES, Body, Hand, Side
-from app.recognition.estimation.hands import duplicates
-from app.recognition.landmarks import POSE_LANDMARKS
-from app.recognition.poses import FloatArray
-from app.recognition.salute import ENTER_SCORE, best_salute
-from app.recognition.video import VideoFrame
+from app.recognition.estimation.landmark_models.arms import wrist_distance
+from app.recognition.estimation.landmark_models.hands import duplicates
+from app.recognition.poses.frame import SIDES, Body, Hand, Side
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.salute import ENTER_SCORE, best_salute
+from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
 

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.letterbox import BAR, Letterbox
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.letterbox import BAR, Letterbox
+from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.marker_models import draw_markers
 
 SIZES = st.tuples(st.integers(1, 4000), st.integers(1, 4000))

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.base import Image
-from app.recognition.estimation.region import (
+from app.recognition.estimation.landmark_models.region import (
     REPLICATED_BORDER,
     ZERO_BORDER,
     Region,
     upright,
 )
-from app.recognition.poses import FloatArray
+from app.recognition.poses.frame import Image
+from app.recognition.poses.sequence import FloatArray
 
 COORDINATE = st.floats(-500, 2500)
 REGIONS = st.builds(

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.smoothing import ExponentialFilter, OneEuroFilter
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
+from app.recognition.poses.sequence import FloatArray
 
 VALUES = st.floats(-1000, 1000)
 SIGNALS = st.lists(st.tuples(VALUES, VALUES), min_size=2, max_size=20).map(np.array)

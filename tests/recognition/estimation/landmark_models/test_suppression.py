@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.suppression import blend_overlapping, overlaps
-from app.recognition.poses import FloatArray
+from app.recognition.estimation.landmark_models.suppression import blend_overlapping, overlaps
+from app.recognition.poses.sequence import FloatArray
 
 
 @st.composite

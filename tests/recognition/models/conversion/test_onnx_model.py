@@ -12,7 +12,7 @@ import pytest
 from app.recognition.models import ModelName, TaskBundleName, model_path, task_bundle_path
 from app.recognition.models.catalogue import BUNDLE_PARTS, UNUSED_OUTPUTS
 from app.recognition.models.conversion import Schemas, to_onnx
-from app.recognition.video import read_frames
+from app.recognition.recording.video import read_frames
 
 from .one_operator import OneOperator, tflite_bytes
 from .runtimes import FloatTensor, run_onnx, run_tflite

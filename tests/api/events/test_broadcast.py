@@ -3,7 +3,7 @@
 import asyncio
 import threading
 
-from app.api.broadcast import MOST_UNREAD, Broadcast, News
+from app.api.events.broadcast import MOST_UNREAD, Broadcast, News
 
 
 def test_every_listener_hears_news_from_any_thread() -> None:

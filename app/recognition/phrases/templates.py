@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping, Set
 
-from app.recognition.phrase import Value
-from app.recognition.wording import listed
+from app.recognition.phrases.phrase import Value
+from app.recognition.text.wording import listed
 
 SlotValue = Value | list[Value]
 """What a slot came to: a list where it may be filled more than once."""

@@ -1,0 +1,1 @@
+"""Server-sent events: an event is published once, and fanned out to every open stream."""

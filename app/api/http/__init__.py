@@ -1,0 +1,1 @@
+"""HTTP without knowledge of gestures: problems, schemas, ranges, media types."""

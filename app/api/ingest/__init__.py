@@ -1,0 +1,1 @@
+"""Uploaded files: received, inspected and stored as clips."""

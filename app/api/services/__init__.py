@@ -1,0 +1,1 @@
+"""What routes share: the running studio, edits of gestures, documents, event streams."""

@@ -1,0 +1,1 @@
+"""Workspaces in viser: opened, shown, played back and relayed over HTTP."""

@@ -1,0 +1,1 @@
+"""From distances to a decision: fusion, thresholds, rejection, and the recognition result."""

@@ -1,0 +1,1 @@
+"""The neural networks that find bodies and hands in a picture, and what surrounds them."""

@@ -1,0 +1,1 @@
+"""Why a recognition came out as it did: differences, alignments, counterfactuals."""

@@ -1,0 +1,1 @@
+"""Features of a movement: its trajectory image and contour, its motion, its traversals."""

@@ -1,0 +1,1 @@
+"""A gesture and its options: switches, the profile, the tuning."""

@@ -1,0 +1,1 @@
+"""The check of a language before the dive: simulated trials, findings, remedies."""

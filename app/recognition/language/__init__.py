@@ -1,0 +1,1 @@
+"""The gesture language and its file formats."""

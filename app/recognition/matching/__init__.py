@@ -1,0 +1,1 @@
+"""Dynamic time warping (DTW): alignments of two sequences and their cost."""

@@ -1,0 +1,1 @@
+"""Phrases: the grammar of gesture sequences, its automaton, parser and interpretation."""

@@ -1,0 +1,1 @@
+"""Landmark cleaning: side swaps, outliers, quality checks, choice of salient landmarks."""

@@ -1,0 +1,1 @@
+"""From a video to takes: decoding, extraction of landmarks, salutes, segmentation, trimming."""

@@ -1,0 +1,1 @@
+"""Simulated movements: variants of a demonstration, background motion, error rate estimates."""

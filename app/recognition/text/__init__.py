@@ -1,0 +1,1 @@
+"""Text formats without knowledge of gestures: strict JSON, hashing, wording."""

@@ -1,0 +1,1 @@
+"""From landmarks to recognitions: between salutes, without salutes, and as phrases."""

@@ -1,0 +1,1 @@
+"""Recognitions published to other programs in the network."""

@@ -1,0 +1,1 @@
+"""Where a robot gets frames from: cameras, streams, clips and recorded bags."""

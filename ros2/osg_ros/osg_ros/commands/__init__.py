@@ -1,0 +1,1 @@
+"""From recognitions to confirmed commands, without ROS."""

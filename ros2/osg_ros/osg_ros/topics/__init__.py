@@ -1,0 +1,1 @@
+"""Messages and topics: what the nodes publish and subscribe to."""
