@@ -1,4 +1,4 @@
-"""Clips as they are named on the command line, and what is read from them."""
+"""Clip arguments of the command line: parse what names a clip, and read its landmarks."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
-from app.bags import bag_and_topic, holds_keypoints, is_bag, record_bag
+from app.bags import bag_and_topic
 from app.cli.terminal import people, progress_bar
-from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
-from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
-from app.recognition.errors import GestureError, KeypointFileError, VideoError
-from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
+from app.clip_sources import ClipSource, ReadOptions, source_of
+from app.keypoint_files import KeypointOptions
+from app.recognition import Language, PoseSequence, Recognition, Recording, Take, takes_in
+from app.recognition.errors import GestureError, KeypointFileError
+from app.recognition.estimation import create_estimator, landmarks_of
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
@@ -95,6 +95,11 @@ class ClipReading:
     hands: str = MEDIAPIPE_HANDS
     topic: str | None = None
     keypoints: KeypointOptions = field(default_factory=KeypointOptions)
+
+    def options(self, topic: str | None) -> ReadOptions:
+        """Return the same for a clip source; `topic` is the one that the clip names."""
+        given = {"topic": self.topic or topic, "water": self.water}
+        return ReadOptions.of_keypoints(self.keypoints).model_copy(update=given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,55 +280,39 @@ def read_clip(
     """
     how = reading or ClipReading()
     path, named = bag_and_topic(str(clip))
-    topic = how.topic or named
-    if not path.exists():
-        raise VideoError(f"{path} is not a file; give the path of a clip")
-    if path.is_dir() and not is_bag(path) and not is_keypoint_file(path):
-        raise VideoError(
-            f"{path} holds neither a dive recording (metadata.yaml) nor frames of OpenPose "
-            f"(*_keypoints.json); give the folder that holds one of them"
-        )
-    as_bag = is_bag(path) or path.is_dir() or topic is not None
-    if topic is None and is_keypoint_file(path):
-        read = _read_keypoint_file(path, how, language)
-    elif as_bag and holds_keypoints(path, topic):
-        read = _read_keypoints(path, topic, language)
+    options = how.options(named)
+    source = source_of(path, options.topic)
+    if source.shows_pictures(path, options):
+        read = _read_pictures(source, path, options, how, language)
     else:
-        read = _read_pictures(path, topic, how, language, as_bag)
+        read = _read_keypoints(source, path, options, language)
     for warning in read.recording.warnings:
         people.print(f"{clip}: {warning}", markup=False)
     return read
 
 
-def _read_keypoints(path: Path, topic: str | None, language: Language | None) -> ReadClip:
+def _read_keypoints(
+    source: ClipSource, path: Path, options: ReadOptions, language: Language | None
+) -> ReadClip:
     """Read recorded keypoints, whose landmarks are known when they are read."""
-    recording = record_bag(path, topic)
-    poses = recording.poses
+    recorded = source.record(path, options)
     if language is not None:
-        names = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
-        require_landmarks(language, names, f"{path.name}{f'@{topic}' if topic else ''}")
-    return ReadClip(recording, salutes=True)
+        name = f"{path}@{options.topic}" if options.topic else str(path)
+        require_landmarks(language, recorded.landmarks, name)
+    return ReadClip(recorded.recording, recorded.has_hands)
 
 
 def _read_pictures(
-    path: Path, topic: str | None, how: ClipReading, language: Language | None, as_bag: bool
+    source: ClipSource,
+    path: Path,
+    options: ReadOptions,
+    how: ClipReading,
+    language: Language | None,
 ) -> ReadClip:
+    """Find landmarks in pictures, after a look at which ones the estimator can find."""
     with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
         if language is not None:
             require_landmarks(language, landmarks_of(estimator), f"estimator {how.estimator}")
         with progress_bar(path.name) as advance:
-            if as_bag:
-                recording = record_bag(
-                    path, topic, estimator=estimator, progress=advance, water=how.water
-                )
-            else:
-                recording = record(path, estimator=estimator, progress=advance, water=how.water)
-        return ReadClip(recording, salutes=finds_hands(estimator))
-
-
-def _read_keypoint_file(path: Path, how: ClipReading, language: Language | None) -> ReadClip:
-    """Read another program's keypoints, whose landmarks are known when they are read."""
-    read = read_keypoints(path, how.keypoints)
-    if language is not None:
-        require_landmarks(language, read.recording.poses.landmarks, str(path))
-    return ReadClip(read.recording, salutes=read.has_hands)
+            recorded = source.record(path, options, estimator=estimator, progress=advance)
+        return ReadClip(recorded.recording, recorded.has_hands)

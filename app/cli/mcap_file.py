@@ -1,4 +1,4 @@
-"""What `osg-studio recognize --mcap` writes: the clip and all that was recognised, in one file."""
+"""MCAP file of ``osg-studio recognize --mcap``: the clip and its recognitions."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from pathlib import Path
 
 from rich.filesize import decimal
 
-from app.bags import bag_and_topic, is_bag
-from app.bags.clip import write_video
+from app.bags import bag_and_topic
 from app.bags.session_writer import NamedRecognition, write_session
 from app.cli.terminal import people, progress_bar
-from app.keypoint_files import is_keypoint_file
+from app.clip_sources import ReadOptions, source_of
 from app.recognition import Language, Recognition, Recording, Take
 
 
@@ -43,7 +42,9 @@ def save_session(
     path, named = bag_and_topic(str(clip))
     with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as made:
         partial = Path(made, "session")
-        video = _video(path, topic or named, Path(made, "video"))
+        options = ReadOptions(topic=topic or named)
+        source = source_of(path, options.topic)
+        video = source.playable_video(path, options, Path(made, "video"))
         with progress_bar(target.name) as advance:
             write_session(
                 partial, recording, recognitions, video=video, name=path.name, progress=advance
@@ -62,11 +63,3 @@ def named_recognitions(
         )
         for take, result in results
     ]
-
-
-def _video(path: Path, topic: str | None, copy: Path) -> Path | None:
-    """Return the video of a clip; of a dive recording, a copy; None: it has none."""
-    if is_bag(path):
-        write_video(path, topic, copy)
-        return copy
-    return None if is_keypoint_file(path) else path

@@ -1,43 +1,134 @@
-"""A topic of a dive recording as a source: every picture, at its own stamp."""
+"""Clip source: a dive recording (rosbag2 as MCAP, SQLite or zip), of which one topic is read."""
 
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
 
-from app.bags import bag_and_topic
+import numpy as np
+
+from app.bags import holds_keypoints, is_bag, record_bag
 from app.bags.bag import opened_bag
+from app.bags.bag_kind import bag_kind
+from app.bags.clip import write_video
 from app.bags.picture_frames import BagFrames
-from app.recognition.errors import BagError
-from app.recognition.recording.video_limits import VideoLimits
-from app.robot.sources.recorded import RecordedSource
+from app.bags.staging import is_bag_archive
+from app.bags.topic_summary import usable_topics
+from app.clip_sources.source import (
+    MADE_VIDEO,
+    ClipFacts,
+    ClipTopic,
+    OpenFrames,
+    ReadOptions,
+    RecordedClip,
+    Refusal,
+    UnsupportedFile,
+)
+from app.recognition.errors import BagError, RecognitionError, TopicError
+from app.recognition.estimation import finds_hands
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.recording.extraction import Observer, Progress
 
 
-def open_bag(text: str, limits: VideoLimits | None = None) -> RecordedSource:
-    """Open a dive recording.
+class BagSource:
+    """A rosbag2 folder, its one file, or a zip of either."""
 
-    Parameters
-    ----------
-    text
-        ``BAG``, or ``BAG@/TOPIC`` where it has several topics of pictures.
-    limits
-        What the recording may cost.
+    name = "bag"
+    noun = "a dive recording"
+    formats = "a rosbag2 (MCAP, sqlite3, zip)"
+    endings: tuple[str, ...] = (".mcap", ".db3", ".zip")
+    folder: str | None = "a dive recording (metadata.yaml)"
+    has_pictures = True
+    has_topics = True
+    makes_video = True
+    probe_seconds = 120.0
+    """Probing reads all of it, after unpacking: the largest there may be
+    (`app.bags.staging.MOST_BYTES`) at 20 MB/s, the slowest disk that is still sold."""
+    broken_off = Refusal(
+        code="bag_unreadable",
+        detail="the process that read this dive recording broke off: the recording is damaged, or "
+        "it needs more memory or time than a job may use; cut out the part with the gestures",
+    )
 
-    Raises
-    ------
-    BagError
-        When it is none, is damaged, or the topic holds no pictures.
-    VideoError
-        When it breaks a limit.
+    def accepts(self, path: Path, topic: str | None = None) -> bool:
+        """Tell whether a topic is named, or the content is that of a rosbag2."""
+        return topic is not None or is_bag(path)
 
-    """
-    path, topic = bag_and_topic(text)
-    with ExitStack() as opening:
-        bag = opening.enter_context(opened_bag(path))
-        chosen = bag.topic(topic)
-        if chosen.use != "pictures":
-            raise BagError(
-                f"{chosen.name} holds keypoints, and a robot looks at pictures; use "
-                f"`osg-studio recognize {path} --topic {chosen.name}`"
-            )
-        frames = BagFrames(bag, chosen, limits)
-        return RecordedSource(text, frames, opening.pop_all().close)
+    def accepts_upload(self, head: bytes, name: str) -> bool:
+        """Tell whether `head` is the beginning of a rosbag2; a zip may hold anything else."""
+        return bag_kind(head) is not None
+
+    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
+        """Return `options` unchanged."""
+        return options
+
+    def media_type(self, head: bytes) -> str:
+        """Return the media type of the copy that is written for players."""
+        return MADE_VIDEO
+
+    def is_take(self, path: Path) -> bool:
+        """Return False: a dive recording shows many gestures, and its name labels none of them."""
+        return False
+
+    def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
+        """List the topics that a clip can be made of."""
+        with path.open("rb") as file:
+            archive = bag_kind(file.read(8)) == "zip"
+        if archive and not is_bag_archive(path):
+            raise UnsupportedFile("the archive holds no dive recording (no .mcap and no .db3 file)")
+        topics = tuple(ClipTopic(**asdict(topic)) for topic in usable_topics(path))
+        first = topics[0]
+        return ClipFacts(first.width, first.height, first.duration, first.messages, topics)
+
+    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
+        """Tell whether the topic holds pictures."""
+        return not holds_keypoints(path, options.topic)
+
+    def record(
+        self,
+        path: Path,
+        options: ReadOptions,
+        *,
+        video: Path | None = None,
+        estimator: PoseEstimator | None = None,
+        progress: Progress | None = None,
+        observer: Observer | None = None,
+    ) -> RecordedClip:
+        """Find body and hands in the pictures of a topic, or read its keypoints."""
+        found = record_bag(
+            path,
+            options.topic,
+            video=video,
+            estimator=estimator,
+            progress=progress,
+            observer=observer,
+            water=options.water,
+        )
+        poses = found.poses
+        seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))
+        return RecordedClip(found, estimator is None or finds_hands(estimator), seen)
+
+    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+        """Name the clip, and not the file that it is stored as."""
+        codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
+        detail = str(error).replace(path.name, "the clip")
+        return Refusal(codes.get(type(error), "video_unreadable"), detail)
+
+    def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
+        """Write a copy of the topic as a video."""
+        write_video(path, options.topic, copy)
+        return copy
+
+    def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
+        """Open a topic of pictures; each has its own stamp."""
+        with ExitStack() as opening:
+            bag = opening.enter_context(opened_bag(path))
+            chosen = bag.topic(options.topic)
+            if chosen.use != "pictures":
+                raise BagError(
+                    f"{chosen.name} holds keypoints, and a robot looks at pictures; use "
+                    f"`osg-studio recognize {path} --topic {chosen.name}`"
+                )
+            frames = BagFrames(bag, chosen)
+            return OpenFrames(frames, opening.pop_all().close)

@@ -1,20 +1,38 @@
-"""Reading a keypoint file inside a worker, and telling of it in words of whoever sent it."""
+"""Clip source: another program's keypoint file, whose skeleton is drawn as the video."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
-from app.api.extraction.keypoint_source import KeypointSource
-from app.api.extraction.messages import Failed
-from app.keypoint_files import placed, read_keypoints
+from app.bags import show_recording
+from app.clip_sources.source import (
+    MADE_VIDEO,
+    ClipFacts,
+    OpenFrames,
+    ReadOptions,
+    RecordedClip,
+    Refusal,
+    UnsupportedFile,
+)
+from app.keypoint_files import (
+    Ending,
+    ReadKeypoints,
+    is_keypoint_file,
+    is_openpose_archive,
+    keypoint_ending,
+    placed,
+    read_keypoints,
+)
 from app.recognition.errors import (
     FrameRateError,
     FrameSizeError,
     KeypointFileError,
     RecognitionError,
 )
-from app.recognition.recording.recording import Recording
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.recording.extraction import Observer, Progress
 from app.recognition.recording.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
@@ -22,51 +40,130 @@ NO_HANDS = (
     "there are no hands in this file and so no salute: choose the range of a gesture by hand, with "
     "the handles on the timeline"
 )
+FRAME_RATE_NEEDED = (
+    "the file counts frames and tells no time; tell how many frames a second its video has (field "
+    "frame_rate, as 30)"
+)
+FRAME_SIZE_NEEDED = (
+    "the file tells fractions of a picture, whose shape it does not tell; tell the size of its "
+    "video in pixels (field frame_size, as 1920x1080)"
+)
 
 
-def read_recording(file: Path, source: KeypointSource) -> Recording | Failed:
-    """Read a keypoint file, or tell why it cannot be read."""
-    place = file
-    try:
-        with placed(file, source.ending) as place:
-            read = read_keypoints(place, source.options)
+class KeypointFileSource:
+    """Keypoints that OpenPose, MediaPipe, DeepLabCut or SLEAP wrote."""
+
+    name = "keypoints"
+    noun = "a keypoint file"
+    formats = "keypoints (CSV, JSON, SLEAP, or OpenPose's folder as zip)"
+    endings: tuple[str, ...] = get_args(Ending)
+    folder: str | None = "frames of OpenPose (*_keypoints.json)"
+    has_pictures = False
+    has_topics = False
+    makes_video = True
+    probe_seconds = 120.0
+    """Probing reads all of it: there is no other way to know what it holds."""
+    broken_off = Refusal(
+        code="keypoints_unreadable",
+        detail="the process that read this keypoint file broke off: the file is damaged, or it "
+        "needs more memory or time than a job may use; cut out the part with the gestures",
+    )
+
+    def accepts(self, path: Path, topic: str | None = None) -> bool:
+        """Tell whether a file has the ending of a keypoint file, or a folder holds OpenPose's."""
+        return topic is None and is_keypoint_file(path)
+
+    def accepts_upload(self, head: bytes, name: str) -> bool:
+        """Tell by the first bytes, and of text by the name's ending."""
+        return keypoint_ending(head, name) is not None
+
+    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
+        """Add the ending that the file is read by."""
+        return options.model_copy(update={"ending": keypoint_ending(head, name)})
+
+    def media_type(self, head: bytes) -> str:
+        """Return the media type of the drawn video."""
+        return MADE_VIDEO
+
+    def is_take(self, path: Path) -> bool:
+        """Tell whether it is a keypoint file; a folder of OpenPose is one take."""
+        return is_keypoint_file(path)
+
+    def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
+        """Read all of the file."""
+        if options.ending == ".zip" and not is_openpose_archive(path):
+            raise UnsupportedFile(
+                "the archive holds neither a dive recording (no .mcap and no .db3 file) nor frames "
+                "of OpenPose (*_keypoints.json)"
+            )
+        poses = _read(path, options).recording.poses
         # The skeleton is drawn in pictures of this size.
-        VideoLimits().require_pixels(*read.recording.poses.frame_size)
-    except RecognitionError as error:
-        return Failed(code=_code(error), detail=_detail(error, place))
-    notes = [_in_senders_words(note, place) for note in read.recording.warnings]
-    said = [DRAWN] if read.has_hands else [DRAWN, NO_HANDS]
-    return replace(read.recording, warnings=(*said, *notes))
+        VideoLimits().require_pixels(*poses.frame_size)
+        return ClipFacts(*poses.frame_size, poses.duration, len(poses))
+
+    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
+        """Return False."""
+        return False
+
+    def record(
+        self,
+        path: Path,
+        options: ReadOptions,
+        *,
+        video: Path | None = None,
+        estimator: PoseEstimator | None = None,
+        progress: Progress | None = None,
+        observer: Observer | None = None,
+    ) -> RecordedClip:
+        """Read the keypoints, and draw the skeleton where somebody looks at it."""
+        read = _read(path, options)
+        recording = read.recording
+        show_recording(recording, video, progress, observer)
+        if video is not None:
+            notes = (DRAWN,) if read.has_hands else (DRAWN, NO_HANDS)
+            recording = replace(recording, warnings=(*notes, *recording.warnings))
+        return RecordedClip(recording, read.has_hands, recording.poses.landmarks)
+
+    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+        """Ask for what is missing by the name of its form field; name no stored file."""
+        match error:
+            case FrameRateError():
+                return Refusal("frame_rate_needed", FRAME_RATE_NEEDED)
+            case FrameSizeError():
+                return Refusal("frame_size_needed", FRAME_SIZE_NEEDED)
+        code = "video_unreadable"
+        if isinstance(error, KeypointFileError):
+            code = "keypoints_unreadable"
+        return Refusal(code, _without_path(str(error), path))
+
+    def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
+        """Return None: there are no pictures."""
+        return None
+
+    def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
+        """Refuse: there are no pictures."""
+        raise KeypointFileError(
+            f"{path} holds keypoints, and a robot looks at pictures; use `osg-studio recognize "
+            f"{path}`"
+        )
 
 
-def _code(error: RecognitionError) -> str:
-    match error:
-        case FrameRateError():
-            return "frame_rate_needed"
-        case FrameSizeError():
-            return "frame_size_needed"
-        case KeypointFileError():
-            return "keypoints_unreadable"
-    return "video_unreadable"
+def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
+    """Read a file; one that was stored without its name is read under its ending."""
+    if options.ending is None:
+        return read_keypoints(path, options.keypoints)
+    with placed(path, options.ending) as place:
+        try:
+            read = read_keypoints(place, options.keypoints)
+        except RecognitionError as error:
+            raise type(error)(_without_path(str(error), place)) from error
+        notes = tuple(_without_path(note, place) for note in read.recording.warnings)
+    return replace(read, recording=replace(read.recording, warnings=notes))
 
 
-def _detail(error: RecognitionError, place: Path) -> str:
-    match error:
-        case FrameRateError():
-            return (
-                "the file counts frames and tells no time; tell how many frames a second its video "
-                "has (field frame_rate, as 30)"
-            )
-        case FrameSizeError():
-            return (
-                "the file tells fractions of a picture, whose shape it does not tell; tell the "
-                "size of its video in pixels (field frame_size, as 1920x1080)"
-            )
-    return _in_senders_words(str(error), place)
-
-
-def _in_senders_words(text: str, place: Path) -> str:
-    """Replace our own names of the file, and say whose options are meant."""
-    said = text.replace(f"{place}/", "").replace(str(place), "the file")
-    said = said.replace(place.name, "the file")
-    return f"{said} (an option of the command line)" if " --landmark" in said else said
+def _without_path(text: str, place: Path) -> str:
+    """Replace the stored file's name, and say where an option of the command line is meant."""
+    text = text.replace(f"{place}/", "").replace(str(place), "the file")
+    text = text.replace(place.name, "the file")
+    option = " --landmark" in text and "(an option of the command line)" not in text
+    return f"{text} (an option of the command line)" if option else text

@@ -1,4 +1,4 @@
-"""What kind of video a file is, by its first bytes: names and stated types prove nothing."""
+"""Media type of a video by its first bytes; names and stated types prove nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder of labelled clips, recordings or keypoint files: which shows which gesture, by whom."""
+"""Labelled files: which clip in a folder shows which gesture, and by whom."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from app.keypoint_files import is_keypoint_file
+from app.clip_sources import is_take
 from app.recognition.errors import RecognitionError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
@@ -16,9 +16,8 @@ LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
 SEPARATORS = "_-. "
 """Where the label of a file directly in the folder ends: ``circle-1.mp4``, ``circle 2.mp4``."""
 
-SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm", ".npz"})
-"""Files taken for clips, or (``.npz``) for saved recordings, beside the keypoint files of other
-programs; all else is passed over."""
+SAVED_RECORDING = ".npz"
+"""Ending of what `Recording.save` wrote, which is a take beside those of the clip sources."""
 
 _FIELDS = {
     "{label}": r"(?P<label>[^/]+?)",
@@ -91,11 +90,11 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
 
 
 def _readable(folder: Path) -> Iterator[Path]:
-    """Go through what may be a take; a folder of OpenPose is one, and not each of its frames."""
+    """Iterate over possible takes; a folder of OpenPose is one, and not each of its frames."""
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
-        if is_keypoint_file(path) or (path.is_file() and path.suffix.lower() in SUFFIXES):
+        if is_take(path) or (path.is_file() and path.suffix.lower() == SAVED_RECORDING):
             yield path
         elif path.is_dir():
             yield from _readable(path)

@@ -1,4 +1,4 @@
-"""From labelled files to labelled takes; what was extracted from a clip once is kept."""
+"""Labelled takes read from labelled files, with a cache of what was extracted from clips."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from pathlib import Path
 from platformdirs import user_data_path
 
 from app import __version__
-from app.evaluation.labelled_files import LabelledFile
+from app.clip_sources import ReadOptions, source_of
+from app.evaluation.labelled_files import SAVED_RECORDING, LabelledFile
 from app.evaluation.one_shot import LabelledTake
-from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
-from app.recognition import Recording, record, takes_in
+from app.keypoint_files import KeypointOptions
+from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, RecognitionError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.recording.recording import FILE_VERSION
@@ -94,15 +95,16 @@ class _Extractor:
         self, folder: Path, keypoints: KeypointOptions | None, progress: Progress | None
     ) -> None:
         self._folder = folder
-        self._keypoints = keypoints
+        self._options = ReadOptions.of_keypoints(keypoints or KeypointOptions())
         self._progress = progress
         self._estimator: PoseEstimator | None = None
 
     def recording(self, path: Path) -> Recording:
-        if path.suffix.lower() == ".npz":
+        if path.suffix.lower() == SAVED_RECORDING:
             return Recording.load(path)
-        if is_keypoint_file(path):
-            return read_keypoints(path, self._keypoints).recording
+        source = source_of(path)
+        if not source.shows_pictures(path, self._options):
+            return source.record(path, self._options).recording
         kept = self._folder / f"{_content_key(path)}.npz"
         if kept.is_file():
             return Recording.load(kept)
@@ -111,7 +113,9 @@ class _Extractor:
         progress = None
         if self._progress is not None:
             progress = partial(self._advance, path.name, self._progress)
-        recording = record(path, estimator=self._estimator, progress=progress)
+        recording = source.record(
+            path, self._options, estimator=self._estimator, progress=progress
+        ).recording
         self._folder.mkdir(parents=True, exist_ok=True)
         recording.save(kept)
         return recording

@@ -15,18 +15,10 @@ from sqlmodel import Session, col, select
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.database import Database
 from app.store.errors import NotFound
-from app.store.models import Clip, Job, JobStatus, new_id, now
+from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
 
-BAG, KEYPOINTS, VIDEO, RECORDING, POSTER, FILMSTRIP = _KEPT = (
-    "bag",
-    "keypoints",
-    "video",
-    "recording.npz",
-    "poster.jpg",
-    "filmstrip.jpg",
-)
-"""The files of a clip; one from a dive recording or a keypoint file has that, and its video once
-its job is done."""
+RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
+"""Files of a clip beside the received one, which is named by its source, and the video."""
 
 TOPIC_NEEDED = "topic_needed"
 """Why the job of a clip failed that needs somebody to choose a topic."""
@@ -69,7 +61,7 @@ class ClipStore:
         The file gets its place first: a row never refers to what is not on disk. When two
         uploads with one idempotency key race, the second one gets the first one's clip.
         """
-        target = self._received(clip)
+        target = self.received(clip)
         target.parent.mkdir()
         job = Job(clip_id=clip.id, client=client)
         if clip.needs_topic:
@@ -193,9 +185,13 @@ class ClipStore:
     def sweep(self) -> int:
         """Remove files that no row refers to, left by a crash; return how many went."""
         with self._database.reading() as session:
-            known = set(session.exec(select(Clip.id)).all())
-        orphans = [path for path in self.folder.iterdir() if path.name not in known]
-        orphans += [path for path in self.folder.glob("*/*") if path.name not in _KEPT]
+            sources = dict(session.exec(select(Clip.id, Clip.source)).all())
+        orphans = [path for path in self.folder.iterdir() if path.name not in sources]
+        orphans += [
+            path
+            for path in self.folder.glob("*/*")
+            if path.name not in (sources.get(path.parent.name), VIDEO, RECORDING, POSTER, FILMSTRIP)
+        ]
         for path in orphans:
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
@@ -204,13 +200,9 @@ class ClipStore:
                     path.unlink()
         return len(orphans)
 
-    def bag(self, clip_id: str) -> Path:
-        """Return where the dive recording is that a clip came as, if it did."""
-        return self._home(clip_id) / BAG
-
-    def keypoints(self, clip_id: str) -> Path:
-        """Return where the keypoint file is that a clip came as, if it did."""
-        return self._home(clip_id) / KEYPOINTS
+    def received(self, clip: Clip) -> Path:
+        """Return where the file is that a clip came as."""
+        return self._home(clip.id) / clip.source
 
     def video(self, clip_id: str) -> Path:
         """Return where the clip's video is: its own bytes, or what its job made to look at."""
@@ -227,12 +219,6 @@ class ClipStore:
     def filmstrip(self, clip_id: str) -> Path:
         """Return where the thumbnails along the clip are, once its job is done."""
         return self._home(clip_id) / FILMSTRIP
-
-    def _received(self, clip: Clip) -> Path:
-        """Return where the file belongs that came."""
-        if clip.keypoints is not None:
-            return self.keypoints(clip.id)
-        return self.bag(clip.id) if clip.from_bag else self.video(clip.id)
 
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key

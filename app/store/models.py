@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from datetime import UTC, datetime
 from enum import StrEnum
 from uuid import uuid4
@@ -10,6 +9,9 @@ from uuid import uuid4
 from sqlalchemy import CheckConstraint, Column, DateTime, Text
 from sqlalchemy.types import TypeDecorator
 from sqlmodel import Field, SQLModel
+
+VIDEO = "video"
+"""Name of the clip source whose file is the video that players show."""
 
 
 def now() -> datetime:
@@ -77,8 +79,10 @@ class Clip(SQLModel, table=True):
     """Of a dive recording: the topics that a clip can be made of, as a JSON array; else empty."""
     topic: str | None = Field(default=None, max_length=255)
     """Name of the topic that this clip is made of; ``None`` where nobody chose, or for a video."""
-    keypoints: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
-    """Of a keypoint file: how it is to be read, as a JSON object; else ``None``."""
+    source: str = Field(default=VIDEO, max_length=16, sa_column_kwargs={"server_default": VIDEO})
+    """Kind of the file that came: the name of its `app.clip_sources.ClipSource`."""
+    options: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
+    """How the file is read, as a JSON object (`app.clip_sources.ReadOptions`)."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
@@ -86,23 +90,12 @@ class Clip(SQLModel, table=True):
     @property
     def video_is_made(self) -> bool:
         """Whether its video is made by its job, and is not the file that came."""
-        return self.from_bag or self.keypoints is not None
-
-    @property
-    def shows_pictures(self) -> bool:
-        """Whether its video shows the diver; else it shows the keypoints that came."""
-        used = {topic["name"]: topic["use"] for topic in json.loads(self.topics)}
-        return self.keypoints is None and used.get(self.topic) != "keypoints"
-
-    @property
-    def from_bag(self) -> bool:
-        """Whether it came as a dive recording and not as a video file."""
-        return self.topics != "[]"
+        return self.source != VIDEO
 
     @property
     def needs_topic(self) -> bool:
         """Whether somebody has to choose a topic before its job can begin."""
-        return self.from_bag and self.topic is None
+        return self.topics != "[]" and self.topic is None
 
 
 class Job(SQLModel, table=True):

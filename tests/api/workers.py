@@ -10,7 +10,7 @@ import pytest
 linux = pytest.mark.skipif(not Path("/proc/self").exists(), reason="finds processes in /proc")
 
 
-def workers_of(parent: int, command: str = "extract") -> list[int]:
+def workers_of(parent: int, command: str = "record") -> list[int]:
     """Return the process ids of the workers of server `parent` that do `command`."""
     found = []
     for entry in Path("/proc").iterdir():

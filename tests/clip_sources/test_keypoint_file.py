@@ -1,4 +1,4 @@
-"""What a worker tells of a keypoint file, in words of whoever sent it."""
+"""A received keypoint file: what it holds, and refusals in words of whoever sent it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from app.api.extraction.keypoint_clip import DRAWN, NO_HANDS, read_recording
-from app.api.extraction.keypoint_source import KeypointSource
-from app.api.extraction.messages import Failed
+from app.clip_sources import ReadOptions, Refusal
+from app.clip_sources.keypoint_file import DRAWN, NO_HANDS, KeypointFileSource
 from app.keypoint_files import Ending
-from app.recognition.recording.recording import Recording
+from app.recognition.errors import RecognitionError
 from tests.keypoint_files.files import renamed, write_named, write_numbered
 from tests.recognition.strategies import circle, recording
 
@@ -20,10 +19,12 @@ def refused(
     ending: Ending = ".csv",
     rate: float | None = None,
     size: tuple[int, int] | None = None,
-) -> Failed:
-    told = KeypointSource(ending=ending, frame_rate=rate, frame_size=size)
-    failed = read_recording(file, told)
-    assert isinstance(failed, Failed)
+) -> Refusal:
+    options = ReadOptions(ending=ending, frame_rate=rate, frame_size=size)
+    source = KeypointFileSource()
+    with pytest.raises(RecognitionError) as raised:
+        source.record(file, options, video=file.with_name("video.mp4"))
+    failed = source.refuse(raised.value, file)
     # Our own names of the file mean nothing to anybody else.
     assert str(file.parent) not in failed.detail
     assert "keypoints-" not in failed.detail
@@ -68,9 +69,13 @@ def test_what_cannot_be_read_says_why(
 
 def test_what_is_missing_is_told_with_the_recording(tmp_path: Path) -> None:
     poses = renamed(recording(circle, frames=20), {"right_wrist": "paw"})
-    read = read_recording(write_named(tmp_path / "received", poses), KeypointSource(ending=".csv"))
-    assert isinstance(read, Recording)
-    assert read.warnings[:2] == (DRAWN, NO_HANDS)
-    left_out, missing = read.warnings[2:]
+    file = write_named(tmp_path / "received", poses)
+    recorded = KeypointFileSource().record(
+        file, ReadOptions(ending=".csv"), video=tmp_path / "video.mp4"
+    )
+    assert not recorded.has_hands
+    warnings = recorded.recording.warnings
+    assert warnings[:2] == (DRAWN, NO_HANDS)
+    left_out, missing = warnings[2:]
     assert left_out.startswith("left out, for they mean no landmark here: PAW")
     assert missing == "the file gives no right_wrist"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.api.http.media_types import HEAD_BYTES, video_type
+from app.clip_sources.video_types import HEAD_BYTES, video_type
 from tests.recognition.damaged_clips import write_clip
 
 

@@ -52,6 +52,7 @@ def add_bag(clips: ClipStore, topic: str | None = None) -> ClipWithJob:
         height=48,
         topics=json.dumps(TOPICS),
         topic=topic,
+        source="bag",
     )
     return clips.add(clip, partial, "diver")
 
@@ -59,7 +60,7 @@ def add_bag(clips: ClipStore, topic: str | None = None) -> ClipWithJob:
 def test_a_dive_recording_waits_for_its_topic(clips: ClipStore, jobs: JobStore) -> None:
     added = add_bag(clips)
     assert (added.job.status, added.job.error_code) == (JobStatus.FAILED, TOPIC_NEEDED)
-    assert clips.bag(added.clip.id).read_bytes() == b"bag"
+    assert clips.received(added.clip).read_bytes() == b"bag"
     assert not clips.video(added.clip.id).exists()
     with pytest.raises(NotFound, match="no topic '/middle'"):
         clips.choose_topic(added.clip.id, "/middle")

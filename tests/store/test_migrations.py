@@ -10,7 +10,9 @@ from alembic.migration import MigrationContext
 from sqlalchemy import inspect
 from sqlmodel import SQLModel
 
-from app.store import Database, LanguageStore
+from app.api.jobs.extraction import options_of
+from app.clip_sources import ReadOptions
+from app.store import ClipStore, Database, LanguageStore
 from app.store.database import MIGRATIONS
 
 
@@ -70,3 +72,35 @@ def test_the_author_of_older_revisions_comes_from_their_documents(tmp_path: Path
         )
     database.migrate()
     assert LanguageStore(database).get("a").revision.author == "Ada"
+
+
+def test_older_clips_get_the_source_that_they_came_as(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    read_as = '{"ending": ".csv", "frame_rate": 25.0, "frame_size": null}'
+    topics = '[{"name": "/left"}]'
+    rows = {"video": ("[]", None), "bag": (topics, None), "keypoints": ("[]", read_as)}
+    with database.engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, "0005")
+        for name, (listed, keypoints) in rows.items():
+            connection.exec_driver_sql(
+                "INSERT INTO clip (id, name, media_type, size, width, height, topics, keypoints, "
+                "created) VALUES (?, 'dive', 'video/mp4', 1, 64, 48, ?, ?, '2026-01-01 00:00:00')",
+                (name, listed, keypoints),
+            )
+            connection.exec_driver_sql(
+                "INSERT INTO job (id, clip_id, client, status, attempts, warnings, created) "
+                "VALUES (?, ?, 'local', 'done', 1, '[]', '2026-01-01 00:00:00')",
+                (f"job of {name}", name),
+            )
+    database.migrate()
+    clips = {each.clip.id: each for each in ClipStore(database, tmp_path / "clips").all()}
+    assert {name: each.clip.source for name, each in clips.items()} == {name: name for name in rows}
+    assert {name: each.job.id for name, each in clips.items()} == {
+        name: f"job of {name}" for name in rows
+    }
+    options = options_of(clips["keypoints"].clip)
+    assert (options.ending, options.frame_rate, options.frame_size) == (".csv", 25.0, None)
+    assert options_of(clips["video"].clip) == ReadOptions()

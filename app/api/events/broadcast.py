@@ -1,4 +1,4 @@
-"""News for everybody who listens: one publisher's word reaches all open event streams."""
+"""In-process publish/subscribe: fans an event out to every open event stream."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from dataclasses import dataclass
 from typing import Any
 
 MOST_UNREAD = 256
-"""News kept for a listener that does not read; older ones are dropped, since each says how things
+"""Events kept for a stream that is not read; older ones are dropped, since each says how things
 stand and not what changed."""
 
 
 @dataclass(frozen=True)
-class News:
-    """One message.
+class Event:
+    """One event.
 
     Attributes
     ----------
     kind
-        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks``: how far
-        one is.
+        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks`` or
+        ``exports``: how far one is.
     data
         JSON types; at least ``id``.
 
@@ -31,55 +31,59 @@ class News:
     data: dict[str, Any]
 
 
-class Listener:
-    """One open stream's unread news."""
+class Subscription:
+    """The unread events of one open stream."""
 
     def __init__(self) -> None:
-        self._unread: asyncio.Queue[News | None] = asyncio.Queue(MOST_UNREAD)
+        self._unread: asyncio.Queue[Event | None] = asyncio.Queue(MOST_UNREAD)
 
-    def put(self, news: News | None) -> None:
-        """Add one, dropping the oldest when nobody reads; ``None`` ends the stream."""
+    def put(self, event: Event | None) -> None:
+        """Add an event, dropping the oldest of a full queue; None ends the stream."""
         if self._unread.full():
             self._unread.get_nowait()
-        self._unread.put_nowait(news)
+        self._unread.put_nowait(event)
 
-    async def __aiter__(self) -> AsyncIterator[News]:
-        """Yield news as they come, until the server stops."""
-        while (news := await self._unread.get()) is not None:
-            yield news
+    async def __aiter__(self) -> AsyncIterator[Event]:
+        """Yield events as they come, until the server stops."""
+        while (event := await self._unread.get()) is not None:
+            yield event
 
 
 class Broadcast:
-    """Hands news from any thread to the listeners on the event loop it was made on."""
+    """Publishes events from any thread to the streams on the event loop it was made on."""
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
-        self._listeners: set[Listener] = set()
+        self._subscriptions: set[Subscription] = set()
         self._closed = False
 
     def publish(self, kind: str, **data: Any) -> None:
-        """Tell all listeners; callable from any thread, does nothing once the loop is closed."""
+        """Send an event of this kind; see `send`."""
+        self.send(Event(kind, data))
+
+    def send(self, event: Event) -> None:
+        """Put an event into all streams, from any thread; do nothing once the loop is closed."""
         if not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._deliver, News(kind, data))
+            self._loop.call_soon_threadsafe(self._deliver, event)
 
     @contextmanager
-    def listening(self) -> Iterator[Listener]:
-        """Open a stream of what is published from now on; use it on the event loop."""
-        listener = Listener()
-        self._listeners.add(listener)
+    def subscribe(self) -> Iterator[Subscription]:
+        """Open a stream of the events from now on; use it on the event loop."""
+        subscription = Subscription()
+        self._subscriptions.add(subscription)
         if self._closed:
-            listener.put(None)
+            subscription.put(None)
         try:
-            yield listener
+            yield subscription
         finally:
-            self._listeners.discard(listener)
+            self._subscriptions.discard(subscription)
 
     def close(self) -> None:
         """End all streams."""
         self._closed = True
-        for listener in self._listeners:
-            listener.put(None)
+        for subscription in self._subscriptions:
+            subscription.put(None)
 
-    def _deliver(self, news: News) -> None:
-        for listener in self._listeners:
-            listener.put(news)
+    def _deliver(self, event: Event) -> None:
+        for subscription in self._subscriptions:
+            subscription.put(event)

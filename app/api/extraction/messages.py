@@ -19,18 +19,6 @@ POSE_DIGITS = 4
 """Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 
-class Probed(BaseModel):
-    """What the clip says about itself (`app.recognition.recording.video.VideoInfo`)."""
-
-    kind: Literal["probed"] = "probed"
-    width: int
-    height: int
-    duration: float | None
-    frames: int | None
-    rotation: int
-    codec: str
-
-
 class TopicSeen(BaseModel):
     """A topic of a dive recording that a clip can be made of."""
 
@@ -48,21 +36,15 @@ class TopicSeen(BaseModel):
         return self.messages
 
 
-class BagProbed(BaseModel):
-    """What a dive recording offers (`app.bags.topic_summary.usable_topics`)."""
+class Probed(BaseModel):
+    """What a file says about the clip that it would be (`app.clip_sources.ClipFacts`)."""
 
-    kind: Literal["bag_probed"] = "bag_probed"
-    topics: tuple[TopicSeen, ...]
-
-
-class KeypointsProbed(BaseModel):
-    """What a keypoint file holds (`app.keypoint_files.read_keypoints`)."""
-
-    kind: Literal["keypoints_probed"] = "keypoints_probed"
+    kind: Literal["probed"] = "probed"
     width: int
     height: int
-    duration: float
-    frames: int
+    duration: float | None
+    frames: int | None
+    topics: tuple[TopicSeen, ...] = ()
 
 
 class Progressed(BaseModel):
@@ -105,7 +87,7 @@ class Failed(BaseModel):
     detail: str
 
 
-Message = Probed | BagProbed | KeypointsProbed | Progressed | Finished | Failed
+Message = Probed | Progressed | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 

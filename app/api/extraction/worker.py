@@ -1,7 +1,7 @@
-"""The process that opens clips: ``python -m app.api.extraction.worker probe|extract ...``.
+"""Worker process: ``python -m app.api.extraction.worker probe|record|session ...``.
 
-It writes one JSON object per line to stdout (see `messages`) and ends by itself when its stdin is
-closed, which is what happens when the server dies.
+It opens one clip, writes one JSON object per line to stdout (see `messages`), and ends as soon as
+its stdin is closed, which happens when the server dies.
 """
 
 from __future__ import annotations
@@ -16,14 +16,11 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import (
-    BagProbed,
     Failed,
     Finished,
-    KeypointsProbed,
     Message,
     Probed,
     Progressed,
@@ -31,13 +28,15 @@ from app.api.extraction.messages import (
     dump,
     pose_in,
 )
-
-if TYPE_CHECKING:
-    from app.api.extraction.keypoint_source import KeypointSource
-    from app.recognition.estimation.water import WaterCorrection
-    from app.recognition.poses.frame import Body, FrameLandmarks
-    from app.recognition.recording.recording import Recording
-    from app.recognition.recording.video import VideoFrame
+from app.api.extraction.pictures import Poster, Thumbnails, write_poster
+from app.api.extraction.session_request import SessionRequest
+from app.bags.session_writer import write_session as write_mcap
+from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
+from app.recognition.errors import ModelError, RecognitionError, VideoError
+from app.recognition.poses.frame import Body, FrameLandmarks
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video import probe as probe_video
 
 PROGRESS_SECONDS = 0.1
 """Shortest time between two reports: what an eye follows on a progress bar."""
@@ -45,104 +44,43 @@ PROGRESS_SECONDS = 0.1
 Report = Callable[[Message], None]
 
 
-def probe(clip: Path, report: Report) -> None:
-    """Report what the clip says about itself."""
-    from app.recognition.recording import video
-
-    report(Probed(**asdict(video.probe(clip))))
-
-
-def probe_bag(bag: Path, report: Report) -> None:
-    """Report which topics of a dive recording a clip can be made of."""
-    from app.bags.bag_kind import HEAD_BYTES, bag_kind
-    from app.bags.staging import is_bag_archive
-    from app.bags.topic_summary import usable_topics
-
-    with bag.open("rb") as file:
-        kind = bag_kind(file.read(HEAD_BYTES))
-    if kind == "zip" and not is_bag_archive(bag):
-        detail = "the archive holds no dive recording (no .mcap and no .db3 file)"
-        report(Failed(code="unsupported_media_type", detail=detail))
-        return
-    report(BagProbed(topics=tuple(TopicSeen(**asdict(topic)) for topic in usable_topics(bag))))
-
-
-def extract(files: ClipFiles, water: WaterCorrection, report: Report) -> None:
-    """Write the clip's pictures and recording, reporting progress and the newest pose."""
-    from app.api.extraction.pictures import write_poster
-    from app.recognition.recording import extraction
-
-    # First of all: a card with a picture says more than one without.
-    write_poster(files.video, files.poster)
-    steps = _Steps(files, report, poster=False)
-    recorded = extraction.record(
-        files.video, progress=steps.progress, observer=steps.observe, water=water
-    )
-    steps.save(recorded)
-
-
-def extract_bag(
-    bag: Path, topic: str | None, files: ClipFiles, water: WaterCorrection, report: Report
-) -> None:
-    """Write the video, pictures and recording of a topic, reporting as `extract` does."""
-    from app.bags import record_bag
-
-    steps = _Steps(files, report, poster=True)
-    partial = files.video.with_suffix(".part")
-    recorded = record_bag(
-        bag, topic, video=partial, progress=steps.progress, observer=steps.observe, water=water
-    )
-    partial.replace(files.video)
-    steps.save(recorded)
-
-
-def probe_keypoints(file: Path, told: KeypointSource, report: Report) -> None:
-    """Report what a keypoint file holds; all of it is read, as there is no other way to know."""
-    from app.api.extraction.keypoint_clip import read_recording
-    from app.keypoint_files import is_openpose_archive
-
-    if told.ending == ".zip" and not is_openpose_archive(file):
-        detail = (
-            "the archive holds neither a dive recording (no .mcap and no .db3 file) nor frames of "
-            "OpenPose (*_keypoints.json)"
+def probe(source: ClipSource, file: Path, options: ReadOptions, report: Report) -> None:
+    """Report what a received file says about itself."""
+    facts = source.probe(file, options)
+    report(
+        Probed(
+            width=facts.width,
+            height=facts.height,
+            duration=facts.duration,
+            frames=facts.frames,
+            topics=tuple(TopicSeen(**asdict(topic)) for topic in facts.topics),
         )
-        report(Failed(code="unsupported_media_type", detail=detail))
-        return
-    read = read_recording(file, told)
-    if isinstance(read, Failed):
-        report(read)
-        return
-    poses = read.poses
-    width, height = poses.frame_size
-    report(KeypointsProbed(width=width, height=height, duration=poses.duration, frames=len(poses)))
+    )
 
 
-def extract_keypoints(file: Path, told: KeypointSource, files: ClipFiles, report: Report) -> None:
-    """Write the video of a keypoint file's skeleton, pictures and recording, as `extract` does."""
-    from app.api.extraction.keypoint_clip import read_recording
-    from app.bags import show_recording
+def record(
+    source: ClipSource, file: Path, options: ReadOptions, files: ClipFiles, report: Report
+) -> None:
+    """Write a clip's recording, pictures and video, reporting progress and the newest pose."""
+    partial = None
+    if source.makes_video:
+        partial = files.video.with_suffix(".part")
+    else:
+        # First of all: a card with a picture says more than one without.
+        write_poster(file, files.poster)
+    steps = _Steps(files, report, poster=source.makes_video)
+    recorded = source.record(
+        file, options, video=partial, progress=steps.progress, observer=steps.observe
+    )
+    if partial is not None:
+        partial.replace(files.video)
+    steps.save(recorded.recording)
 
-    read = read_recording(file, told)
-    if isinstance(read, Failed):
-        report(read)
-        return
-    steps = _Steps(files, report, poster=True)
-    partial = files.video.with_suffix(".part")
-    show_recording(read, partial, steps.progress, steps.observe)
-    partial.replace(files.video)
-    steps.save(read)
 
-
-def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report) -> None:
-    """Write a clip's session as MCAP, with the recognitions that the file `wanted` tells."""
-    from app.api.extraction.mcap_request import SessionWishes
-    from app.bags.session_writer import write_session as write
-    from app.recognition.errors import VideoError
-    from app.recognition.recording.recording import Recording
-    from app.recognition.recording.video import probe as probe_video
-
+def write_session(request: Path, session: Path, files: ClipFiles, report: Report) -> None:
+    """Write a clip's session as MCAP, with the recognitions that the request names."""
     video: Path | None = None
-    wishes = SessionWishes.model_validate_json(wanted.read_bytes())
+    wanted = SessionRequest.model_validate_json(request.read_bytes())
     reported = 0.0
 
     def progress(done: int, total: int) -> None:
@@ -155,8 +93,8 @@ def write_session(wanted: Path, session: Path, files: ClipFiles, report: Report)
     with contextlib.suppress(VideoError):
         probe_video(files.video)
         video = files.video
-    named = [wish.named() for wish in wishes.recognitions]
-    write(session, recording, named, video=video, name=wishes.clip, progress=progress)
+    named = [each.named() for each in wanted.recognitions]
+    write_mcap(session, recording, named, video=video, name=wanted.clip, progress=progress)
     report(Finished(frames=len(recording.poses), warnings=()))
 
 
@@ -168,15 +106,13 @@ class _Steps:
     files
         What to write.
     report
-        Hears of it.
+        Called with every message.
     poster
         Whether the still picture is still to be written.
 
     """
 
     def __init__(self, files: ClipFiles, report: Report, *, poster: bool) -> None:
-        from app.api.extraction.pictures import Poster, Thumbnails
-
         self._files, self._report = files, report
         self._reported = 0.0
         self._newest: tuple[VideoFrame, Body | None] | None = None
@@ -259,25 +195,17 @@ def main() -> None:
     def report(message: Message) -> None:
         channel.write(dump(message) + "\n")
 
-    from app.recognition.errors import (
-        BagError,
-        ModelError,
-        RecognitionError,
-        TopicError,
-    )
-
     try:
         _run(chosen, report)
     except MemoryError:
         report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
+    except UnsupportedFile as error:
+        report(Failed(code="unsupported_media_type", detail=str(error)))
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
     except RecognitionError as error:
-        codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
-        # Our own name of the file means nothing to whoever sent it.
-        name = _received(chosen).name
-        detail = str(error).replace(name, "the clip")
-        report(Failed(code=codes.get(type(error), "video_unreadable"), detail=detail))
+        refusal = chosen.source.refuse(error, chosen.file)
+        report(Failed(code=refusal.code, detail=refusal.detail))
     except OSError as error:
         detail = f"the server's storage cannot be used ({error.strerror}); free space and retry"
         report(Failed(code="storage_unavailable", detail=detail))
@@ -288,59 +216,36 @@ def _arguments() -> argparse.Namespace:
     for name in ("memory-bytes", "cpu-seconds", "file-bytes"):
         parser.add_argument(f"--{name}", type=int, default=0)
     parser.add_argument("--scratch", help="folder for what is unpacked")
+    parser.add_argument(
+        "--options", type=ReadOptions.model_validate_json, default=ReadOptions(), help="as JSON"
+    )
     commands = parser.add_subparsers(dest="command", required=True)
-    clip = ("clip", "recording", "poster", "filmstrip")
-    for command, paths in {
-        "probe": ("clip",),
-        "probe-bag": ("bag",),
-        "extract": clip,
-        "extract-bag": ("bag", *clip),
-        "probe-keypoints": ("keypoints",),
-        "extract-keypoints": ("keypoints", *clip),
-        "session": ("wanted", "session", *clip),
-    }.items():
-        taking = commands.add_parser(command)
-        for name in paths:
-            taking.add_argument(name, type=Path)
-        taking.add_argument("--water", default="auto")
-        taking.add_argument("--topic")
-        taking.add_argument("--told", help="how a keypoint file is read, as JSON")
+    probing, recording = commands.add_parser("probe"), commands.add_parser("record")
+    for command in (probing, recording):
+        command.add_argument("source", type=source_named)
+        command.add_argument("file", type=Path)
+    exporting = commands.add_parser("session")
+    exporting.set_defaults(source=VIDEO)
+    exporting.add_argument("request", type=Path)
+    exporting.add_argument("file", type=Path, help="the MCAP file to write")
+    for command in (recording, exporting):
+        for name in ("video", "recording", "poster", "filmstrip"):
+            command.add_argument(name, type=Path)
     return parser.parse_args()
 
 
 def _run(chosen: argparse.Namespace, report: Report) -> None:
     match chosen.command:
         case "probe":
-            probe(chosen.clip, report)
-        case "probe-bag":
-            probe_bag(chosen.bag, report)
-        case "extract":
-            extract(_files(chosen), chosen.water, report)
-        case "extract-bag":
-            extract_bag(chosen.bag, chosen.topic, _files(chosen), chosen.water, report)
-        case "probe-keypoints":
-            probe_keypoints(chosen.keypoints, _told(chosen), report)
-        case "extract-keypoints":
-            extract_keypoints(chosen.keypoints, _told(chosen), _files(chosen), report)
+            probe(chosen.source, chosen.file, chosen.options, report)
+        case "record":
+            record(chosen.source, chosen.file, chosen.options, _files(chosen), report)
         case "session":
-            write_session(chosen.wanted, chosen.session, _files(chosen), report)
-
-
-def _received(chosen: argparse.Namespace) -> Path:
-    """Return the file that somebody sent."""
-    named = vars(chosen)
-    received: Path = named.get("bag") or named.get("keypoints") or named["clip"]
-    return received
-
-
-def _told(chosen: argparse.Namespace) -> KeypointSource:
-    from app.api.extraction.keypoint_source import KeypointSource
-
-    return KeypointSource.model_validate_json(chosen.told)
+            write_session(chosen.request, chosen.file, _files(chosen), report)
 
 
 def _files(chosen: argparse.Namespace) -> ClipFiles:
-    return ClipFiles(chosen.clip, chosen.recording, chosen.poster, chosen.filmstrip)
+    return ClipFiles(chosen.video, chosen.recording, chosen.poster, chosen.filmstrip)
 
 
 if __name__ == "__main__":

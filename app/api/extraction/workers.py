@@ -1,4 +1,4 @@
-"""Starting, listening to and ending one worker process."""
+"""Worker processes: one per clip that is probed, recorded or exported."""
 
 from __future__ import annotations
 
@@ -10,49 +10,20 @@ from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncGenerator, AsyncIterator, Iterator
 from contextlib import aclosing, asynccontextmanager
 from pathlib import Path
-from typing import TypeVar
 
 from app.api.extraction.clip_files import ClipFiles
-from app.api.extraction.keypoint_source import KeypointSource
-from app.api.extraction.messages import (
-    BagProbed,
-    Failed,
-    Finished,
-    KeypointsProbed,
-    Message,
-    Probed,
-    Progressed,
-    parse,
-)
+from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, parse
+from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
 from app.settings import Settings
 
-Answer = TypeVar("Answer", Probed, BagProbed, KeypointsProbed, Finished)
+Step = Progressed | Finished | Failed
 
-PROBE_SECONDS = 30.0
-"""Longest time for looking into a clip; it decodes one frame, which takes milliseconds."""
-
-PROBE_BAG_SECONDS = 120.0
-"""Longest time for looking into a dive recording. All of it is read once to know how long its
-topics are, and unpacked before: the largest there may be (`app.bags.staging.MOST_BYTES`) at
-20 MB/s, the slowest disk that is still sold."""
+MOST_SHORT_WORKERS = 2
+"""Processes that probe files or write sessions at the same time: a hundred uploads must not be as
+many processes."""
 
 _PACKAGE_PARENT = Path(__file__).resolve().parents[3]
 
-_DECODER_FAILED = Failed(
-    code="decoder",
-    detail="the process that read this clip broke off: the clip is damaged, or it needs more "
-    "memory or time than a job may use; convert it to an MP4 with H.264 and try again",
-)
-_BAG_FAILED = Failed(
-    code="bag_unreadable",
-    detail="the process that read this dive recording broke off: the recording is damaged, or it "
-    "needs more memory or time than a job may use; cut out the part with the gestures",
-)
-_KEYPOINTS_FAILED = Failed(
-    code="keypoints_unreadable",
-    detail="the process that read this keypoint file broke off: the file is damaged, or it needs "
-    "more memory or time than a job may use; cut out the part with the gestures",
-)
 _DECODER_HANGS = Failed(
     code="decoder",
     detail="the process that read this clip made no progress and was ended; "
@@ -60,152 +31,124 @@ _DECODER_HANGS = Failed(
 )
 
 
-async def probe(clip: Path, settings: Settings) -> Probed | Failed:
-    """Look into a clip, in a process of its own."""
-    command = ["probe", str(clip)]
-    return await _answer(Probed, command, settings, PROBE_SECONDS) or _DECODER_FAILED
+class Workers:
+    """Starts worker processes with the limits of the settings.
 
+    Parameters
+    ----------
+    settings
+        Limits of memory, time and file size, and whether colours are corrected.
 
-async def probe_bag(bag: Path, settings: Settings) -> BagProbed | Failed:
-    """Look into a dive recording, in a process of its own."""
-    with _scratch(bag.parent) as scratch:
-        command = [_place(scratch), "probe-bag", str(bag)]
-        return await _answer(BagProbed, command, settings, PROBE_BAG_SECONDS) or _BAG_FAILED
+    """
 
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._short = asyncio.Semaphore(MOST_SHORT_WORKERS)
 
-async def probe_keypoints(
-    file: Path, told: KeypointSource, settings: Settings
-) -> KeypointsProbed | Failed:
-    """Look into a keypoint file, in a process of its own."""
-    with _scratch(file.parent) as scratch:
-        command = [_place(scratch), "probe-keypoints", _how(told), str(file)]
-        answer = await _answer(KeypointsProbed, command, settings, PROBE_BAG_SECONDS)
-    return answer or _KEYPOINTS_FAILED
-
-
-async def extract(
-    files: ClipFiles, settings: Settings
-) -> AsyncGenerator[Progressed | Finished | Failed, None]:
-    """Extract a clip, in a process of its own; the last message says how it ended."""
-    command = ["extract", f"--water={settings.water}", *files.arguments]
-    async with aclosing(_extraction(command, settings)) as messages:
-        async for message in messages:
-            yield message
-
-
-async def extract_bag(
-    bag: Path, topic: str | None, files: ClipFiles, settings: Settings
-) -> AsyncGenerator[Progressed | Finished | Failed, None]:
-    """Extract a topic of a dive recording as `extract` does, and write its video."""
-    chosen = [] if topic is None else [f"--topic={topic}"]
-    with _scratch(bag.parent) as scratch:
-        command = [_place(scratch), "extract-bag", f"--water={settings.water}", *chosen]
-        command += [str(bag), *files.arguments]
-        async with aclosing(_extraction(command, settings)) as messages:
+    async def probe(self, source: ClipSource, file: Path, options: ReadOptions) -> Probed | Failed:
+        """Probe a received file; see `ClipSource.probe`."""
+        command = ["probe", source.name, str(file)]
+        messages = self._run(command, file.parent, source.probe_seconds, options)
+        async with self._short, aclosing(messages):
             async for message in messages:
-                yield message
+                if isinstance(message, Probed | Failed):
+                    return message
+        return _failed(source.broken_off)
+
+    async def record(
+        self, source: ClipSource, file: Path, options: ReadOptions, files: ClipFiles
+    ) -> AsyncGenerator[Step, None]:
+        """Record a clip; the last message says how it ended. See `ClipSource.record`."""
+        options = options.model_copy(update={"water": self._settings.water})
+        command = ["record", source.name, str(file), *files.arguments]
+        silence = self._settings.worker_silence_seconds
+        messages = self._run(command, file.parent, silence, options)
+        async with aclosing(_steps(messages)) as steps:
+            async for step in steps:
+                yield step
+
+    async def write_session(
+        self, request: bytes, session: Path, files: ClipFiles
+    ) -> AsyncGenerator[Step, None]:
+        """Write a clip's session as MCAP; `request` is a `SessionRequest` as JSON."""
+        with _scratch_folder(session.parent) as folder:
+            wanted = folder / "request.json"
+            await asyncio.to_thread(wanted.write_bytes, request)
+            command = ["session", str(wanted), str(session), *files.arguments]
+            messages = self._run(command, folder, self._settings.worker_silence_seconds)
+            async with self._short, aclosing(_steps(messages)) as steps:
+                async for step in steps:
+                    yield step
+
+    async def _run(
+        self,
+        command: list[str],
+        folder: Path,
+        silence_seconds: float,
+        options: ReadOptions | None = None,
+    ) -> AsyncGenerator[Message, None]:
+        """Run a worker, which unpacks archives in `folder`, and yield its messages."""
+        given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
+        with _scratch_folder(folder) as scratch:
+            command = [f"--scratch={scratch}", f"--options={given}", *command]
+            async with self._process(command) as process:
+                assert process.stdout is not None
+                while True:
+                    try:
+                        line = await asyncio.wait_for(process.stdout.readline(), silence_seconds)
+                        if not line:
+                            return
+                        yield parse(line)
+                    except TimeoutError:
+                        yield _DECODER_HANGS
+                        return
+                    except ValueError:
+                        return  # A line torn by a crash.
+
+    @asynccontextmanager
+    async def _process(self, command: list[str]) -> AsyncIterator[Process]:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "app.api.extraction.worker",
+            f"--memory-bytes={self._settings.worker_memory_bytes}",
+            f"--cpu-seconds={self._settings.worker_cpu_seconds}",
+            f"--file-bytes={self._settings.worker_file_bytes}",
+            *command,
+            stdin=PIPE,
+            stdout=PIPE,
+            cwd=_PACKAGE_PARENT,
+            # Ctrl-C in the terminal is for the server, which then ends its workers in order.
+            start_new_session=True,
+        )
+        try:
+            yield process
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
 
 
-async def extract_keypoints(
-    file: Path, told: KeypointSource, files: ClipFiles, settings: Settings
-) -> AsyncGenerator[Progressed | Finished | Failed, None]:
-    """Read a keypoint file, and write its recording and a video of the skeleton."""
-    with _scratch(file.parent) as scratch:
-        command = [_place(scratch), "extract-keypoints", _how(told), str(file), *files.arguments]
-        async with aclosing(_extraction(command, settings)) as messages:
-            async for message in messages:
-                yield message
-
-
-async def write_session(
-    wishes: bytes, session: Path, files: ClipFiles, settings: Settings
-) -> Finished | Failed:
-    """Write a clip's session as MCAP to `session`, in a process of its own."""
-    with _scratch(session.parent) as scratch:
-        wanted = scratch / "wishes.json"
-        await asyncio.to_thread(wanted.write_bytes, wishes)
-        command = [_place(scratch), "session", str(wanted), str(session), *files.arguments]
-        silence = settings.worker_silence_seconds
-        return await _answer(Finished, command, settings, silence) or _DECODER_FAILED
-
-
-async def _answer(
-    kind: type[Answer], command: list[str], settings: Settings, silence_seconds: float
-) -> Answer | Failed | None:
-    """Return the answer of a worker that is asked for one, or None where it ends without."""
-    async with aclosing(_messages(command, settings, silence_seconds)) as messages:
-        async for message in messages:
-            if isinstance(message, (kind, Failed)):
-                return message
-    return None
-
-
-async def _extraction(
-    command: list[str], settings: Settings
-) -> AsyncGenerator[Progressed | Finished | Failed, None]:
-    async with aclosing(_messages(command, settings, settings.worker_silence_seconds)) as messages:
+async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step, None]:
+    """Yield progress and the end; a process that dies without a word has failed."""
+    async with aclosing(messages):
         async for message in messages:
             if isinstance(message, Progressed):
                 yield message
             elif isinstance(message, Finished | Failed):
                 yield message
                 return
-    yield _DECODER_FAILED
+    # Also of other files: what breaks off while landmarks are looked for is the decoder.
+    yield _failed(VIDEO.broken_off)
+
+
+def _failed(refusal: Refusal) -> Failed:
+    return Failed(code=refusal.code, detail=refusal.detail)
 
 
 @contextlib.contextmanager
-def _scratch(folder: Path) -> Iterator[Path]:
-    """Give a worker a folder of its own, which goes even when the worker is killed."""
-    # Beside the recording: on the same disk, and swept at the next start if this process dies.
+def _scratch_folder(folder: Path) -> Iterator[Path]:
+    """Make a folder that is removed even when the worker is killed."""
+    # Beside the clip: on the same disk, and swept at the next start if this process dies.
     with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=folder) as made:
         yield Path(made)
-
-
-def _how(told: KeypointSource) -> str:
-    return f"--told={told.model_dump_json()}"
-
-
-def _place(scratch: Path) -> str:
-    return f"--scratch={scratch}"
-
-
-async def _messages(
-    command: list[str], settings: Settings, silence_seconds: float
-) -> AsyncGenerator[Message, None]:
-    async with _worker(command, settings) as process:
-        assert process.stdout is not None
-        while True:
-            try:
-                line = await asyncio.wait_for(process.stdout.readline(), silence_seconds)
-                if not line:
-                    return
-                yield parse(line)
-            except TimeoutError:
-                yield _DECODER_HANGS
-                return
-            except ValueError:
-                return  # A line torn by a crash.
-
-
-@asynccontextmanager
-async def _worker(command: list[str], settings: Settings) -> AsyncIterator[Process]:
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "app.api.extraction.worker",
-        f"--memory-bytes={settings.worker_memory_bytes}",
-        f"--cpu-seconds={settings.worker_cpu_seconds}",
-        f"--file-bytes={settings.worker_file_bytes}",
-        *command,
-        stdin=PIPE,
-        stdout=PIPE,
-        cwd=_PACKAGE_PARENT,
-        # Ctrl-C in the terminal is for the server, which then ends its workers in order.
-        start_new_session=True,
-    )
-    try:
-        yield process
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            process.kill()
-        await process.wait()

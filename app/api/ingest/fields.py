@@ -1,4 +1,4 @@
-"""What a sender tells about a file beside its bytes: as fields of a form, or as tus metadata."""
+"""Upload fields: what a sender says of a file, as form fields or as tus metadata."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated, Final
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
 from app.api.http.problems import Fault, ProblemError
-from app.keypoint_files import KeypointOptions
+from app.clip_sources import ReadOptions
 
 LONGEST_TOPIC: Final = 255
 """Bytes of a topic's name: as long as ROS allows one to be."""
@@ -32,7 +32,7 @@ Size = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,4}\s*[xX]\s*[1-9]\d
 
 
 class UploadFields(BaseModel):
-    """What the fields say; each is None where there is none, or an empty one."""
+    """The fields of one upload; each is None where it is absent or empty."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", str_strip_whitespace=True)
 
@@ -49,17 +49,17 @@ class UploadFields(BaseModel):
 
     @classmethod
     def read(cls, texts: Mapping[str, str]) -> UploadFields:
-        """Read the fields; unknown ones are passed over, as both protocols have it.
+        """Parse the fields; unknown ones are ignored, as both protocols have it.
 
         Raises
         ------
         ProblemError
-            422 when one says what it cannot.
+            422 when a value is malformed.
 
         """
-        told = {name: texts[name] for name in LONGEST if texts.get(name, "").strip()}
+        given = {name: texts[name] for name in LONGEST if texts.get(name, "").strip()}
         try:
-            return cls.model_validate(told)
+            return cls.model_validate(given)
         except ValidationError as error:
             faults = [
                 Fault(pointer="", parameter=str(fault["loc"][0]), detail=fault["msg"])
@@ -69,10 +69,10 @@ class UploadFields(BaseModel):
             raise ProblemError(422, "field_invalid", detail, errors=faults) from error
 
     @property
-    def keypoints(self) -> KeypointOptions:
-        """What they say of a keypoint file."""
+    def options(self) -> ReadOptions:
+        """Return how the file is read."""
         size = None
         if self.frame_size is not None:
             width, height = self.frame_size.lower().split("x")
             size = int(width), int(height)
-        return KeypointOptions(self.frame_rate, size)
+        return ReadOptions(topic=self.topic, frame_rate=self.frame_rate, frame_size=size)

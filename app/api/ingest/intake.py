@@ -1,26 +1,24 @@
-"""Taking in a file as a clip, wherever it came from: looked into, stored, queued, announced."""
+"""Intake of a received file: probe it, store it as a clip, queue its job, publish the change."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.keypoint_source import KeypointSource
-from app.api.extraction.messages import Failed, KeypointsProbed, Probed, TopicSeen
-from app.api.http.media_types import HEAD_BYTES, video_type
+from app.api.extraction.messages import Failed, Probed
 from app.api.http.problems import ProblemError
-from app.api.http.schemas import ClipAccepted
+from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
 from app.api.services.context import Studio
-from app.bags.bag_kind import bag_kind
-from app.keypoint_files import Ending, keypoint_ending
+from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
+from app.clip_sources.video_types import HEAD_BYTES
 from app.store import Clip
 
-MADE_VIDEO = "video/mp4"
-"""What is played of a clip that came without a video of its own."""
+UNSUPPORTED = "unsupported_media_type"
 
 
 def client_of(request: Request) -> str:
@@ -40,21 +38,21 @@ async def require_place_in_queue(request: Request, studio: Studio) -> None:
         )
 
 
-async def examined(
+async def inspect(
     partial: Path, studio: Studio, *, name: str, size: int, fields: UploadFields | None = None
 ) -> Clip:
-    """Look into a received file.
+    """Probe a received file.
 
     Parameters
     ----------
     partial
         The file.
     studio
-        What looks into it.
+        Starts the process that probes it.
     name, size
-        What to call it, and its bytes.
+        The name to show, and the file's bytes.
     fields
-        What its sender tells of it. Of a dive recording without a topic the only one is meant, or
+        What its sender says of it. Of a dive recording without a topic the only one is meant, or
         it is chosen later.
 
     Returns
@@ -64,59 +62,56 @@ async def examined(
     Raises
     ------
     ProblemError
-        415 when it is neither video, dive recording nor keypoint file, 422 when it is one that
-        cannot be read, has no such topic, or does not tell enough without `fields`.
+        415 when it is of no known kind, 422 when it is one that cannot be read, has no such
+        topic, or needs more `fields`.
 
     """
     if size == 0:
         raise ProblemError(422, "video_unreadable", f"{name} is empty; record or export it again")
-    told = fields or UploadFields()
+    given = fields or UploadFields()
     head = await run_in_threadpool(_head, partial)
-    ending = keypoint_ending(head, name)
-    if bag_kind(head) is not None:
-        clip = await _examined_bag(partial, studio, name, size, told.topic)
-        if isinstance(clip, Clip):
-            return clip
-        if ending is None:
-            raise _refused(clip, name)
-    if told.topic is not None:
+    candidates = sources_of_upload(head, name)
+    for source in candidates:
+        if given.topic is not None and not source.has_topics:
+            continue
+        options = source.upload_options(head, name, given.options)
+        probed = await studio.workers.probe(source, partial, options)
+        if isinstance(probed, Probed):
+            return Clip(
+                name=name,
+                size=size,
+                source=source.name,
+                media_type=source.media_type(head),
+                **_facts(name, options, probed),
+            )
+        # An archive of one kind may turn out to be one of another kind.
+        if probed.code != UNSUPPORTED or source is candidates[-1]:
+            raise _refusal(probed, name)
+    if given.topic is not None:
         raise ProblemError(
             422, "topic_unusable", f"{name} is no dive recording and has no topics; leave it out"
         )
-    if ending is not None:
-        return await _examined_keypoints(partial, studio, name, size, ending, told)
-    return await _examined_video(partial, studio, name, size, video_type(head))
+    raise ProblemError(415, UNSUPPORTED, f"{name} is {supported_kinds()}")
 
 
-async def _examined_video(
-    partial: Path, studio: Studio, name: str, size: int, media_type: str | None
-) -> Clip:
-    if media_type is None:
-        raise ProblemError(
-            415,
-            "unsupported_media_type",
-            f"{name} is neither a video, a dive recording nor a keypoint file this app knows, "
-            "whatever its name says; send MP4, MOV, WebM, MKV, AVI, MPEG-TS, a rosbag2 (MCAP, "
-            "sqlite3, zip), or keypoints (CSV, JSON, SLEAP, or OpenPose's folder as zip)",
-        )
-    probed = await studio.runner.probe(partial)
-    if isinstance(probed, Failed):
-        raise _refused(probed, name)
-    return _clip(name, size, media_type, probed)
+async def store(clip: Clip, partial: Path, studio: Studio, client: str) -> ClipAccepted:
+    """Store an inspected file as `clip`, queue its job, and publish the change.
+
+    The job of a dive recording whose topic nobody chose has failed already, for that reason.
+    """
+    added = await run_in_threadpool(studio.clips.add, clip, partial, client)
+    if not added.clip.needs_topic:
+        await studio.extractions.submit(added.job)
+    studio.broadcast.publish("clips", id=added.clip.id)
+    return ClipAccepted(id=added.clip.id, job_id=added.job.id)
 
 
-async def _examined_bag(
-    partial: Path, studio: Studio, name: str, size: int, topic: str | None
-) -> Clip | Failed:
-    """Look into a dive recording; an archive may turn out to hold none."""
-    probed = await studio.runner.probe_bag(partial)
-    if isinstance(probed, Failed):
-        if probed.code == "unsupported_media_type":
-            return probed
-        raise _refused(probed, name)
-    if topic is None and len(probed.topics) == 1:
-        topic = probed.topics[0].name
+def _facts(name: str, options: ReadOptions, probed: Probed) -> dict[str, Any]:
+    """Return what is stored of a clip that was probed."""
+    topic = options.topic
     named = {each.name: each for each in probed.topics}
+    if topic is None and len(named) == 1:
+        (topic,) = named
     if topic is not None and topic not in named:
         raise ProblemError(
             422,
@@ -124,57 +119,21 @@ async def _examined_bag(
             f"{name} has no topic {topic!r} that a clip can be made of; it has {', '.join(named)}",
             topics=[each.model_dump() for each in probed.topics],
         )
-    shown = named[topic] if topic is not None else probed.topics[0]
-    clip = _clip(name, size, MADE_VIDEO, shown)
-    clip.topics = json.dumps([each.model_dump() for each in probed.topics])
-    clip.topic = topic
-    return clip
+    shown = probed if topic is None else named[topic]
+    kept = options.model_dump_json(exclude_defaults=True, exclude={"topic"})
+    return {
+        "width": shown.width,
+        "height": shown.height,
+        "duration": shown.duration,
+        "frames": shown.frames,
+        "topics": json.dumps([each.model_dump() for each in probed.topics]),
+        "topic": topic,
+        "options": None if kept == "{}" else kept,
+    }
 
 
-async def _examined_keypoints(
-    partial: Path, studio: Studio, name: str, size: int, ending: Ending, fields: UploadFields
-) -> Clip:
-    told = KeypointSource(
-        ending=ending,
-        frame_rate=fields.keypoints.frame_rate,
-        frame_size=fields.keypoints.frame_size,
-    )
-    probed = await studio.runner.probe_keypoints(partial, told)
-    if isinstance(probed, Failed):
-        raise _refused(probed, name)
-    clip = _clip(name, size, MADE_VIDEO, probed)
-    clip.keypoints = told.model_dump_json()
-    return clip
-
-
-def _clip(
-    name: str, size: int, media_type: str, seen: Probed | TopicSeen | KeypointsProbed
-) -> Clip:
-    return Clip(
-        name=name,
-        media_type=media_type,
-        size=size,
-        width=seen.width,
-        height=seen.height,
-        duration=seen.duration,
-        frames=seen.frames,
-    )
-
-
-async def take_in(clip: Clip, partial: Path, studio: Studio, client: str) -> ClipAccepted:
-    """Store an examined file as `clip`, queue its job, and tell the open pages.
-
-    The job of a dive recording whose topic nobody chose has failed already, for that reason.
-    """
-    added = await run_in_threadpool(studio.clips.add, clip, partial, client)
-    if not added.clip.needs_topic:
-        await studio.runner.submit(added.job)
-    studio.broadcast.publish("clips", id=added.clip.id)
-    return ClipAccepted(id=added.clip.id, job_id=added.job.id)
-
-
-def _refused(probed: Failed, name: str) -> ProblemError:
-    status = 415 if probed.code == "unsupported_media_type" else 422
+def _refusal(probed: Failed, name: str) -> ProblemError:
+    status = 415 if probed.code == UNSUPPORTED else 422
     return ProblemError(status, probed.code, f"{name}: {probed.detail}")
 
 

@@ -1,4 +1,4 @@
-"""The order of waiting jobs: in turn between clients, first come first served within each."""
+"""Fair queue: round robin between clients, first in first out within each."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections import OrderedDict, deque
 
 
 class FairQueue:
-    """Waiting jobs by client; one that queues a hundred does not keep the others waiting."""
+    """Ids of waiting jobs by client; a client that queues a hundred does not hold up the others."""
 
     def __init__(self) -> None:
         self._waiting: OrderedDict[str, deque[str]] = OrderedDict()

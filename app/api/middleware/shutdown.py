@@ -105,7 +105,7 @@ class StudioServer(uvicorn.Server):
         """Stop what can be stopped, answer what cannot, and close."""
         studio: Studio | None = getattr(self._app.state, "studio", None)
         if studio is not None:
-            studio.stop_soon()
+            await studio.stop_soon()
         requests: OpenRequests = self._app.state.requests
         await requests.end()
         await asyncio.sleep(FLUSH_SECONDS)

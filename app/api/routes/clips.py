@@ -1,4 +1,4 @@
-"""Clips: upload, look at, extract, delete and restore."""
+"""Routes of clips: upload, read, extract again, delete, restore."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from app.api.http.images import sent_picture
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, listing
 from app.api.http.problems import ProblemError, documented
 from app.api.http.ranges import keep_single_range
-from app.api.http.schemas import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
+from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
 from app.api.ingest.fields import UploadFields
-from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import receive_file
+from app.api.services.clip_views import view_clip
 from app.api.services.context import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.segmentation import takes_in
-from app.store import ClipStore, ClipWithJob, JobStatus
+from app.store import ClipStore, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -88,11 +89,11 @@ async def upload_clip(
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings)
-        clip = await examined(
+        clip = await inspect(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         clip.idempotency_key = idempotency_key
-        return await take_in(clip, partial, studio, client_of(request))
+        return await store(clip, partial, studio, client_of(request))
     finally:
         partial.unlink(missing_ok=True)
 
@@ -106,7 +107,7 @@ def list_clips(studio: CurrentStudio, known: KnownTags) -> Response:
 @router.get("/{clip_id}", responses=documented(404))
 def get_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
     """Describe one clip."""
-    return clip_view(studio.clips.get(clip_id))
+    return view_clip(studio.clips.get(clip_id))
 
 
 @router.delete("/{clip_id}", status_code=204, responses=documented(404))
@@ -114,7 +115,7 @@ async def delete_clip(clip_id: str, studio: CurrentStudio) -> Response:
     """Delete a clip and end its job. For a while it can be restored."""
     found = await run_in_threadpool(studio.clips.get, clip_id)
     await run_in_threadpool(studio.clips.delete, clip_id)
-    await studio.runner.cancel(found.job)
+    await studio.extractions.cancel(found.job)
     studio.broadcast.publish("clips", id=clip_id)
     return Response(status_code=204)
 
@@ -124,7 +125,7 @@ def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
     """Bring a deleted clip back."""
     studio.clips.restore(clip_id)
     studio.broadcast.publish("clips", id=clip_id)
-    return clip_view(studio.clips.get(clip_id))
+    return view_clip(studio.clips.get(clip_id))
 
 
 @router.post("/{clip_id}/jobs", status_code=202, responses=documented(404, 409, 429))
@@ -160,7 +161,7 @@ async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAc
     if job is None:
         detail = "the poses of this clip are extracted, or are being extracted, already"
         raise ProblemError(409, "job_not_needed", detail)
-    await studio.runner.submit(job)
+    await studio.extractions.submit(job)
     studio.broadcast.publish("clips", id=clip_id)
     return ClipAccepted(id=clip_id, job_id=job.id)
 
@@ -232,23 +233,8 @@ def get_takes(clip_id: str, studio: CurrentStudio) -> list[TakeView]:
     ]
 
 
-def clip_view(found: ClipWithJob) -> ClipView:
-    """Return what to tell about a clip."""
-    clip, job = found.clip, found.job
-    return ClipView(
-        **clip.model_dump(exclude={"idempotency_key", "deleted", "topics", "keypoints"}),
-        shows_pictures=clip.shows_pictures,
-        topics=json.loads(clip.topics),
-        status=JobStatus(job.status),
-        error=job.error,
-        error_code=job.error_code,
-        warnings=json.loads(job.warnings),
-        job_id=job.id,
-    )
-
-
 def _views(clips: ClipStore) -> list[ClipView]:
-    return [clip_view(found) for found in clips.all()]
+    return [view_clip(found) for found in clips.all()]
 
 
 _listed = listing(_views, TypeAdapter(list[ClipView]))

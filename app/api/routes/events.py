@@ -1,4 +1,4 @@
-"""What changed, told to every open page: one stream for everything."""
+"""Route of the event stream: server-sent events about every change, one stream per page."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from fastapi import APIRouter
 from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.events.broadcast import News
+from app.api.events.broadcast import Event
 from app.api.http.problems import documented
-from app.api.routes.jobs import EVENT_STREAM, job_view
+from app.api.routes.jobs import EVENT_STREAM, view_job
 from app.api.services.context import CurrentStudio, Studio
 from app.store import NotFound
 
@@ -24,27 +24,27 @@ async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
     """Stream what changes, as server-sent events.
 
     `clips`, `languages` and `recognitions` carry the `id` to load again, `jobs` the whole job,
-    `checks` how far the check of a language is.
+    `checks` how far the check of a language is, `exports` how far a session's file is.
     One stream for all, because browsers open only six connections to a server.
     """
     return EventSourceResponse(_change_events(studio))
 
 
 async def _change_events(studio: Studio) -> AsyncIterator[ServerSentEvent]:
-    with studio.broadcast.listening() as listener:
+    with studio.broadcast.subscribe() as events:
         yield ServerSentEvent(comment="listening", retry=1000)
-        async for news in listener:
-            content = await _content(studio, news)
-            yield ServerSentEvent(data=json.dumps(content), event=news.kind)
+        async for event in events:
+            content = await _content(studio, event)
+            yield ServerSentEvent(data=json.dumps(content), event=event.kind)
 
 
-async def _content(studio: Studio, news: News) -> dict[str, Any]:
-    if news.kind != "jobs":
-        return news.data
+async def _content(studio: Studio, event: Event) -> dict[str, Any]:
+    if event.kind != "jobs":
+        return event.data
     try:
-        job = await run_in_threadpool(studio.jobs.get, news.data["id"])
+        job = await run_in_threadpool(studio.jobs.get, event.data["id"])
     except NotFound:
-        return news.data
-    view = job_view(job, studio.runner.progress(job.id))
+        return event.data
+    view = view_job(job, studio.runner.progress(job.id))
     content: dict[str, Any] = view.model_dump(mode="json")
     return content

@@ -8,8 +8,9 @@ from functools import partial
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, documented
-from app.api.http.schemas import GestureChange, GestureDraft, LanguageView
-from app.api.routes.languages import ExpectedRevision, Revision, announced
+from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.schemas.gestures import GestureChange, GestureDraft
+from app.api.http.schemas.languages import LanguageView
 from app.api.services.context import CurrentStudio
 from app.api.services.demonstration_sources import remember
 from app.api.services.gesture_edits import (
@@ -20,6 +21,7 @@ from app.api.services.gesture_edits import (
     with_change,
 )
 from app.api.services.language_documents import editing
+from app.api.services.language_views import announce
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.features.png import encode_png
 
@@ -53,7 +55,7 @@ def add_gesture(
     edit = editing(f"Add {gesture.label}", edited)
     state = studio.languages.edit(language_id, edit, expected)
     remember(studio, state, gesture.label, draft, demonstration)
-    return announced(studio, state, response)
+    return announce(studio, state, response)
 
 
 @router.patch("/{label:path}", responses=documented(404, 409, 412))
@@ -75,7 +77,7 @@ def change_gesture(
     if change.demonstration is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
         remember(studio, state, now, change.demonstration, demonstration)
-    return announced(studio, state, response)
+    return announce(studio, state, response)
 
 
 @router.delete("/{label:path}", responses=documented(404, 409, 412))
@@ -96,7 +98,7 @@ def remove_gesture(
             raise ProblemError(409, "gesture_needed", str(error)) from error
 
     edit = editing(f"Remove {label}", edited)
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
 @router.get(

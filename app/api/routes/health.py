@@ -6,7 +6,7 @@ from fastapi import APIRouter
 
 from app import __version__
 from app.api.http.problems import documented
-from app.api.http.schemas import Health
+from app.api.http.schemas.health import Health
 from app.recognition.models import installed_models
 
 router = APIRouter(tags=["health"])

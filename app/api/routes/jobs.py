@@ -1,4 +1,4 @@
-"""Jobs: how far they are, live, and cancelling them."""
+"""Routes of extraction jobs: state, live progress, cancel."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from fastapi import APIRouter, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.runner import Progress
 from app.api.http.problems import documented
-from app.api.http.schemas import JobView
+from app.api.http.schemas.jobs import JobView
+from app.api.jobs.job import Progress
 from app.api.services.context import CurrentStudio, Studio
 from app.store import Job, JobStatus, NotFound
 
@@ -32,7 +32,7 @@ router = APIRouter(prefix="/jobs", tags=["jobs"])
 @router.get("/{job_id}", responses=documented(404))
 def get_job(job_id: str, studio: CurrentStudio) -> JobView:
     """Tell how far a job is."""
-    return job_view(studio.jobs.get(job_id), studio.runner.progress(job_id))
+    return view_job(studio.jobs.get(job_id), studio.runner.progress(job_id))
 
 
 @router.get(
@@ -53,12 +53,12 @@ async def follow_job(request: Request, job_id: str, studio: CurrentStudio) -> Re
 async def cancel_job(job_id: str, studio: CurrentStudio) -> JobView:
     """Cancel a job that waits or runs; one that is over stays as it is."""
     job = await run_in_threadpool(studio.jobs.get, job_id)
-    await studio.runner.cancel(job)
-    return job_view(await run_in_threadpool(studio.jobs.get, job_id), None)
+    await studio.extractions.cancel(job)
+    return view_job(await run_in_threadpool(studio.jobs.get, job_id), None)
 
 
-def job_view(job: Job, progress: Progress | None) -> JobView:
-    """Return what to tell about a job."""
+def view_job(job: Job, progress: Progress | None) -> JobView:
+    """Return a stored job with its progress."""
     status = JobStatus(job.status)
     frames = job.frames or 0
     over = Progress(status.value, done=frames, total=frames)
@@ -77,13 +77,13 @@ def job_view(job: Job, progress: Progress | None) -> JobView:
 
 
 async def _progress_events(studio: Studio, job_id: str) -> AsyncIterator[ServerSentEvent]:
-    with studio.broadcast.listening() as listener:
+    with studio.broadcast.subscribe() as events:
         view = await _current(studio, job_id)
         yield _event(view)
         if view is None or view.status.final:
             return
-        async for news in listener:
-            if news.kind != "jobs" or news.data["id"] != job_id:
+        async for event in events:
+            if event.kind != "jobs" or event.data["id"] != job_id:
                 continue
             view = await _current(studio, job_id)
             yield _event(view)
@@ -97,7 +97,7 @@ async def _current(studio: Studio, job_id: str) -> JobView | None:
         job = await run_in_threadpool(studio.jobs.get, job_id)
     except NotFound:
         return None
-    return job_view(job, studio.runner.progress(job_id))
+    return view_job(job, studio.runner.progress(job_id))
 
 
 def _event(view: JobView | None) -> ServerSentEvent:

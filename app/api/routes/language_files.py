@@ -11,10 +11,12 @@ from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import documented
-from app.api.http.schemas import LanguageView, Name
-from app.api.routes.languages import Revision, announced, tag_of
+from app.api.http.revisions import Revision, revision_tag
+from app.api.http.schemas.languages import LanguageView
+from app.api.http.schemas.values import Name
 from app.api.services.context import CurrentStudio, Studio
 from app.api.services.language_documents import draft_of
+from app.api.services.language_views import announce
 from app.recognition import Language
 from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
@@ -98,7 +100,7 @@ def export_language(
     )
     headers = {
         "Content-Disposition": f"attachment; filename=\"{plain}\"; filename*=utf-8''{name}",
-        "ETag": tag_of(state),
+        "ETag": revision_tag(state.revision.revision),
     }
     return Response(document, media_type=format.media_type, headers=headers)
 
@@ -164,4 +166,4 @@ def _imported(studio: Studio, content: bytes, name: str, response: Response) -> 
     else:
         language, change = Language.from_json(content), "Import"
     state = studio.languages.create(draft_of(language, change), language.revision)
-    return announced(studio, state, response)
+    return announce(studio, state, response)

@@ -1,4 +1,4 @@
-"""A clip and all that was recognised in it as MCAP, for tools that know nothing of us."""
+"""Route of the session export: a clip and its recognitions as one MCAP file."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.mcap_request import RecognitionWish, SessionWishes
 from app.api.extraction.messages import Failed
+from app.api.extraction.session_request import SessionRecognition, SessionRequest
 from app.api.http.problems import ProblemError, documented
+from app.api.jobs.extraction import files_of
+from app.api.jobs.job import JobCancelled
+from app.api.jobs.session_export import SessionExportJob
+from app.api.middleware.shutdown import stopping
 from app.api.services.context import CurrentStudio, Studio
 
 MEDIA_TYPE = "application/octet-stream"
@@ -38,17 +42,23 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
 
     Its messages are JSON with their schemas beside them, in Foxglove's own terms where it has some.
     """
-    name, wishes = await run_in_threadpool(_wishes, studio, clip_id)
+    request = await run_in_threadpool(_request, studio, clip_id)
     # The name of a file that is still being written: what a crash leaves is swept at the start.
     target = studio.clips.new_partial()
     try:
-        ended = await studio.runner.write_session(clip_id, wishes, target)
+        files = files_of(studio.clips, clip_id)
+        ended = await studio.runner.run(
+            SessionExportJob(clip_id, request, target, files, studio.workers)
+        )
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the session cannot be written: {ended.detail}")
+    except JobCancelled as error:
+        target.unlink(missing_ok=True)
+        raise stopping() from error
     except BaseException:
         target.unlink(missing_ok=True)
         raise
-    shown = quote(f"{Path(name).stem}.mcap", safe="")
+    shown = quote(f"{Path(request.clip).stem}.mcap", safe="")
     disposition = f"attachment; filename=\"session.mcap\"; filename*=utf-8''{shown}"
     return FileResponse(
         target,
@@ -58,14 +68,14 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
     )
 
 
-def _wishes(studio: Studio, clip_id: str) -> tuple[str, bytes]:
-    """Return the clip's name, and what is to be in its session."""
+def _request(studio: Studio, clip_id: str) -> SessionRequest:
+    """Collect the content of a clip's session."""
     studio.recording(clip_id)  # raises while its poses are not found
     clip = studio.clips.get(clip_id).clip
-    wishes = SessionWishes(
+    return SessionRequest(
         clip=clip.name,
         recognitions=[
-            RecognitionWish(
+            SessionRecognition(
                 start=record.start,
                 end=record.end,
                 language=studio.languages.get(record.language_id, record.revision).revision.name,
@@ -76,4 +86,3 @@ def _wishes(studio: Studio, clip_id: str) -> tuple[str, bytes]:
             for record in studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
         ],
     )
-    return clip.name, wishes.model_dump_json().encode()

@@ -9,8 +9,8 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, documented
-from app.api.http.schemas import Label
-from app.api.routes.languages import Revision
+from app.api.http.revisions import Revision
+from app.api.http.schemas.values import Label
 from app.api.services.context import CurrentStudio
 from app.recognition.explanation.pair_difference import Contrast, contrast
 from app.recognition.gestures.gesture import Gesture

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import documented
-from app.api.routes.languages import Revision
+from app.api.http.revisions import Revision
 from app.api.services.context import CurrentStudio
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH

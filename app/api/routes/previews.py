@@ -11,8 +11,10 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import Fault, ProblemError, documented
-from app.api.http.schemas import Body, GestureChange, Label, PosesView, SwitchPosition
-from app.api.routes.languages import Revision
+from app.api.http.revisions import Revision
+from app.api.http.schemas.clips import PosesView
+from app.api.http.schemas.gestures import GestureChange, SwitchPosition
+from app.api.http.schemas.values import Body, Label
 from app.api.services.clip_ranges import Demonstration
 from app.api.services.context import CurrentStudio, Studio
 from app.api.services.gesture_edits import demonstration_at, gesture_in, switched, with_change

@@ -1,4 +1,4 @@
-"""Recognitions: asked for, answered in full, and kept."""
+"""Routes of recognitions: recognise, list, read, explain."""
 
 from __future__ import annotations
 
@@ -9,13 +9,10 @@ import numpy as np
 from fastapi import APIRouter, Query, Response
 
 from app.api.http.problems import ProblemError, documented
-from app.api.http.schemas import (
-    ExplanationView,
-    Label,
-    RecognitionRequest,
-    RecognitionView,
-)
+from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
+from app.api.http.schemas.values import Label
 from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_views import shows_pictures
 from app.api.services.context import CurrentStudio
 from app.api.services.stored_recognitions import (
     load_situation,
@@ -114,6 +111,6 @@ def require_given(clip: Clip, poses: PoseSequence, language: Language) -> None:
         Naming the landmark, and the gesture that follows it.
 
     """
-    if not clip.shows_pictures:
+    if not shows_pictures(clip):
         given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
         require_landmarks(language, given, clip.name)

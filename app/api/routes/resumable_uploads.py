@@ -19,7 +19,7 @@ from starlette.requests import ClientDisconnect
 
 from app.api.http.problems import ProblemError, documented
 from app.api.ingest.fields import LONGEST, UploadFields
-from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import paced, require_space, shown_name
 from app.api.middleware.body_limit import too_large
 from app.api.services.context import CurrentStudio, Studio
@@ -181,7 +181,7 @@ async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[st
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
         if clip is None:
             try:
-                made = await examined(
+                made = await inspect(
                     upload.path,
                     studio,
                     name=upload.name,
@@ -189,7 +189,7 @@ async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[st
                     fields=UploadFields.read(upload.fields),
                 )
                 made.idempotency_key = upload.id
-                await take_in(made, upload.path, studio, client_of(request))
+                await store(made, upload.path, studio, client_of(request))
             finally:
                 await run_in_threadpool(studio.uploads.remove, upload.id)
             clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)

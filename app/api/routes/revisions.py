@@ -7,18 +7,19 @@ import json
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import documented
-from app.api.http.schemas import (
+from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.schemas.gestures import GestureView
+from app.api.http.schemas.languages import (
     GestureComparison,
-    GestureView,
     LanguageRevert,
     LanguageView,
     RevisionComparison,
     RevisionView,
 )
-from app.api.routes.languages import ExpectedRevision, Revision, announced, gesture_view
 from app.api.services.context import CurrentStudio
 from app.api.services.language_diff import compared, language_words
 from app.api.services.language_documents import editing
+from app.api.services.language_views import announce, view_gesture
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
@@ -42,7 +43,7 @@ def revert_language(
     """Make a new revision that says what an older one said."""
     older = studio.language(studio.languages.get(language_id, to.revision))
     edit = editing(f"Go back to revision {to.revision}", lambda _newest: older)
-    return announced(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
 @router.get("/comparison", responses=documented(404))
@@ -71,7 +72,7 @@ def compare_revisions(
 
 
 def _view(state: LanguageState | None, gesture: Gesture | None) -> GestureView | None:
-    return None if state is None or gesture is None else gesture_view(state, gesture)
+    return None if state is None or gesture is None else view_gesture(state, gesture)
 
 
 def _revision_view(row: LanguageRevision) -> RevisionView:

@@ -1,4 +1,4 @@
-"""The clips that come with the program, to try it without one's own."""
+"""Routes of the sample clips that come with the program."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError, documented
-from app.api.http.schemas import ClipAccepted, SampleChoice, SampleView
-from app.api.ingest.intake import client_of, examined, require_place_in_queue, take_in
+from app.api.http.schemas.clips import ClipAccepted
+from app.api.http.schemas.samples import SampleChoice, SampleView
+from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import shown_name
 from app.api.services.context import CurrentStudio
 
@@ -35,7 +36,7 @@ async def import_sample(
     partial = studio.clips.new_partial()
     try:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
-        clip = await examined(partial, studio, name=shown_name(sample.name), size=sample.size)
-        return await take_in(clip, partial, studio, client_of(request))
+        clip = await inspect(partial, studio, name=shown_name(sample.name), size=sample.size)
+        return await store(clip, partial, studio, client_of(request))
     finally:
         partial.unlink(missing_ok=True)

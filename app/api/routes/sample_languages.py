@@ -5,9 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, documented
-from app.api.http.schemas import LanguageView, SampleChoice, SampleLanguageView
-from app.api.routes.languages import announced
+from app.api.http.schemas.languages import LanguageView
+from app.api.http.schemas.samples import SampleChoice, SampleLanguageView
 from app.api.services.context import CurrentStudio
+from app.api.services.language_views import announce
 
 router = APIRouter(prefix="/samples/languages", tags=["samples"])
 
@@ -29,4 +30,4 @@ def add_sample_language(
     language = studio.samples.languages().get(chosen.name)
     if language is None:
         raise ProblemError(404, "not_found", f"there is no sample language {chosen.name!r}")
-    return announced(studio, studio.samples.add(chosen.name, language, studio.languages), response)
+    return announce(studio, studio.samples.add(chosen.name, language, studio.languages), response)

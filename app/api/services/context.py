@@ -1,4 +1,4 @@
-"""What all requests of one running server share: the store, the workers, the news."""
+"""Shared state of one running server: the store, the job runner, the event streams."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from app.api.events.broadcast import Broadcast
-from app.api.extraction.runner import ExtractionRunner
+from app.api.extraction.workers import Workers
 from app.api.http.problems import ProblemError
+from app.api.jobs.extraction_queue import ExtractionQueue
+from app.api.jobs.runner import JobRunner
 from app.api.services.sample_library import Samples
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
@@ -55,14 +57,18 @@ class Studio:
         How it was started.
     clips, uploads, jobs, languages, sources, recognitions
         The store.
+    workers
+        Starts processes that read clips.
     runner
-        Extracts poses from clips.
+        Runs jobs of all kinds.
+    extractions
+        Queues the jobs that extract poses from clips.
     broadcast
-        Tells the open pages what changed.
+        Publishes changes to the open pages.
     samples
-        The languages and clips we bring.
+        The languages and clips that come with the program.
     stopping
-        Set when the server is about to stop: what takes long is given up.
+        Set when the server is about to stop.
 
     """
 
@@ -73,14 +79,17 @@ class Studio:
     languages: LanguageStore
     sources: SourceStore
     recognitions: RecognitionStore
-    runner: ExtractionRunner
+    workers: Workers
+    runner: JobRunner
+    extractions: ExtractionQueue
     broadcast: Broadcast
     samples: Samples
     stopping: Event = field(default_factory=Event)
 
-    def stop_soon(self) -> None:
-        """Give up what takes long, and end the event streams."""
+    async def stop_soon(self) -> None:
+        """Cancel the jobs that somebody waits for, and end the event streams."""
         self.stopping.set()
+        await self.runner.stop()
         self.broadcast.close()
 
     def recording(self, clip_id: str) -> Recording:
@@ -139,7 +148,7 @@ def _recognizer(document: str, profile: str | None) -> Recognizer:
 
 @asynccontextmanager
 async def running_studio(settings: Settings) -> AsyncIterator[Studio]:
-    """Open the store, bring it in order, start the workers; stop them at the end.
+    """Open and migrate the store, start the jobs; stop them at the end.
 
     Raises
     ------
@@ -168,6 +177,7 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
     clips = ClipStore(database, settings.data_dir / "clips")
     jobs, languages = JobStore(database), LanguageStore(database)
     broadcast = Broadcast()
+    workers, runner = Workers(settings), JobRunner(broadcast)
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -176,22 +186,27 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
         languages=languages,
         sources=SourceStore(database),
         recognitions=RecognitionStore(database),
-        runner=ExtractionRunner(settings, clips, jobs, broadcast),
+        workers=workers,
+        runner=runner,
+        extractions=ExtractionQueue(
+            runner, clips, jobs, workers, broadcast, count=settings.workers
+        ),
         broadcast=broadcast,
         samples=Samples(settings.samples_dir),
     )
     try:
-        await run_in_threadpool(_bring_in_order, studio, database)
-        await studio.runner.start()
+        await run_in_threadpool(_prepare, studio, database)
+        await studio.extractions.start()
         yield studio
     finally:
         broadcast.close()
         await studio.runner.stop()
+        await studio.extractions.stop()
         database.close()
 
 
-def _bring_in_order(studio: Studio, database: Database) -> None:
-    """Migrate, remove what crashes left and what was deleted long ago, bring the samples."""
+def _prepare(studio: Studio, database: Database) -> None:
+    """Migrate, remove leftovers of crashes and old deletions, add the samples."""
     database.migrate()
     before = now() - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(before) + studio.languages.purge(before)
@@ -207,4 +222,4 @@ def _studio_of(connection: HTTPConnection) -> Studio:
 
 
 CurrentStudio = Annotated[Studio, Depends(_studio_of)]
-"""A route's parameter of this type receives the running studio."""
+"""Type of a route's parameter that receives the running studio."""

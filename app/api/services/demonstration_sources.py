@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 
-from app.api.http.schemas import NewDemonstration, SourceView
+from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.clip_ranges import Demonstration
 from app.api.services.context import Studio
 from app.recognition import Gesture, Language

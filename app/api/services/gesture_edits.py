@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.api.http.problems import Fault, ProblemError
-from app.api.http.schemas import GestureChange, NewDemonstration, SwitchPosition
+from app.api.http.schemas.gestures import GestureChange, NewDemonstration, SwitchPosition
 from app.api.services.clip_ranges import Demonstration, demonstration_in
 from app.api.services.context import Studio
 from app.recognition import Gesture, GestureError, Language

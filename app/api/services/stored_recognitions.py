@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from app.api.http.schemas import RecognitionView
+from app.api.http.schemas.recognitions import RecognitionView
 from app.api.services.clip_ranges import demonstration_in, surroundings_in
 from app.api.services.context import Studio
 from app.recognition import Recognition, Recognizer

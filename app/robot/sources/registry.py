@@ -1,4 +1,4 @@
-"""A source by what the user calls it. A further kind of source is one more entry of `KINDS`."""
+"""Registry of a robot's sources: cameras, streams, and the files of `app.clip_sources`."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
-from app.bags import bag_and_topic, is_bag
-from app.recognition.recording.video import FrameReader
-from app.robot.sources.bag import open_bag
+from app.bags import bag_and_topic
+from app.clip_sources import VIDEO, ReadOptions, source_of
 from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
 from app.robot.sources.live import LiveSource
 from app.robot.sources.recorded import RecordedSource
@@ -49,24 +49,22 @@ def open_stream(address: str) -> Source:
     return LiveSource(without_password(address), partial(NetworkStream, address))
 
 
-def is_recording(text: str) -> bool:
-    """Tell whether a text names a dive recording, with or without its topic."""
-    return is_bag(bag_and_topic(text)[0])
-
-
-def open_clip(path: str) -> Source:
-    """Open a video file."""
-    reader = FrameReader(path)
-    return RecordedSource(path, reader, reader.close)
+def open_clip(text: str) -> Source:
+    """Open a video file, or a dive recording as ``BAG`` or ``BAG@/TOPIC``."""
+    path, topic = bag_and_topic(text)
+    if path.exists():
+        clip = source_of(path, topic).open_frames(path, ReadOptions(topic=topic))
+    else:
+        clip = VIDEO.open_frames(Path(text), ReadOptions())
+    return RecordedSource(text, clip.frames, clip.close)
 
 
 KINDS: tuple[SourceKind, ...] = (
     SourceKind(is_device, open_camera),
     SourceKind(is_address, open_stream),
-    SourceKind(is_recording, open_bag),
     SourceKind(lambda text: True, open_clip),
 )
-"""The first that accepts a text opens it. Clips come last: any other text is a file's path."""
+"""Kinds in the order in which they are tried; any other text is the path of a clip."""
 
 
 def open_source(text: str) -> Source:

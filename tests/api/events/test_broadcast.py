@@ -3,13 +3,13 @@
 import asyncio
 import threading
 
-from app.api.events.broadcast import MOST_UNREAD, Broadcast, News
+from app.api.events.broadcast import MOST_UNREAD, Broadcast, Event
 
 
 def test_every_listener_hears_news_from_any_thread() -> None:
-    async def listen() -> list[list[News]]:
+    async def listen() -> list[list[Event]]:
         broadcast = Broadcast()
-        with broadcast.listening() as one, broadcast.listening() as other:
+        with broadcast.subscribe() as one, broadcast.subscribe() as other:
             thread = threading.Thread(target=broadcast.publish, args=("clips",), kwargs={"id": "a"})
             thread.start()
             thread.join()
@@ -17,13 +17,13 @@ def test_every_listener_hears_news_from_any_thread() -> None:
             broadcast.close()
             return [[news async for news in listener] for listener in (one, other)]
 
-    assert asyncio.run(listen()) == [[News("clips", {"id": "a"})]] * 2
+    assert asyncio.run(listen()) == [[Event("clips", {"id": "a"})]] * 2
 
 
 def test_a_listener_that_does_not_read_keeps_the_newest() -> None:
     async def listen() -> list[int]:
         broadcast = Broadcast()
-        with broadcast.listening() as listener:
+        with broadcast.subscribe() as listener:
             for number in range(2 * MOST_UNREAD):
                 broadcast.publish("jobs", id=number)
             await asyncio.sleep(0)
@@ -36,10 +36,10 @@ def test_a_listener_that_does_not_read_keeps_the_newest() -> None:
 
 
 def test_who_comes_after_the_end_hears_nothing_and_waits_for_nothing() -> None:
-    async def listen() -> list[News]:
+    async def listen() -> list[Event]:
         broadcast = Broadcast()
         broadcast.close()
-        with broadcast.listening() as listener:
+        with broadcast.subscribe() as listener:
             return [news async for news in listener]
 
     assert asyncio.run(listen()) == []

@@ -8,7 +8,7 @@ from app.api.extraction.messages import Failed, Finished, Message, Probed, Progr
 @pytest.mark.parametrize(
     "message",
     [
-        Probed(width=64, height=48, duration=None, frames=3, rotation=90, codec="h264"),
+        Probed(width=64, height=48, duration=None, frames=3),
         Progressed(stage="saving", done=9, total=9),
         Progressed(stage="poses", done=1, total=9, time=0.04, pose=((0.5, -0.25), None)),
         Finished(frames=9, warnings=("no hand in any of 9 frames\n\u2028",)),

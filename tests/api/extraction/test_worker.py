@@ -25,15 +25,15 @@ def answers(*arguments: str | Path) -> list[dict[str, Any]]:
 
 
 def test_probing_tells_what_the_clip_is(tmp_path: Path) -> None:
-    (answer,) = answers("probe", write_clip(tmp_path / "clip.mp4", rotation=90))
+    (answer,) = answers("probe", "video", write_clip(tmp_path / "clip.mp4", rotation=90))
     assert answer["kind"] == "probed"
-    assert (answer["width"], answer["height"], answer["rotation"]) == (48, 64, 90)
+    assert (answer["width"], answer["height"]) == (48, 64)  # upright
 
 
 def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
     path = tmp_path / "0123.part"
     path.write_bytes(b"\0\0\0\x18ftypmp42")
-    (answer,) = answers("probe", path)
+    (answer,) = answers("probe", "video", path)
     assert (answer["kind"], answer["code"]) == ("failed", "video_unreadable")
     assert "0123" not in answer["detail"]
 
@@ -42,7 +42,7 @@ def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
 def test_extracting_reports_progress_and_leaves_recording_and_pictures(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=5)
     recording, poster = tmp_path / "recording.npz", tmp_path / "poster.jpg"
-    told = answers("extract", clip, recording, poster, tmp_path / "filmstrip.jpg")
+    told = answers("record", "video", clip, clip, recording, poster, tmp_path / "filmstrip.jpg")
     assert told[-1]["kind"] == "finished"
     assert told[-1]["frames"] == 5
     last = [answer for answer in told if answer.get("stage") == "poses"][-1]
@@ -70,7 +70,7 @@ def test_a_pose_is_told_as_fractions_of_the_picture() -> None:
 def test_a_worker_whose_server_is_gone_ends(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=2000)
     left = [str(tmp_path / name) for name in ("r.npz", "p.jpg", "f.jpg")]
-    command = [*COMMAND, "extract", str(clip), *left]
+    command = [*COMMAND, "record", "video", str(clip), str(clip), *left]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL) as process:
         assert process.stdin is not None
         process.stdin.close()

@@ -1,4 +1,4 @@
-"""What the server asks of the worker that writes a session."""
+"""Request for a session export: what the server passes to the worker that writes MCAP."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from app.bags.session_writer import NamedRecognition
 from app.recognition import Recognition
 
 
-class RecognitionWish(BaseModel):
-    """A recognition to write, with its result as `Recognition.to_dict` tells it."""
+class SessionRecognition(BaseModel):
+    """A recognition to write; `result` is `Recognition.to_dict`."""
 
     start: float
     end: float
@@ -32,8 +32,8 @@ class RecognitionWish(BaseModel):
         )
 
 
-class SessionWishes(BaseModel):
-    """All that is to be in a session, besides what was found in the clip."""
+class SessionRequest(BaseModel):
+    """The content of a session, besides the clip's own files."""
 
     clip: str
-    recognitions: list[RecognitionWish]
+    recognitions: list[SessionRecognition]

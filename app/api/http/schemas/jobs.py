@@ -1,0 +1,36 @@
+"""Schemas of jobs."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from pydantic import BaseModel, Field
+
+from app.api.extraction.messages import Pose
+from app.store import JobStatus
+
+
+class JobView(BaseModel):
+    """How far a job is."""
+
+    id: str
+    clip_id: str
+    status: JobStatus
+    stage: str = Field(description="queued, starting, poses, saving, or the final status")
+    done: int = Field(description="Frames")
+    total: int = Field(description="Frames; an estimate where the container does not count them")
+    eta_s: float | None = Field(description="Seconds left at the present rate")
+    time: float | None = Field(
+        description="Seconds after the clip's first frame, of the frame that `pose` was found in; "
+        "null in every stage but poses"
+    )
+    pose: Pose | None = Field(
+        description="The newest pose: of each of the 33 landmarks of the body (in the order of "
+        "`landmarks` in a clip's poses) x and y as fractions of the picture's width and height, "
+        "x right, y down; null: not seen. Null as a whole where nobody is in the frame"
+    )
+    error: str | None
+    error_code: str | None
+    created: datetime
+    started: datetime | None
+    finished: datetime | None

@@ -1,0 +1,79 @@
+"""Schemas of recognitions and explanations."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.recognition.language.schema import TuningEntry
+
+
+class RecognitionRequest(Body):
+    """What to recognise."""
+
+    clip_id: Identifier
+    language_id: Identifier
+    start: Seconds | None = None
+    end: Seconds | None = None
+    profile: Annotated[str, Field(max_length=32)] | None = Field(
+        default=None, description="Null: the language's own"
+    )
+    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
+    expected: Label | None = None
+
+
+class RecognitionView(BaseModel):
+    """The full answer of a recognition, kept as a record."""
+
+    model_config = ConfigDict(extra="allow")
+
+    id: str
+    clip_id: str
+    language_id: str
+    revision: int
+    start: float
+    end: float
+    profile: str
+    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
+    expected: str | None
+    created: datetime
+    label: str | None = Field(description="None when rejected")
+    nearest: str | None = Field(description="The best label even when rejected")
+    confidence: float
+    voters: list[str]
+    gestures: list[str]
+    distances: list[list[float | None]] = Field(
+        description="Voters x gestures, smaller: more alike"
+    )
+    votes: dict[str, str | None] = Field(description="Each voter's nearest gesture")
+    weights: dict[str, float] = Field(
+        default_factory=dict, description="Each voter's share in the decision; 0: has no say"
+    )
+    findings: list[str] = Field(default_factory=list, description="What was repaired, in sentences")
+    fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
+
+
+class ExplanationView(BaseModel):
+    """Why a recognition came out as it did."""
+
+    model_config = ConfigDict(extra="allow")
+
+    id: str = Field(description="The recognition's")
+    profile: str
+    expected: str
+    label: str | None
+    nearest: str
+    right: bool
+    confidence: float
+    other: str | None = Field(description="The gesture that the expected one is held against")
+    margin: float | None = Field(description="Score of the other minus that of the expected")
+    sentence: str
+    votes: dict[str, int]
+    verdicts: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
+    alignments: list[dict[str, Any]]
+    differences: list[dict[str, Any]]
+    counterfactuals: list[dict[str, Any]] = Field(description="Verified, the smallest first")
+    tried: int

@@ -1,0 +1,27 @@
+"""Values of several schemas: labels, names, seconds."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
+from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+
+MOST_SECONDS = 24 * 60 * 60
+"""No clip is a day long; beyond it a number of seconds is a mistake."""
+
+Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_LENGTH, pattern=r"\S")]
+Author = Annotated[str, Field(max_length=MAX_AUTHOR_LENGTH)]
+Label = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH, pattern=r"\S")]
+Seconds = Annotated[float, Field(ge=0, le=MOST_SECONDS, allow_inf_nan=False)]
+Identifier = Annotated[str, Field(min_length=1, max_length=64)]
+Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]
+Command = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | dict[str, Any] | None
+
+
+class Body(BaseModel):
+    """Base of request bodies: unknown members are mistakes, and are said to be."""
+
+    model_config = ConfigDict(extra="forbid")

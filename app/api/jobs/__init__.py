@@ -1,0 +1,5 @@
+"""Jobs: work that takes long, with progress and cancel; one module per kind.
+
+A further kind is one more class with the members of `job.Job`; a route awaits it with
+`studio.runner.run`.
+"""

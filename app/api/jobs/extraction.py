@@ -1,0 +1,112 @@
+"""Extraction job: finds the poses of one clip in a worker process; kept in the database."""
+
+from __future__ import annotations
+
+import time
+from contextlib import aclosing
+from typing import Literal
+
+from starlette.concurrency import run_in_threadpool
+
+from app.api.events.broadcast import Event
+from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.messages import Failed, Finished, Progressed
+from app.api.extraction.workers import Workers
+from app.api.jobs.job import Progress, Report
+from app.clip_sources import ReadOptions, source_named
+from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound
+
+
+class ExtractionJob:
+    """Runs a job of the store, and writes its end there.
+
+    Parameters
+    ----------
+    job
+        The stored job, already marked as running.
+    clips, jobs
+        The store.
+    workers
+        Starts the process.
+
+    """
+
+    resumable: Literal[True] = True
+
+    def __init__(self, job: Job, clips: ClipStore, jobs: JobStore, workers: Workers) -> None:
+        self._job = job
+        self._clips = clips
+        self._jobs = jobs
+        self._workers = workers
+
+    @property
+    def key(self) -> str:
+        """Id of the stored job."""
+        return self._job.id
+
+    def event(self, progress: Progress) -> Event:
+        """Return the event of a job, to which the stream adds how far it is."""
+        return job_event(self._job)
+
+    async def run(self, report: Report) -> None:
+        """Extract the clip, unless it was cancelled or deleted meanwhile."""
+        if not await run_in_threadpool(self._jobs.is_running, self._job.id):
+            return
+        report(Progress("starting"))
+        try:
+            clip = (await run_in_threadpool(self._clips.get, self._job.clip_id)).clip
+        except NotFound:
+            return
+        messages = self._workers.record(
+            source_named(clip.source),
+            self._clips.received(clip),
+            options_of(clip),
+            files_of(self._clips, clip.id),
+        )
+        started: float | None = None
+        async with aclosing(messages) as steps:
+            async for message in steps:
+                match message:
+                    case Progressed():
+                        started = started or time.monotonic()
+                        report(_with_eta(message, time.monotonic() - started))
+                    case Finished(frames=frames, warnings=warnings):
+                        await run_in_threadpool(self._jobs.complete, self._job.id, frames, warnings)
+                    case Failed(code=code, detail=detail):
+                        await run_in_threadpool(
+                            self._jobs.finish,
+                            self._job.id,
+                            JobStatus.FAILED,
+                            code=code,
+                            error=detail,
+                        )
+
+
+def job_event(job: Job) -> Event:
+    """Return the event that tells of a stored job."""
+    return Event("jobs", {"id": job.id, "clip_id": job.clip_id})
+
+
+def options_of(clip: Clip) -> ReadOptions:
+    """Return how the file of a stored clip is read."""
+    options = ReadOptions()
+    if clip.options is not None:
+        options = ReadOptions.model_validate_json(clip.options)
+    return options.model_copy(update={"topic": clip.topic})
+
+
+def files_of(clips: ClipStore, clip_id: str) -> ClipFiles:
+    """Return where the parts of a clip are stored."""
+    return ClipFiles(
+        clips.video(clip_id),
+        clips.recording(clip_id),
+        clips.poster(clip_id),
+        clips.filmstrip(clip_id),
+    )
+
+
+def _with_eta(message: Progressed, elapsed: float) -> Progress:
+    """Add the time left, from the rate so far; `elapsed` seconds since the first report."""
+    left = message.total - message.done
+    eta = round(elapsed / message.done * left, 1) if message.done and elapsed > 0 else None
+    return Progress(message.stage, message.done, message.total, eta, message.time, message.pose)

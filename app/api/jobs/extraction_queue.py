@@ -1,0 +1,118 @@
+"""Extraction queue: runs the stored jobs a few at a time, in turn between clients."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from contextlib import suppress
+
+from starlette.concurrency import run_in_threadpool
+
+from app.api.events.broadcast import Broadcast
+from app.api.extraction.workers import Workers
+from app.api.jobs.extraction import ExtractionJob, job_event
+from app.api.jobs.job import JobCancelled
+from app.api.jobs.queue import FairQueue
+from app.api.jobs.runner import JobRunner
+from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
+
+logger = logging.getLogger(__name__)
+
+
+class ExtractionQueue:
+    """Runs extraction jobs; those that are open when the server stops run at the next start.
+
+    Parameters
+    ----------
+    runner
+        Runs each job.
+    clips, jobs
+        The store.
+    workers
+        Starts the processes.
+    broadcast
+        Publishes every step as ``jobs``, and every end as ``clips``.
+    count
+        How many jobs run at the same time.
+
+    """
+
+    def __init__(
+        self,
+        runner: JobRunner,
+        clips: ClipStore,
+        jobs: JobStore,
+        workers: Workers,
+        broadcast: Broadcast,
+        count: int,
+    ) -> None:
+        self._runner = runner
+        self._clips = clips
+        self._jobs = jobs
+        self._workers = workers
+        self._broadcast = broadcast
+        self._count = count
+        self._waiting = FairQueue()
+        self._running: set[str] = set()
+        self._loops: list[asyncio.Task[None]] = []
+
+    async def start(self) -> None:
+        """Queue again what an earlier server left open, and begin to work."""
+        for job in await run_in_threadpool(self._jobs.resume):
+            await self._waiting.put(job.client, job.id)
+        self._loops = [asyncio.create_task(self._work()) for _ in range(self._count)]
+
+    async def stop(self) -> None:
+        """End the workers; their jobs are queued again for the next start."""
+        running = list(self._running)
+        for loop in self._loops:
+            loop.cancel()
+        await asyncio.gather(*self._loops, return_exceptions=True)
+        for job_id in running:
+            await self._runner.cancel(job_id)
+            await run_in_threadpool(self._jobs.requeue, job_id)
+
+    async def submit(self, job: Job) -> None:
+        """Let a job wait for its turn."""
+        await self._waiting.put(job.client, job.id)
+        self._broadcast.send(job_event(job))
+
+    async def cancel(self, job: Job) -> bool:
+        """End a job that waits or runs; return whether it did."""
+        cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
+        await self._runner.cancel(job.id)
+        if cancelled:
+            self._publish(job)
+        return cancelled
+
+    async def _work(self) -> None:
+        while True:
+            job_id = await self._waiting.get()
+            try:
+                if job := await run_in_threadpool(self._jobs.start, job_id):
+                    await self._run(job)
+            except Exception:
+                # One job's trouble, such as a full disk, must not end the loop for all others.
+                logger.exception("job %s could not be run", job_id)
+                await self._give_up(job_id)
+
+    async def _run(self, job: Job) -> None:
+        self._running.add(job.id)
+        try:
+            with suppress(JobCancelled):
+                await self._runner.run(ExtractionJob(job, self._clips, self._jobs, self._workers))
+        finally:
+            self._running.discard(job.id)
+        self._publish(job)
+
+    async def _give_up(self, job_id: str) -> None:
+        error = "the server could not keep what it found in this clip; try again"
+        # When not even that can be written, the next start runs the job again.
+        with suppress(StoreError):
+            await run_in_threadpool(
+                self._jobs.finish, job_id, JobStatus.FAILED, code="internal", error=error
+            )
+
+    def _publish(self, job: Job) -> None:
+        self._broadcast.send(job_event(job))
+        self._broadcast.publish("clips", id=job.clip_id)

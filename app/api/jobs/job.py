@@ -1,0 +1,79 @@
+"""Job protocol: work that takes long, reports its progress and can be cancelled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from app.api.events.broadcast import Event
+from app.api.extraction.messages import Pose
+
+Result = TypeVar("Result", covariant=True)
+
+
+class JobCancelled(Exception):
+    """Raised to everybody who waits for a job that was cancelled."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a running job is.
+
+    Attributes
+    ----------
+    stage
+        Of an extraction: ``starting``, ``poses`` or ``saving``; of others as they name it.
+    done, total
+        Frames or other pieces of work; `total` may be an estimate.
+    eta_s
+        Seconds still to go at the present rate, or None before there is one.
+    time
+        Of an extraction: seconds after the clip's first frame, of the newest frame whose landmarks
+        were found; None in the other stages.
+    pose
+        The body in that frame, or None where nobody is in it.
+
+    """
+
+    stage: str
+    done: int = 0
+    total: int = 0
+    eta_s: float | None = None
+    time: float | None = None
+    pose: Pose | None = None
+
+
+Report = Callable[[Progress], None]
+"""Takes the progress, from any thread; raises `JobCancelled` when the job is to end."""
+
+
+class Job(Protocol[Result]):
+    """One piece of work.
+
+    Attributes
+    ----------
+    key
+        Identity: whoever runs a job whose key is running already waits for that one.
+    resumable
+        Whether the next start of the server runs it again, so that stopping need not cancel it.
+
+    """
+
+    @property
+    def key(self) -> str:
+        """Identity among the running jobs."""
+        ...
+
+    @property
+    def resumable(self) -> bool:
+        """Whether the next start of the server runs it again."""
+        ...
+
+    def event(self, progress: Progress) -> Event:
+        """Return the event to publish about the progress."""
+        ...
+
+    async def run(self, report: Report) -> Result:
+        """Do the work; cancelling the task or an exception of `report` ends it."""
+        ...

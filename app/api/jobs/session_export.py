@@ -1,0 +1,76 @@
+"""Session export job: writes a clip and its recognitions as MCAP in a worker process."""
+
+from __future__ import annotations
+
+from contextlib import aclosing
+from pathlib import Path
+from typing import Literal
+
+from app.api.events.broadcast import Event
+from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.messages import Failed, Finished, Progressed
+from app.api.extraction.session_request import SessionRequest
+from app.api.extraction.workers import Workers
+from app.api.jobs.job import Progress, Report
+
+
+class SessionExportJob:
+    """Writes one session; every export is a job and a file of its own.
+
+    Parameters
+    ----------
+    clip_id
+        The clip, for the events.
+    request
+        The content of the session.
+    target
+        The file to write.
+    files
+        The parts of the clip.
+    workers
+        Starts the process.
+
+    """
+
+    resumable: Literal[False] = False
+
+    def __init__(
+        self,
+        clip_id: str,
+        request: SessionRequest,
+        target: Path,
+        files: ClipFiles,
+        workers: Workers,
+    ) -> None:
+        self._clip_id = clip_id
+        self._request = request
+        self._target = target
+        self._files = files
+        self._workers = workers
+
+    @property
+    def key(self) -> str:
+        """Name of the file."""
+        return f"session {self._target.name}"
+
+    def event(self, progress: Progress) -> Event:
+        """Return how far the export is."""
+        content = {
+            "id": self._clip_id,
+            "stage": progress.stage,
+            "done": progress.done,
+            "total": progress.total,
+        }
+        return Event("exports", content)
+
+    async def run(self, report: Report) -> Finished | Failed:
+        """Write the file, and return how that ended."""
+        request = self._request.model_dump_json().encode()
+        async with aclosing(
+            self._workers.write_session(request, self._target, self._files)
+        ) as steps:
+            async for step in steps:
+                if not isinstance(step, Progressed):
+                    return step
+                report(Progress(step.stage, step.done, step.total))
+        raise AssertionError("a worker's last message says how it ended")

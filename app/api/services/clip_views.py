@@ -1,0 +1,31 @@
+"""A stored clip as the API shows it."""
+
+from __future__ import annotations
+
+import json
+
+from app.api.http.schemas.clips import ClipView
+from app.clip_sources import source_named
+from app.store import Clip, ClipWithJob, JobStatus
+
+
+def shows_pictures(clip: Clip) -> bool:
+    """Tell whether the clip's video shows the diver; else it shows the keypoints that came."""
+    used = {topic["name"]: topic["use"] for topic in json.loads(clip.topics)}
+    return source_named(clip.source).has_pictures and used.get(clip.topic) != "keypoints"
+
+
+def view_clip(found: ClipWithJob) -> ClipView:
+    """Return a clip and the state of its newest job."""
+    clip, job = found.clip, found.job
+    hidden = {"idempotency_key", "deleted", "topics", "source", "options"}
+    return ClipView(
+        **clip.model_dump(exclude=hidden),
+        shows_pictures=shows_pictures(clip),
+        topics=json.loads(clip.topics),
+        status=JobStatus(job.status),
+        error=job.error,
+        error_code=job.error_code,
+        warnings=json.loads(job.warnings),
+        job_id=job.id,
+    )

@@ -1,0 +1,39 @@
+"""Clip sources: the kinds of files and folders that clips are made of, one module each."""
+
+from app.clip_sources.registry import (
+    SOURCES,
+    VIDEO,
+    is_take,
+    source_named,
+    source_of,
+    sources_of_upload,
+    supported_kinds,
+)
+from app.clip_sources.source import (
+    ClipFacts,
+    ClipSource,
+    ClipTopic,
+    OpenFrames,
+    ReadOptions,
+    RecordedClip,
+    Refusal,
+    UnsupportedFile,
+)
+
+__all__ = [
+    "SOURCES",
+    "VIDEO",
+    "ClipFacts",
+    "ClipSource",
+    "ClipTopic",
+    "OpenFrames",
+    "ReadOptions",
+    "RecordedClip",
+    "Refusal",
+    "UnsupportedFile",
+    "is_take",
+    "source_named",
+    "source_of",
+    "sources_of_upload",
+    "supported_kinds",
+]

@@ -1,0 +1,68 @@
+"""Registry of clip sources; a further kind of file is one more entry of `SOURCES`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.clip_sources.bag import BagSource
+from app.clip_sources.keypoint_file import KeypointFileSource
+from app.clip_sources.source import ClipSource
+from app.clip_sources.video import VideoSource
+from app.recognition.errors import VideoError
+
+VIDEO = VideoSource()
+
+SOURCES: tuple[ClipSource, ...] = (VIDEO, BagSource(), KeypointFileSource())
+"""All kinds of files that become clips, in the order in which they are tried."""
+
+
+def source_named(name: str) -> ClipSource:
+    """Return the source of that name; raise KeyError when there is none."""
+    return {source.name: source for source in SOURCES}[name]
+
+
+def sources_of_upload(head: bytes, name: str) -> list[ClipSource]:
+    """Return the sources that a received file may be of, by its first bytes and its name."""
+    return [source for source in SOURCES if source.accepts_upload(head, name)]
+
+
+def source_of(path: Path, topic: str | None = None) -> ClipSource:
+    """Return the source that reads a file or folder.
+
+    A file that no source recognises is read as a video, whose reader says what is wrong with it.
+
+    Raises
+    ------
+    VideoError
+        When there is nothing at `path`, or a folder that no source recognises.
+
+    """
+    if not path.exists():
+        raise VideoError(f"{path} is not a file; give the path of a clip")
+    for source in SOURCES:
+        if source.accepts(path, topic):
+            return source
+    if path.is_dir():
+        folders = [source.folder for source in SOURCES if source.folder is not None]
+        raise VideoError(
+            f"{path} holds neither {_joined(folders, 'nor')}; give the folder that holds one of "
+            "them"
+        )
+    return VIDEO
+
+
+def is_take(path: Path) -> bool:
+    """Tell whether `path` in a folder of labelled takes is one."""
+    return any(source.is_take(path) for source in SOURCES)
+
+
+def supported_kinds() -> str:
+    """Say in words which files are none of the known kinds, and what to send instead."""
+    nouns = _joined([source.noun for source in SOURCES], "nor")
+    formats = _joined([source.formats for source in SOURCES], "or")
+    return f"neither {nouns} this app knows, whatever its name says; send {formats}"
+
+
+def _joined(words: Sequence[str], last: str) -> str:
+    return f" {last} ".join(filter(None, (", ".join(words[:-1]), words[-1])))

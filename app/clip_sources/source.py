@@ -1,0 +1,306 @@
+"""Protocol of a clip source: one kind of file or folder that a clip is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.keypoint_files import Ending, KeypointOptions
+from app.recognition.errors import RecognitionError
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.recording.extraction import Observer, Progress
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.video import FrameSource
+
+MADE_VIDEO: Final = "video/mp4"
+"""Media type of the video that is written for a clip whose file is no video."""
+
+
+class UnsupportedFile(RecognitionError):
+    """Raised when a file turns out not to be of the kind that its first bytes promised."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why a received file cannot be used.
+
+    Attributes
+    ----------
+    code
+        Stable word for programs, in snake_case.
+    detail
+        One line for the person who sent it.
+
+    """
+
+    code: str
+    detail: str
+
+
+class ReadOptions(BaseModel):
+    """How a file is read, as far as the file does not say so itself.
+
+    Attributes
+    ----------
+    topic
+        Of a dive recording: which one; None: the only one that can be used.
+    ending
+        Of a keypoint file that was stored without its name: the ending that it is read by.
+    frame_rate, frame_size, landmarks
+        Of a keypoint file, see `KeypointOptions`.
+    water
+        Whether colour and contrast are corrected before landmarks are looked for.
+
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    topic: str | None = None
+    ending: Ending | None = None
+    frame_rate: float | None = None
+    frame_size: tuple[int, int] | None = None
+    landmarks: dict[str, str] = Field(default_factory=dict)
+    water: WaterCorrection = "auto"
+
+    @classmethod
+    def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:
+        """Return the options of keypoint files, all else as usual."""
+        return cls(
+            frame_rate=keypoints.frame_rate,
+            frame_size=keypoints.frame_size,
+            landmarks=dict(keypoints.landmarks),
+        )
+
+    @property
+    def keypoints(self) -> KeypointOptions:
+        """The options of keypoint files.
+
+        Raises
+        ------
+        KeypointFileError
+            When a rate or a size is not positive.
+
+        """
+        return KeypointOptions(self.frame_rate, self.frame_size, self.landmarks)
+
+
+@dataclass(frozen=True)
+class ClipTopic:
+    """A topic of a dive recording that a clip can be made of.
+
+    Attributes
+    ----------
+    name, type
+        As in ROS.
+    use
+        ``pictures`` or ``keypoints``.
+    messages
+        Count; each is one frame of the clip.
+    duration
+        Seconds from the first message to the last.
+    width, height
+        Pixels of the upright picture.
+
+    """
+
+    name: str
+    type: str
+    use: str
+    messages: int
+    duration: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
+class ClipFacts:
+    """What a file says about the clip that it would be, before all of it is read.
+
+    Attributes
+    ----------
+    width, height
+        Pixels of the upright picture.
+    duration
+        Seconds; None where the container does not say.
+    frames
+        Count; None where the container does not say.
+    topics
+        Of a dive recording: the topics to choose from; the other values are those of the first.
+
+    """
+
+    width: int
+    height: int
+    duration: float | None
+    frames: int | None
+    topics: tuple[ClipTopic, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedClip:
+    """The landmarks read from a clip.
+
+    Attributes
+    ----------
+    recording
+        The landmarks.
+    has_hands
+        Whether the source can show a hand, and so a salute.
+    landmarks
+        Names of the landmarks that the source gives.
+
+    """
+
+    recording: Recording
+    has_hands: bool
+    landmarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class OpenFrames:
+    """The pictures of a clip, open for reading.
+
+    Attributes
+    ----------
+    frames
+        The pictures, to be iterated once.
+    close
+        Releases the file; may be called twice.
+
+    """
+
+    frames: FrameSource
+    close: Callable[[], None]
+
+
+class ClipSource(Protocol):
+    """One kind of file or folder that becomes a clip.
+
+    Attributes
+    ----------
+    name
+        Stable word for programs; the database and the name of the stored file use it.
+    noun
+        With its article, for messages: ``a video``.
+    formats
+        For messages: the formats to send.
+    endings
+        Endings of the names of such files, in lower case.
+    folder
+        For messages: how a folder of this kind is recognised; None: it is always a file.
+    has_pictures
+        Whether such a file may hold pictures of the diver.
+    has_topics
+        Whether a clip is made of one of several topics.
+    makes_video
+        Whether the video that players show is written while the clip is recorded; else the file
+        itself is that video.
+    probe_seconds
+        Longest time for `probe`.
+    broken_off
+        What to answer when the process that reads the file dies.
+
+    """
+
+    name: str
+    noun: str
+    formats: str
+    endings: tuple[str, ...]
+    folder: str | None
+    has_pictures: bool
+    has_topics: bool
+    makes_video: bool
+    probe_seconds: float
+    broken_off: Refusal
+
+    def accepts(self, path: Path, topic: str | None = None) -> bool:
+        """Tell whether the file or folder at `path` is of this kind."""
+        ...
+
+    def accepts_upload(self, head: bytes, name: str) -> bool:
+        """Tell whether a received file of this name that begins with `head` may be of this kind."""
+        ...
+
+    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
+        """Return `options` with what the first bytes and the name of a received file add."""
+        ...
+
+    def media_type(self, head: bytes) -> str:
+        """Return the media type of the video that players show."""
+        ...
+
+    def is_take(self, path: Path) -> bool:
+        """Tell by its name whether `path` in a folder of labelled takes is one."""
+        ...
+
+    def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
+        """Read what the file says about itself.
+
+        Raises
+        ------
+        UnsupportedFile
+            When the file is of another kind after all.
+        RecognitionError
+            When no clip can be made of it.
+
+        """
+        ...
+
+    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
+        """Tell whether landmarks are found in pictures; else the file holds keypoints."""
+        ...
+
+    def record(
+        self,
+        path: Path,
+        options: ReadOptions,
+        *,
+        video: Path | None = None,
+        estimator: PoseEstimator | None = None,
+        progress: Progress | None = None,
+        observer: Observer | None = None,
+    ) -> RecordedClip:
+        """Read the landmarks of every frame.
+
+        Parameters
+        ----------
+        path, options
+            The file, and how it is read.
+        video
+            Where to write the video that players show, if `makes_video`; None: nowhere.
+        estimator, progress, observer
+            See `app.recognition.recording.extraction.record`.
+
+        Raises
+        ------
+        RecognitionError
+            When the file cannot be read, or breaks a limit.
+        ModelError
+            When the default estimator's models are not installed.
+
+        """
+        ...
+
+    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+        """Return what to answer to whoever sent the file, which is stored as `path`."""
+        ...
+
+    def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
+        """Return a video of the clip, written to `copy` where the file is none; None: no video."""
+        ...
+
+    def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
+        """Open the pictures for reading.
+
+        Raises
+        ------
+        RecognitionError
+            When the file holds no pictures, or cannot be read.
+
+        """
+        ...

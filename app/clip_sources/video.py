@@ -1,0 +1,97 @@
+"""Clip source: a video file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.clip_sources.source import ClipFacts, OpenFrames, ReadOptions, RecordedClip, Refusal
+from app.clip_sources.video_types import HEAD_BYTES, video_type
+from app.recognition.errors import RecognitionError
+from app.recognition.estimation import finds_hands
+from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.recording.extraction import Observer, Progress, record
+from app.recognition.recording.video import FrameReader, probe
+
+
+class VideoSource:
+    """A video file, which players show as it is."""
+
+    name = "video"
+    noun = "a video"
+    formats = "MP4, MOV, WebM, MKV, AVI, MPEG-TS"
+    endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm")
+    folder: str | None = None
+    has_pictures = True
+    has_topics = False
+    makes_video = False
+    probe_seconds = 30.0
+    """Probing decodes one frame, which takes milliseconds."""
+    broken_off = Refusal(
+        code="decoder",
+        detail="the process that read this clip broke off: the clip is damaged, or it needs more "
+        "memory or time than a job may use; convert it to an MP4 with H.264 and try again",
+    )
+
+    def accepts(self, path: Path, topic: str | None = None) -> bool:
+        """Tell whether the first bytes of a file are those of a video."""
+        if topic is not None or not path.is_file():
+            return False
+        with path.open("rb") as file:
+            return video_type(file.read(HEAD_BYTES)) is not None
+
+    def accepts_upload(self, head: bytes, name: str) -> bool:
+        """Tell whether `head` is the beginning of a video."""
+        return video_type(head) is not None
+
+    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
+        """Return `options` unchanged."""
+        return options
+
+    def media_type(self, head: bytes) -> str:
+        """Return the media type of a video that begins with `head`."""
+        found = video_type(head)
+        assert found is not None
+        return found
+
+    def is_take(self, path: Path) -> bool:
+        """Tell whether a file is a video by its ending."""
+        return path.suffix.lower() in self.endings and path.is_file()
+
+    def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
+        """Read what the container says, and decode one frame."""
+        info = probe(path)
+        return ClipFacts(info.width, info.height, info.duration, info.frames)
+
+    def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
+        """Return True."""
+        return True
+
+    def record(
+        self,
+        path: Path,
+        options: ReadOptions,
+        *,
+        video: Path | None = None,
+        estimator: PoseEstimator | None = None,
+        progress: Progress | None = None,
+        observer: Observer | None = None,
+    ) -> RecordedClip:
+        """Find body and hands in every frame."""
+        found = record(
+            path, estimator=estimator, progress=progress, observer=observer, water=options.water
+        )
+        has_hands = estimator is None or finds_hands(estimator)
+        return RecordedClip(found, has_hands, found.poses.landmarks)
+
+    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+        """Name the clip, and not the file that it is stored as."""
+        return Refusal("video_unreadable", str(error).replace(path.name, "the clip"))
+
+    def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
+        """Return the file itself."""
+        return path
+
+    def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
+        """Open the file for decoding."""
+        reader = FrameReader(path)
+        return OpenFrames(reader, reader.close)

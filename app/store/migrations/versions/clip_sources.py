@@ -1,0 +1,27 @@
+"""Kinds of clips by name: a further kind needs no column of its own."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0006"
+down_revision = "0005"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Name the source of every clip; what was kept of keypoint files is kept of any file."""
+    op.add_column(
+        "clip", sa.Column("source", sa.String(16), nullable=False, server_default="video")
+    )
+    # Not in a batch: SQLite would make the table anew, and the jobs refer to it.
+    op.execute("ALTER TABLE clip RENAME COLUMN keypoints TO options")
+    op.execute("UPDATE clip SET source = 'bag' WHERE topics <> '[]'")
+    op.execute("UPDATE clip SET source = 'keypoints' WHERE options IS NOT NULL")
+
+
+def downgrade() -> None:
+    """Take the name away again."""
+    op.execute("ALTER TABLE clip RENAME COLUMN options TO keypoints")
+    with op.batch_alter_table("clip") as table:
+        table.drop_column("source")

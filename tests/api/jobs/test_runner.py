@@ -1,0 +1,103 @@
+"""The job runner: one run per key, progress as events, cancel for everybody who waits."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import pytest
+
+from app.api.events.broadcast import Broadcast, Event
+from app.api.jobs.job import JobCancelled, Progress, Report
+from app.api.jobs.runner import JobRunner
+
+
+class Counting:
+    """A job that reports a step, then waits to be let go; counts how often it runs."""
+
+    def __init__(self, key: str = "count", *, resumable: bool = False) -> None:
+        self.key = key
+        self.resumable = resumable
+        self.runs = 0
+        self.go_on = asyncio.Event()
+
+    def event(self, progress: Progress) -> Event:
+        return Event("counts", {"id": self.key, "done": progress.done})
+
+    async def run(self, report: Report) -> int:
+        self.runs += 1
+        report(Progress("counting", self.runs, 2))
+        await self.go_on.wait()
+        return self.runs
+
+
+def run(scenario: Callable[[JobRunner, Broadcast], Awaitable[None]]) -> None:
+    async def start() -> None:
+        broadcast = Broadcast()
+        await scenario(JobRunner(broadcast), broadcast)
+
+    asyncio.run(start())
+
+
+def test_who_asks_for_a_running_job_waits_for_it_and_its_progress_is_an_event() -> None:
+    async def scenario(runner: JobRunner, broadcast: Broadcast) -> None:
+        job = Counting()
+        with broadcast.subscribe() as events:
+            waiting = [asyncio.create_task(runner.run(job)) for _ in range(2)]
+            await asyncio.sleep(0.01)
+            assert runner.progress("count") == Progress("counting", 1, 2)
+            job.go_on.set()
+            assert await asyncio.gather(*waiting) == [1, 1]
+            await asyncio.sleep(0.01)
+            assert runner.progress("count") is None
+            broadcast.close()
+            assert [event async for event in events] == [
+                Event("counts", {"id": "count", "done": 1})
+            ]
+        assert await runner.run(job) == 2  # over: it runs anew
+
+    run(scenario)
+
+
+def test_cancelling_reaches_all_who_wait_and_the_job_can_begin_anew() -> None:
+    async def scenario(runner: JobRunner, _broadcast: Broadcast) -> None:
+        job = Counting()
+        waiting = [asyncio.create_task(runner.run(job)) for _ in range(2)]
+        await asyncio.sleep(0.01)
+        assert await runner.cancel("count")
+        assert not await runner.cancel("count")
+        for each in waiting:
+            with pytest.raises(JobCancelled):
+                await each
+        job.go_on.set()
+        assert await runner.run(job) == 2
+
+    run(scenario)
+
+
+def test_a_caller_that_gives_up_does_not_end_the_job() -> None:
+    async def scenario(runner: JobRunner, _broadcast: Broadcast) -> None:
+        job = Counting()
+        one, other = (asyncio.create_task(runner.run(job)) for _ in range(2))
+        await asyncio.sleep(0.01)
+        one.cancel()
+        job.go_on.set()
+        assert await other == 1
+
+    run(scenario)
+
+
+def test_stopping_ends_what_no_later_start_takes_up() -> None:
+    async def scenario(runner: JobRunner, _broadcast: Broadcast) -> None:
+        lost, kept = Counting("lost"), Counting("kept", resumable=True)
+        tasks = {job.key: asyncio.create_task(runner.run(job)) for job in (lost, kept)}
+        await asyncio.sleep(0.01)
+        await runner.stop()
+        with pytest.raises(JobCancelled):
+            await tasks["lost"]
+        with pytest.raises(JobCancelled):
+            await runner.run(Counting("late"))
+        kept.go_on.set()
+        assert await tasks["kept"] == 1
+
+    run(scenario)
