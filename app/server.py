@@ -51,7 +51,6 @@ from app.api.routes import (
 from app.api.services.context import check_store, running_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
-from app.api.viser_workspaces.views import view_of
 from app.settings import Settings
 from app.store import StoreUnavailable
 from app.ui.workspace_registry import WorkspaceRegistry
@@ -99,6 +98,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     app.state.requests = OpenRequests()
+    app.state.workspaces = registry
+    app.state.live_places = asyncio.Semaphore(live.MOST_VIEWS)
     api = APIRouter(prefix=API)
     for router in (
         health.router,
@@ -120,17 +121,14 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         sample_clips.router,
         sample_languages.router,
         events.router,
+        workspaces.router,
+        playback_socket.router,
+        live.router,
     ):
         api.include_router(router)
-    api.include_router(
-        workspaces.router(registry, lambda request: view_of(app.state.studio, request)),
-        responses=problems.documented(404),
-    )
-    api.include_router(playback_socket.router(registry))
-    api.include_router(live.router())
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
-    app.include_router(relay.router(registry.port_of))
+    app.include_router(relay.router)
     _serve_page(app)
     problems.install(app)
     _describe(app)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
-from enum import Enum
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -44,9 +43,8 @@ from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import Situation
 from app.recognition.explanation.explanation import Explanation, explain
 from app.recognition.gestures.profile import PROFILES
-from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
-from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
-from app.recognition.language.proteus import to_proteus
+from app.recognition.language.file_format import FileFormat
+from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.spotting import Spotter
 
 NOTHING_RECOGNISED = 1
@@ -67,14 +65,6 @@ command_line.command()(evaluate)
 command_line.command()(check)
 command_line.command()(robot)
 command_line.command()(phrase)
-
-
-class FileFormat(str, Enum):
-    """The language files that can be written."""
-
-    osg_studio = "osg-studio"
-    osg_reference = "osg-reference"
-    proteus = "proteus"
 
 
 @command_line.callback(invoke_without_command=True)
@@ -263,16 +253,14 @@ def convert(
     """Convert between our language file and the published implementation's, or write PROTEUS's."""
     language = read_language(source)
     if file_format is None:
-        proteus = target.suffix == PROTEUS_SUFFIX
-        file_format = FileFormat.proteus if proteus else FileFormat.osg_studio
+        proteus = target.suffix == FileFormat.PROTEUS.suffix
+        file_format = FileFormat.PROTEUS if proteus else FileFormat.OSG_STUDIO
     if any(gesture.trajectory is None for gesture in language.gestures):
         people.print(f"{source}: pictures only, no trajectories: the published format has none")
-    if file_format is FileFormat.osg_reference:
-        target.write_text(to_reference(language), encoding="utf-8")
-    elif file_format is FileFormat.proteus:
-        target.write_text(to_proteus(language), encoding="utf-8")
-    else:
+    if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
+    else:
+        target.write_text(file_format.write(language), encoding="utf-8")
     people.print(f"{target}: {len(language.gestures)} gestures as {file_format.value}")
 
 

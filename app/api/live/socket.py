@@ -1,4 +1,4 @@
-"""The live view: a page sends a camera's frames, and is told what is seen in them.
+"""Live websocket: a page sends a camera's frames and receives landmarks and recognitions.
 
 One websocket a view. Frames are looked at one after the other in a thread of their own; while one
 is looked at only the newest of those that arrive is kept, so the answer is never about the past.
@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from typing import Annotated, Final, Literal
 
-from fastapi import APIRouter, WebSocket
+from fastapi import APIRouter, Depends, WebSocket
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
+from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
@@ -45,8 +46,6 @@ MOST_VIEWS: Final = 2
 
 SILENCE_SECONDS: Final = 60.0
 """A view without frames for so long is closed: its place may be wanted by another one."""
-
-EstimatorSource = Callable[[], PoseEstimator]
 
 
 class Listen(BaseModel):
@@ -78,52 +77,40 @@ class _End(Exception):
         self.reason = reason.encode()[:MOST_REASON_BYTES].decode(errors="ignore")
 
 
-def router(
-    create: EstimatorSource = create_estimator,
-    *,
-    most_views: int = MOST_VIEWS,
-    silence_seconds: float = SILENCE_SECONDS,
-) -> APIRouter:
-    """Make the route ``/live``.
+def _places_of(connection: HTTPConnection) -> asyncio.Semaphore:
+    places: asyncio.Semaphore = connection.app.state.live_places
+    return places
 
-    Parameters
-    ----------
-    create
-        Makes the estimator of a view.
-    most_views
-        How many there may be at the same time.
-    silence_seconds
-        After how long without a frame one is closed.
 
-    """
-    routes = APIRouter(tags=["live"])
-    places = asyncio.Semaphore(most_views)
+router = APIRouter(tags=["live"])
 
-    @routes.websocket("/live")
-    async def watch(browser: WebSocket, studio: CurrentStudio) -> None:
-        if not same_origin(browser):
-            await browser.close(POLICY_VIOLATION, "foreign_origin")
-            return
-        # Only an accepted websocket can be told why it is closed.
-        await browser.accept()
-        try:
-            if places.locked():
-                raise _End(TRY_AGAIN_LATER, f"{most_views} live views are open already; close one")
-            async with places, _view(browser, studio, create) as view:
-                await view.run(silence_seconds)
-        except _End as end:
-            with contextlib.suppress(RuntimeError, WebSocketDisconnect):
-                await browser.close(end.code, end.reason)
 
-    return routes
+@router.websocket("/live")
+async def watch_camera(
+    browser: WebSocket,
+    studio: CurrentStudio,
+    places: Annotated[asyncio.Semaphore, Depends(_places_of)],
+) -> None:
+    """Take a camera's frames, and send what is found in them."""
+    if not same_origin(browser):
+        await browser.close(POLICY_VIOLATION, "foreign_origin")
+        return
+    # Only an accepted websocket can be told why it is closed.
+    await browser.accept()
+    try:
+        if places.locked():
+            raise _End(TRY_AGAIN_LATER, f"{MOST_VIEWS} live views are open already; close one")
+        async with places, _view(browser, studio) as view:
+            await view.run()
+    except _End as end:
+        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+            await browser.close(end.code, end.reason)
 
 
 @asynccontextmanager
-async def _view(
-    browser: WebSocket, studio: Studio, create: EstimatorSource
-) -> AsyncIterator[_View]:
+async def _view(browser: WebSocket, studio: Studio) -> AsyncIterator[_View]:
     try:
-        estimator = await run_in_threadpool(create)
+        estimator = await run_in_threadpool(create_estimator)
     except (ModelError, EstimatorError) as error:
         raise _End(INTERNAL_ERROR, str(error)) from error
     view = _View(browser, studio, estimator)
@@ -145,7 +132,7 @@ class _View:
         self._newest: Frame | None = None
         self._arrived = asyncio.Event()
 
-    async def run(self, silence_seconds: float) -> None:
+    async def run(self) -> None:
         """Look and answer until the page leaves.
 
         Raises
@@ -156,7 +143,7 @@ class _View:
         """
         tasks = [
             asyncio.create_task(self._receive()),
-            asyncio.create_task(self._look(silence_seconds)),
+            asyncio.create_task(self._look()),
         ]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -210,14 +197,14 @@ class _View:
             answer = Listening(problem=str(error))
         await self._browser.send_text(answer.model_dump_json())
 
-    async def _look(self, silence_seconds: float) -> None:
+    async def _look(self) -> None:
         loop = asyncio.get_running_loop()
         while True:
             try:
-                async with asyncio.timeout(silence_seconds):
+                async with asyncio.timeout(SILENCE_SECONDS):
                     await self._arrived.wait()
             except TimeoutError as error:
-                reason = f"no frame came for {silence_seconds:g} s"
+                reason = f"no frame came for {SILENCE_SECONDS:g} s"
                 raise _End(NO_FRAMES, reason) from error
             frame, self._newest = self._newest, None
             self._arrived.clear()

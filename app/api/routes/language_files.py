@@ -1,8 +1,7 @@
-"""Language files: import and export."""
+"""Routes of language files: import and export."""
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 from urllib.parse import quote
 
@@ -18,34 +17,13 @@ from app.api.services.context import CurrentStudio, Studio
 from app.api.services.language_documents import draft_of
 from app.api.services.language_views import announce
 from app.recognition import Language
-from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
-from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
-from app.recognition.language.proteus import to_proteus
+from app.recognition.language.file_format import FileFormat
+from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import requirements_of
 from app.recognition.language.schema import FORMAT, VERSION
+from app.store import LanguageState
 
 router = APIRouter(prefix="/languages", tags=["languages"])
-
-
-class FileFormat(StrEnum):
-    """The language files."""
-
-    OSG_STUDIO = "osg-studio"
-    """Ours: everything."""
-    OSG_REFERENCE = "osg-reference"
-    """The published implementation's: images and salient keypoints only."""
-    PROTEUS = "proteus"
-    """A PROTEUS language definition file: names and kinds of the gestures only."""
-
-    @property
-    def media_type(self) -> str:
-        """What a file of the format is sent as."""
-        return "application/xml" if self is FileFormat.PROTEUS else "application/json"
-
-    @property
-    def suffix(self) -> str:
-        """How the name of a file of the format ends."""
-        return PROTEUS_SUFFIX if self is FileFormat.PROTEUS else ".json"
 
 
 @router.post(
@@ -67,7 +45,7 @@ async def import_language(
 ) -> LanguageView:
     """Add the language of a file: ours, or the published implementation's (then under `name`)."""
     content = await request.body()
-    return await run_in_threadpool(_imported, studio, content, name, response)
+    return await run_in_threadpool(_import, studio, content, name, response)
 
 
 @router.get(
@@ -89,20 +67,13 @@ def export_language(
 ) -> Response:
     """Send the language as the file that robots load."""
     state = studio.languages.get(language_id, revision)
-    document = state.revision.document
-    if format is FileFormat.OSG_REFERENCE:
-        document = to_reference(studio.language(state))
-    elif format is FileFormat.PROTEUS:
-        document = to_proteus(studio.language(state))
-    plain, name = (
-        f"language{format.suffix}",
-        quote(f"{state.revision.name}{format.suffix}", safe=""),
-    )
+    name = quote(f"{state.revision.name}{format.suffix}", safe="")
+    disposition = f"attachment; filename=\"language{format.suffix}\"; filename*=utf-8''{name}"
     headers = {
-        "Content-Disposition": f"attachment; filename=\"{plain}\"; filename*=utf-8''{name}",
+        "Content-Disposition": disposition,
         "ETag": revision_tag(state.revision.revision),
     }
-    return Response(document, media_type=format.media_type, headers=headers)
+    return Response(_content(studio, state, format), media_type=format.media_type, headers=headers)
 
 
 class ExportedFile(BaseModel):
@@ -136,11 +107,6 @@ def describe_export(
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
     needed = requirements_of(language)
-    documents = {
-        FileFormat.OSG_STUDIO: state.revision.document,
-        FileFormat.OSG_REFERENCE: to_reference(language),
-        FileFormat.PROTEUS: to_proteus(language),
-    }
     return ExportView(
         name=language.name,
         revision=state.revision.revision,
@@ -148,9 +114,11 @@ def describe_export(
         schema_version=VERSION,
         files=[
             ExportedFile(
-                format=file, bytes=len(text.encode()), complete=file is FileFormat.OSG_STUDIO
+                format=file,
+                bytes=len(_content(studio, state, file).encode()),
+                complete=file is FileFormat.OSG_STUDIO,
             )
-            for file, text in documents.items()
+            for file in FileFormat
         ],
         salient=list(needed.salient),
         limbs=list(needed.limbs),
@@ -160,7 +128,14 @@ def describe_export(
     )
 
 
-def _imported(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
+def _content(studio: Studio, state: LanguageState, format: FileFormat) -> str:
+    """Return the content of a language file; our own is sent as the revision was saved."""
+    if format is FileFormat.OSG_STUDIO:
+        return state.revision.document
+    return format.write(studio.language(state))
+
+
+def _import(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
     if is_reference(content):
         language, change = from_reference(content, name), "Import of an osg-reference file"
     else:

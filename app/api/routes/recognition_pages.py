@@ -9,8 +9,7 @@ from fastapi import APIRouter, Response
 from app.api.http.problems import documented
 from app.api.services.context import CurrentStudio
 from app.api.services.stored_recognitions import load_recognition, load_situation
-from app.api.viser_workspaces.routes import ViewRequest
-from app.api.viser_workspaces.views import view_of
+from app.api.viser_workspaces.views import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.recognition_page import analysis_page
 

@@ -1,4 +1,4 @@
-"""Playback of a workspace over one websocket: the page asks, the clock tells where it stands."""
+"""Playback websocket of a workspace: takes commands of the page, sends positions."""
 
 from __future__ import annotations
 
@@ -12,70 +12,70 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
+from app.api.viser_workspaces.registry import CurrentWorkspaces
 from app.ui.playback import Playback, Position
-from app.ui.workspace_registry import WorkspaceRegistry
 
 
-class _Wish(BaseModel):
+class _Command(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Seek(_Wish):
+class Seek(_Command):
     """Show a frame of the clip, counted from 0."""
 
     do: Literal["seek"]
     frame: Annotated[int, Field(ge=0)]
 
 
-class Step(_Wish):
+class Step(_Command):
     """Pause, and go some frames on or back."""
 
     do: Literal["step"]
     frames: Annotated[int, Field(ge=-1000, le=1000)]
 
 
-class Play(_Wish):
+class Play(_Command):
     """Play at a speed; negative is backwards, 0 pauses."""
 
     do: Literal["play"]
     speed: Annotated[float, Field(ge=-16, le=16, allow_inf_nan=False)]
 
 
-class Loop(_Wish):
+class Loop(_Command):
     """Repeat the range on display, or play on."""
 
     do: Literal["loop"]
     on: bool
 
 
-Wish = Annotated[Seek | Step | Play | Loop, Field(discriminator="do")]
+Command = Annotated[Seek | Step | Play | Loop, Field(discriminator="do")]
 
-WISH: TypeAdapter[Wish] = TypeAdapter(Wish)
+COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 
 
-def router(registry: WorkspaceRegistry) -> APIRouter:
-    """Make the route ``/workspaces/{id}/playback``."""
-    routes = APIRouter(prefix="/workspaces", tags=["workspaces"])
+router = APIRouter(prefix="/workspaces", tags=["workspaces"])
 
-    @routes.websocket("/{workspace_id}/playback")
-    async def follow(workspace_id: str, browser: WebSocket) -> None:
-        workspace = registry.get(workspace_id)
-        if workspace is None or not same_origin(browser):
-            await browser.close(code=POLICY_VIOLATION)
-            return
-        await browser.accept()
-        newest = _Newest(asyncio.get_running_loop())
-        end = workspace.playback.listen(newest.put_from_thread)
-        newest.put(workspace.playback.position)
-        telling = asyncio.create_task(_tell(browser, newest))
-        try:
-            await _obey(browser, workspace.playback)
-        finally:
-            end()
-            telling.cancel()
-            await asyncio.gather(telling, return_exceptions=True)
 
-    return routes
+@router.websocket("/{workspace_id}/playback")
+async def follow_playback(
+    workspace_id: str, browser: WebSocket, workspaces: CurrentWorkspaces
+) -> None:
+    """Send every position of the playback, and obey the page's commands."""
+    workspace = workspaces.get(workspace_id)
+    if workspace is None or not same_origin(browser):
+        await browser.close(code=POLICY_VIOLATION)
+        return
+    await browser.accept()
+    newest = _Newest(asyncio.get_running_loop())
+    end = workspace.playback.listen(newest.put_from_thread)
+    newest.put(workspace.playback.position)
+    sending = asyncio.create_task(_send(browser, newest))
+    try:
+        await _obey(browser, workspace.playback)
+    finally:
+        end()
+        sending.cancel()
+        await asyncio.gather(sending, return_exceptions=True)
 
 
 class _Newest:
@@ -101,7 +101,7 @@ class _Newest:
         return self._position
 
 
-async def _tell(browser: WebSocket, newest: _Newest) -> None:
+async def _send(browser: WebSocket, newest: _Newest) -> None:
     with contextlib.suppress(WebSocketDisconnect, RuntimeError):
         while (position := await newest.next()) is not None:
             await browser.send_json(asdict(position))
@@ -111,16 +111,16 @@ async def _obey(browser: WebSocket, playback: Playback) -> None:
     with contextlib.suppress(WebSocketDisconnect):
         while True:
             try:
-                wish = WISH.validate_json(await browser.receive_text())
+                command = COMMAND.validate_json(await browser.receive_text())
             except (ValidationError, KeyError):
                 await browser.close(code=UNSUPPORTED_DATA)
                 return
-            match wish:
+            match command:
                 case Seek():
-                    playback.seek(wish.frame)
+                    playback.seek(command.frame)
                 case Step():
-                    playback.step(wish.frames)
+                    playback.step(command.frames)
                 case Play():
-                    playback.play(wish.speed)
+                    playback.play(command.speed)
                 case Loop():
-                    playback.set_loop(wish.on)
+                    playback.set_loop(command.on)

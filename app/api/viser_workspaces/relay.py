@@ -1,4 +1,4 @@
-"""Serve viser under a path of this app: one public port, viser itself on loopback only.
+"""Reverse proxy for viser: one public port, viser itself on loopback only.
 
 viser's client is one HTML file whose websocket URL is the page's own without query and trailing
 slash: a page at ``/viser/abc/`` opens ``ws://host/viser/abc``. So two routes are enough. viser
@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any, Final
 
 import viser
 import websockets
-from fastapi import APIRouter, HTTPException, WebSocket
+from fastapi import APIRouter, WebSocket
 from fastapi.responses import FileResponse
 from starlette.websockets import WebSocketDisconnect
 from websockets.asyncio.client import ClientConnection
@@ -23,6 +23,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
+from app.api.viser_workspaces.registry import CurrentWorkspaces, no_workspace
 
 CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
 
@@ -39,44 +40,35 @@ foreign server draw into our page.
 """
 
 
-def router(port_of: Callable[[str], int | None], prefix: str = "/viser") -> APIRouter:
-    """Make the routes that relay ``{prefix}/{name}`` to the viser server of that workspace.
+router = APIRouter(prefix="/viser", include_in_schema=False)
 
-    Parameters
-    ----------
-    port_of
-        The loopback port of a workspace's viser server, None when there is no such workspace.
-    prefix
-        Path under which the workspaces lie.
 
-    """
-    routes = APIRouter(include_in_schema=False)
+@router.get("/{name}/")
+def get_viser_page(name: str, workspaces: CurrentWorkspaces) -> FileResponse:
+    """Send viser's client, whose address names the workspace."""
+    if workspaces.port_of(name) is None:
+        raise no_workspace()
+    headers = {
+        "Content-Security-Policy": CONTENT_SECURITY_POLICY,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+    }
+    return FileResponse(CLIENT, media_type="text/html", headers=headers)
 
-    @routes.get(prefix + "/{name}/")
-    def page(name: str) -> FileResponse:
-        if port_of(name) is None:
-            raise HTTPException(404, "There is no such workspace; reload the page to open one.")
-        headers = {
-            "Content-Security-Policy": CONTENT_SECURITY_POLICY,
-            "X-Content-Type-Options": "nosniff",
-            "Referrer-Policy": "no-referrer",
-        }
-        return FileResponse(CLIENT, media_type="text/html", headers=headers)
 
-    @routes.websocket(prefix + "/{name}")
-    async def relay(name: str, browser: WebSocket) -> None:
-        port = port_of(name)
-        if port is None or not same_origin(browser):
-            await browser.close(code=POLICY_VIOLATION)
-            return
-        with contextlib.suppress(OSError, websockets.InvalidHandshake):
-            async with _connect(port, browser.scope.get("subprotocols", [])) as server:
-                await browser.accept(subprotocol=server.subprotocol)
-                await _until_one_ends(_to_viser(browser, server), _to_browser(server, browser))
-        with contextlib.suppress(RuntimeError, WebSocketDisconnect):
-            await browser.close(code=SERVICE_RESTART)
-
-    return routes
+@router.websocket("/{name}")
+async def relay_viser(name: str, browser: WebSocket, workspaces: CurrentWorkspaces) -> None:
+    """Pass messages between a page and the viser server of its workspace."""
+    port = workspaces.port_of(name)
+    if port is None or not same_origin(browser):
+        await browser.close(code=POLICY_VIOLATION)
+        return
+    with contextlib.suppress(OSError, websockets.InvalidHandshake):
+        async with _connect(port, browser.scope.get("subprotocols", [])) as server:
+            await browser.accept(subprotocol=server.subprotocol)
+            await _until_one_ends(_to_viser(browser, server), _to_browser(server, browser))
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+        await browser.close(code=SERVICE_RESTART)
 
 
 def _connect(port: int, subprotocols: list[str]) -> websockets.connect:

@@ -1,13 +1,28 @@
-"""What a workspace is asked to show, looked up in the store."""
+"""View requests: what a workspace is asked to show, looked up in the store."""
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
 from app.api.services.context import Studio
 from app.api.services.stored_recognitions import load_recognition
-from app.api.viser_workspaces.routes import ViewRequest
 from app.recognition import Language
 from app.store import RecognitionRecord
 from app.ui.workspace import WorkspaceView
+
+
+class ViewRequest(BaseModel):
+    """What a workspace is to show."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    clip_id: Annotated[str, Field(max_length=64)]
+    recognition_id: Annotated[str | None, Field(max_length=64)] = None
+    language_id: Annotated[str | None, Field(max_length=64)] = None
+    start: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
+    end: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
 
 
 def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:

@@ -1,0 +1,42 @@
+"""The registry of open workspaces, as a dependency of routes."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from app.api.http.problems import ProblemError
+from app.ui.workspace import Workspace
+from app.ui.workspace_registry import WorkspaceRegistry
+
+
+def _registry_of(connection: HTTPConnection) -> WorkspaceRegistry:
+    registry: WorkspaceRegistry = connection.app.state.workspaces
+    return registry
+
+
+CurrentWorkspaces = Annotated[WorkspaceRegistry, Depends(_registry_of)]
+"""Type of a route's parameter that receives the open workspaces."""
+
+
+def no_workspace() -> ProblemError:
+    """Return the refusal of an id that no open workspace has."""
+    detail = "There is no such workspace; reload the page to open one."
+    return ProblemError(404, "not_found", detail)
+
+
+def find(registry: WorkspaceRegistry, workspace_id: str) -> Workspace:
+    """Return an open workspace.
+
+    Raises
+    ------
+    ProblemError
+        404 when there is none.
+
+    """
+    workspace = registry.get(workspace_id)
+    if workspace is None:
+        raise no_workspace()
+    return workspace
