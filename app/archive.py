@@ -50,7 +50,7 @@ class UnpackedTooLarge(Exception):
 
 
 @contextmanager
-def opened(path: Path, called: str, refusal: type[RecognitionError]) -> Iterator[ZipFile]:
+def open_archive(path: Path, called: str, refusal: type[RecognitionError]) -> Iterator[ZipFile]:
     """Open an archive to look at and unpack it.
 
     Parameters
@@ -97,7 +97,7 @@ def visible_files(archive: ZipFile) -> list[ZipInfo]:
 def names_in(path: Path) -> list[str]:
     """Return the plain names of an archive's visible files, none where it cannot be read."""
     try:
-        with opened(path, path.name, RecognitionError) as archive:
+        with open_archive(path, path.name, RecognitionError) as archive:
             return [plain_name(entry) for entry in visible_files(archive)]
     except RecognitionError:
         return []

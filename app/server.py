@@ -48,7 +48,7 @@ from app.api.routes import (
     sample_languages,
     timelines,
 )
-from app.api.services.context import check_store, running_studio
+from app.api.services.studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
 from app.settings import Settings
@@ -79,7 +79,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        async with running_studio(settings) as studio:
+        async with open_studio(settings) as studio:
             app.state.studio = studio
             sweeper = asyncio.create_task(registry.sweep())
             try:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.archive import UnpackedTooLarge, names_in, opened, unpack, visible_files
+from app.archive import UnpackedTooLarge, names_in, open_archive, unpack, visible_files
 from app.recognition.errors import RecognitionError
 
 METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
@@ -29,7 +29,7 @@ def archive_of(path: Path, entries: dict[str, bytes], method: int = zipfile.ZIP_
 
 def unpacked(path: Path, folder: Path, most: int, most_each: int | None = None) -> None:
     folder.mkdir(exist_ok=True)
-    with opened(path, "the archive", Refused) as archive:
+    with open_archive(path, "the archive", Refused) as archive:
         entries = {str(index): each for index, each in enumerate(visible_files(archive))}
         unpack(archive, entries, folder, most_bytes=most, most_bytes_each=most_each)
 

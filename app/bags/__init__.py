@@ -5,7 +5,7 @@ file, and a topic of recorded keypoints becomes one without them.
 """
 
 from app.bags.bag_kind import bag_and_topic, is_bag
-from app.bags.clip import holds_keypoints, record_bag
+from app.bags.extraction import holds_keypoints, record_bag
 from app.bags.skeleton_video import show_recording
 
 __all__ = ["bag_and_topic", "holds_keypoints", "is_bag", "record_bag", "show_recording"]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from app.bags.message_definitions import DEFINITIONS
-from app.bags.staging import placed
+from app.bags.staging import stage
 from app.recognition.errors import BagError, RecognitionError, TopicError
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Message:
 
 
 class Bag:
-    """A recording that is open; made by `opened_bag`.
+    """A recording that is open; made by `open_bag`.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ class Bag:
         if not connections:
             return
         kind = connections[0].msgtype
-        with _told(self._place, self.name):
+        with _convert_errors(self._place, self.name):
             store = _typestore(connections[0])
             for _, received, data in self._reader.messages(connections):
                 yield Message(received, store.deserialize_cdr(data, kind))
@@ -165,7 +165,7 @@ class Bag:
         usable = {topic.name for topic in self.topics if topic.usable}
         chosen = [each for each in self._reader.connections if each.topic in usable]
         spans: dict[str, tuple[int, int]] = {}
-        with suppress(BagError), _told(self._place, self.name):
+        with suppress(BagError), _convert_errors(self._place, self.name):
             for connection, received, _ in self._reader.messages(chosen):
                 first, last = spans.get(connection.topic, (received, received))
                 spans[connection.topic] = min(first, received), max(last, received)
@@ -193,7 +193,7 @@ class Bag:
 
 
 @contextmanager
-def opened_bag(path: str | Path) -> Iterator[Bag]:
+def open_bag(path: str | Path) -> Iterator[Bag]:
     """Open a recording: a rosbag2 folder, its one file, or a zip of either.
 
     Raises
@@ -210,8 +210,8 @@ def opened_bag(path: str | Path) -> Iterator[Bag]:
             f"{place.name} is a dive recording and {error.name} is not installed; {INSTALL}"
         ) from error
     with ExitStack() as open_things:
-        found = open_things.enter_context(placed(place))
-        with _told(found, place.name):
+        found = open_things.enter_context(stage(place))
+        with _convert_errors(found, place.name):
             reader = open_things.enter_context(Reader(found))
             bag = Bag(reader, found, place.name)
         yield bag
@@ -252,7 +252,7 @@ def _typestore(connection: Connection) -> Typestore:
 
 
 @contextmanager
-def _told(place: Path, name: str) -> Iterator[None]:
+def _convert_errors(place: Path, name: str) -> Iterator[None]:
     """Turn whatever a reader trips over in a damaged recording into one line.
 
     It calls the recording by `name`, not by the `place` where it lies while it is read.

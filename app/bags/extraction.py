@@ -5,11 +5,11 @@ from __future__ import annotations
 from contextlib import ExitStack
 from pathlib import Path
 
-from app.bags.bag import Bag, Topic, opened_bag
-from app.bags.keypoints import keypoint_recording
-from app.bags.picture_frames import BagFrames
+from app.bags.bag import Bag, Topic, open_bag
+from app.bags.image_topic import BagFrames
+from app.bags.keypoint_topic import keypoint_recording
 from app.bags.skeleton_video import show_recording
-from app.bags.video_file import VideoFile
+from app.bags.video_writer import VideoFile
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks
@@ -58,13 +58,13 @@ def record_bag(
         When the default estimator's models are not installed.
 
     """
-    with opened_bag(path) as bag:
+    with open_bag(path) as bag:
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
             recording = keypoint_recording(bag, chosen, limits)
             show_recording(recording, video, progress, observer)
             return recording
-        return _watched(bag, chosen, video, estimator, progress, observer, limits, water)
+        return _record_pictures(bag, chosen, video, estimator, progress, observer, limits, water)
 
 
 def write_video(path: str | Path, topic: str | None, video: Path) -> None:
@@ -72,7 +72,7 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
 
     See `record_bag`, also for what it raises.
     """
-    with opened_bag(path) as bag:
+    with open_bag(path) as bag:
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
             show_recording(keypoint_recording(bag, chosen), video)
@@ -85,11 +85,11 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
     """Tell whether the topic that `record_bag` would take holds keypoints; raises as it does."""
-    with opened_bag(path) as bag:
+    with open_bag(path) as bag:
         return bag.topic(topic).use == "keypoints"
 
 
-def _watched(
+def _record_pictures(
     bag: Bag,
     topic: Topic,
     video: Path | None,

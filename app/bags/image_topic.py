@@ -10,7 +10,7 @@ import numpy as np
 from av.error import FFmpegError
 
 from app.bags.bag import Bag, Message, Topic
-from app.bags.pictures import PacketDecoder, raw_image
+from app.bags.image_messages import PacketDecoder, raw_image
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.timestamps import FrameClock

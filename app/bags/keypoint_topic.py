@@ -93,10 +93,12 @@ def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
 
     """
     first = next(bag.messages(topic.name))
-    return even(_READERS[topic.type](first.content).size or _picture_size(bag) or ASSUMED_SIZE)
+    return pad_to_even(
+        _READERS[topic.type](first.content).size or _picture_size(bag) or ASSUMED_SIZE
+    )
 
 
-def even(size: tuple[int, int]) -> tuple[int, int]:
+def pad_to_even(size: tuple[int, int]) -> tuple[int, int]:
     """Make a size even, as the usual video codecs want."""
     width, height = (max(2, side // 2 * 2) for side in size)
     return width, height
@@ -142,7 +144,7 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
         xy=np.stack([_pixels(posed, size) for posed in gathered.posed]),
         confidence=np.stack([posed.confidence for posed in gathered.posed]),
         time=np.array(gathered.seconds),
-        frame_size=even(size),
+        frame_size=pad_to_even(size),
     )
     hands: tuple[tuple[Hand, ...], ...] = salute.hands_at(stamps)
     return Recording(

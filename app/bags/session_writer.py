@@ -18,7 +18,7 @@ import numpy as np
 from app import __version__
 from app.bags import foxglove_overlay, session_schemas
 from app.bags.bag import INSTALL
-from app.bags.video_file import packets
+from app.bags.video_writer import packets
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import BagError
 from app.recognition.poses.sequence import PoseSequence

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.bags.keypoints import even
-from app.bags.skeleton_picture import skeleton_picture
-from app.bags.video_file import VideoFile
+from app.bags.keypoint_topic import pad_to_even
+from app.bags.skeleton_image import skeleton_picture
+from app.bags.video_writer import VideoFile
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
@@ -45,7 +45,7 @@ def show_recording(
     poses = recording.poses
     if video is None and observer is None:
         return
-    size = even(poses.frame_size)
+    size = pad_to_even(poses.frame_size)
     VideoLimits().require_pixels(*size)
     xy, confidence = _whole_body(poses)
     with ExitStack() as open_files:

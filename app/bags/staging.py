@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
+from app.archive import UnpackedTooLarge, names_in, open_archive, plain_name, unpack, visible_files
 from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
 from app.recognition.errors import BagError
 
@@ -28,7 +28,7 @@ ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
 @contextmanager
-def placed(path: Path) -> Iterator[Path]:
+def stage(path: Path) -> Iterator[Path]:
     """Give the place from which a recording can be read; what was unpacked there goes at the end.
 
     Raises
@@ -44,7 +44,7 @@ def placed(path: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="bag-") as made:
         folder = Path(made)
         if kind == "zip":
-            yield _unpacked(path, folder)
+            yield _unpack(path, folder)
         else:
             place = folder / f"recording{ENDINGS[kind]}"
             _stand_in(path.resolve(), place)
@@ -79,10 +79,10 @@ def _stand_in(path: Path, place: Path) -> None:
     raise BagError(f"{path.name} can be neither linked nor copied to {place.parent}; free space")
 
 
-def _unpacked(path: Path, folder: Path) -> Path:
+def _unpack(path: Path, folder: Path) -> Path:
     """Unpack an archive of a recording's folder, or of its one file, flat into `folder`."""
-    with opened(path, path.name, BagError) as archive:
-        entries = _wanted(archive, path.name)
+    with open_archive(path, path.name, BagError) as archive:
+        entries = _select_entries(archive, path.name)
         try:
             unpack(archive, entries, folder, most_bytes=MOST_BYTES)
         except UnpackedTooLarge as error:
@@ -98,7 +98,7 @@ def _unpacked(path: Path, folder: Path) -> Path:
     return files[0]
 
 
-def _wanted(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
+def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
     """Return the entries that make up the recording by name, after a look at all of them."""
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > MOST_ENTRIES:

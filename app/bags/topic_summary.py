@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.bags.bag import Bag, Topic, Use, opened_bag
-from app.bags.keypoints import keypoint_frame_size
-from app.bags.picture_frames import BagFrames
+from app.bags.bag import Bag, Topic, Use, open_bag
+from app.bags.image_topic import BagFrames
+from app.bags.keypoint_topic import keypoint_frame_size
 from app.recognition.errors import BagError, RecognitionError
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -57,7 +57,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     limits = limits or VideoLimits()
     found: list[TopicSummary] = []
     refused: RecognitionError | None = None
-    with opened_bag(path) as bag:
+    with open_bag(path) as bag:
         candidates = [topic for topic in bag.topics if _choosable(topic)]
         if not candidates:
             bag.topic()  # raises, and says why

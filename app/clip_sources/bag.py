@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from app.bags import holds_keypoints, is_bag, record_bag
-from app.bags.bag import opened_bag
+from app.bags.bag import open_bag
 from app.bags.bag_kind import bag_kind
-from app.bags.clip import write_video
-from app.bags.picture_frames import BagFrames
+from app.bags.extraction import write_video
+from app.bags.image_topic import BagFrames
 from app.bags.staging import is_bag_archive
 from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
@@ -123,7 +123,7 @@ class BagSource:
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open a topic of pictures; each has its own stamp."""
         with ExitStack() as opening:
-            bag = opening.enter_context(opened_bag(path))
+            bag = opening.enter_context(open_bag(path))
             chosen = bag.topic(options.topic)
             if chosen.use != "pictures":
                 raise BagError(

@@ -22,8 +22,8 @@ from app.keypoint_files import (
     is_keypoint_file,
     is_openpose_archive,
     keypoint_ending,
-    placed,
     read_keypoints,
+    stage,
 )
 from app.recognition.errors import (
     FrameRateError,
@@ -152,7 +152,7 @@ def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
     """Read a file; one that was stored without its name is read under its ending."""
     if options.ending is None:
         return read_keypoints(path, options.keypoints)
-    with placed(path, options.ending) as place:
+    with stage(path, options.ending) as place:
         try:
             read = read_keypoints(place, options.keypoints)
         except RecognitionError as error:

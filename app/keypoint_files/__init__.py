@@ -1,9 +1,9 @@
 """Keypoint files of other programs as recordings: OpenPose, MediaPipe, DeepLabCut, SLEAP."""
 
 from app.keypoint_files.file_kind import Ending, keypoint_ending
+from app.keypoint_files.keypoint_table import KeypointOptions
 from app.keypoint_files.reader import ReadKeypoints, is_keypoint_file, read_keypoints
-from app.keypoint_files.staging import is_openpose_archive, placed
-from app.keypoint_files.table import KeypointOptions
+from app.keypoint_files.staging import is_openpose_archive, stage
 
 __all__ = [
     "Ending",
@@ -12,6 +12,6 @@ __all__ = [
     "is_keypoint_file",
     "is_openpose_archive",
     "keypoint_ending",
-    "placed",
     "read_keypoints",
+    "stage",
 ]

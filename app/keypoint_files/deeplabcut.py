@@ -15,14 +15,14 @@ from typing import Final
 
 import numpy as np
 
-from app.keypoint_files.person_choice import prominence_over
-from app.keypoint_files.table import (
+from app.keypoint_files.keypoint_table import (
     KeypointOptions,
     KeypointTable,
     Times,
-    seen_only,
+    mask_unseen,
     visibility_of,
 )
+from app.keypoint_files.prominence import prominence_over
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
@@ -85,7 +85,7 @@ def _individual(table: FloatArray, headings: dict[str, list[str]], who: str) -> 
     confidence = visibility_of(points)
     return KeypointTable(
         names=names,
-        xy=seen_only(points[..., :2], confidence, LEAST_LIKELIHOOD),
+        xy=mask_unseen(points[..., :2], confidence, LEAST_LIKELIHOOD),
         confidence=confidence,
         times=Times(table[:, 0], counted=True),
     )

@@ -160,7 +160,7 @@ class KeypointTable:
         return bool(len(known)) and float(np.percentile(known, NEARLY_ALL)) <= LARGEST_FRACTION
 
 
-def seen_only(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
+def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
     """Return keypoints ``(..., 2)`` with NaN for those of less than the `least` confidence."""
     known = np.asarray(np.isfinite(xy).all(axis=-1))
     if confidence is not None:
@@ -174,6 +174,6 @@ def visibility_of(points: FloatArray) -> FloatArray:
 
     A point whose visibility is not told is seen where it has a place.
     """
-    placed = np.asarray(np.isfinite(points[..., :2]).all(axis=-1))
+    has_place = np.asarray(np.isfinite(points[..., :2]).all(axis=-1))
     told = np.where(np.isnan(points[..., 2]), 1.0, np.clip(points[..., 2], 0, 1))
-    return np.where(placed, told, 0.0)
+    return np.where(has_place, told, 0.0)

@@ -22,8 +22,8 @@ from app.keypoint_files.column_names import (
     plain,
     time_column,
 )
+from app.keypoint_files.keypoint_table import MALFORMED, KeypointOptions, KeypointTable, Times
 from app.keypoint_files.mediapipe_table import table_of, times_of
-from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times
 from app.recognition.errors import KeypointFileError, RecognitionError
 from app.recognition.recording.video_limits import VideoLimits
 

@@ -22,7 +22,13 @@ from app.keypoint_files.column_names import (
     plain,
     time_column,
 )
-from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only, visibility_of
+from app.keypoint_files.keypoint_table import (
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    mask_unseen,
+    visibility_of,
+)
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
@@ -132,7 +138,7 @@ def table_of(names: tuple[str, ...], points: FloatArray, told: bool, times: Time
     confidence = visibility_of(points) if told else None
     return KeypointTable(
         names=names,
-        xy=seen_only(points[..., :2], confidence, 0.0),
+        xy=mask_unseen(points[..., :2], confidence, 0.0),
         confidence=confidence,
         times=times,
     )

@@ -15,7 +15,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times, seen_only
+from app.keypoint_files.keypoint_table import (
+    MALFORMED,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    mask_unseen,
+)
 from app.recognition.errors import KeypointFileError
 from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
 from app.recognition.poses.frame import SIDES, Hand
@@ -40,7 +46,7 @@ class _Person:
 
     @property
     def xy(self) -> FloatArray:
-        return seen_only(self.body[:, :2], self.body[:, 2], 0.0)
+        return mask_unseen(self.body[:, :2], self.body[:, 2], 0.0)
 
 
 def is_openpose(path: Path) -> bool:
@@ -72,7 +78,7 @@ def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> 
     most = max(len(people) for people in everybody)
     return KeypointTable(
         names=tuple(name for name in landmarks if name is not None),
-        xy=seen_only(rows[:, kept, :2], confidence, 0.0),
+        xy=mask_unseen(rows[:, kept, :2], confidence, 0.0),
         confidence=confidence,
         times=Times(frames, counted=True),
         hands=tuple(_hands(one) for one in followed) if sought else None,

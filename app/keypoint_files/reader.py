@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from app.keypoint_files.deeplabcut import is_deeplabcut, read_deeplabcut
+from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
 from app.keypoint_files.mediapipe_json import read_mediapipe_json
 from app.keypoint_files.mediapipe_table import read_mediapipe_table
 from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.sleap import read_sleap
-from app.keypoint_files.table import KeypointOptions, KeypointTable
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray, PoseSequence
@@ -92,7 +92,7 @@ def read_keypoints(
     table = _table(source, given, allowed)
     time = _seconds(table, given, source)
     allowed.require_seconds(float(time[-1] - time[0]))
-    landmarks, columns, notes = _mapped(table.names, given.landmarks, source)
+    landmarks, columns, notes = _map_names(table.names, given.landmarks, source)
     size = _frame_size(table, given, source)
     scale = np.array(size, dtype=np.float64) if table.in_fractions else np.ones(2)
     poses = PoseSequence(
@@ -103,7 +103,7 @@ def read_keypoints(
         frame_size=size,
     )
     hands = table.hands or ((),) * len(poses)
-    hands = tuple(tuple(_scaled(hand, scale) for hand in frame) for frame in hands)
+    hands = tuple(tuple(_scale(hand, scale) for hand in frame) for frame in hands)
     recording = Recording(
         poses=poses,
         hands=hands,
@@ -160,7 +160,7 @@ def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> Floa
     return table.times.values / rate
 
 
-def _mapped(
+def _map_names(
     names: tuple[str, ...], given: Mapping[str, str], path: Path
 ) -> tuple[tuple[str, ...], list[int], tuple[str, ...]]:
     """Return our names, the columns they are in, and what was left out, in sentences."""
@@ -211,7 +211,7 @@ def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> t
     return width, height
 
 
-def _scaled(hand: Hand, scale: FloatArray) -> Hand:
+def _scale(hand: Hand, scale: FloatArray) -> Hand:
     return replace(hand, xy=hand.xy * scale)
 
 

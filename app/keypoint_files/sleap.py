@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from app.keypoint_files.person_choice import prominence_over
-from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
+from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times, mask_unseen
+from app.keypoint_files.prominence import prominence_over
 from app.recognition.errors import KeypointFileError
 from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
 from app.recognition.poses.sequence import FloatArray
@@ -51,7 +51,7 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
         notes += (f"the file holds {len(labels.videos)} videos; the first is read",)
     return KeypointTable(
         names=names,
-        xy=seen_only(followed[..., :2], followed[..., 2], 0.0),
+        xy=mask_unseen(followed[..., :2], followed[..., 2], 0.0),
         confidence=np.clip(np.nan_to_num(followed[..., 2]), 0, 1),
         times=Times(frames, counted=True),
         frame_size=_size(labels),

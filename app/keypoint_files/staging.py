@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 from zipfile import ZipFile, ZipInfo
 
-from app.archive import UnpackedTooLarge, names_in, opened, plain_name, unpack, visible_files
+from app.archive import UnpackedTooLarge, names_in, open_archive, plain_name, unpack, visible_files
 from app.keypoint_files.file_kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
 from app.recognition.errors import KeypointFileError
@@ -22,7 +22,7 @@ MOST_BYTES: Final = 1024 * 1024 * 1024
 
 
 @contextmanager
-def placed(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iterator[Path]:
+def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iterator[Path]:
     """Give the place from which `read_keypoints` reads a file that lost its name.
 
     Parameters
@@ -62,7 +62,7 @@ def is_openpose_archive(path: Path) -> bool:
 
 
 def _unpack(path: Path, folder: Path, limits: VideoLimits) -> None:
-    with opened(path, "the archive", KeypointFileError) as archive:
+    with open_archive(path, "the archive", KeypointFileError) as archive:
         frames = _frames(archive)
         limits.require_frames(len(frames))
         try:

@@ -6,7 +6,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.recognition.models import installed_models
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of

@@ -12,7 +12,7 @@ import httpx
 import uvicorn
 
 from app.api.middleware.shutdown import StudioServer
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.server import create_app
 from app.settings import Settings
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-from app.bags.bag import opened_bag
-from app.bags.clip import record_bag
-from app.bags.picture_frames import BagFrames
+from app.bags.bag import open_bag
+from app.bags.extraction import record_bag
+from app.bags.image_topic import BagFrames
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (
@@ -66,7 +66,7 @@ def test_topics_are_listed_with_type_count_and_duration(
     # What a file is, its content decides.
     path = path.rename(tmp_path / "received")
     recording = recording_of("line")
-    with opened_bag(path) as bag:
+    with open_bag(path) as bag:
         listed = {topic.name: topic for topic in bag.topics}
         assert set(listed) == {"/pose_keypoints", "/vulcan_salute_detected", "/camera_info"}
         keypoints = bag.topic()
@@ -119,20 +119,20 @@ def test_old_recordings_without_definitions_are_read_by_the_known_ones(tmp_path:
 def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> None:
     rows = [(name, raw(picture(0), "rgb8", START), START) for name in ("/left", "/right")]
     bag_path = write_bag(tmp_path / "stereo", rows)
-    with opened_bag(bag_path) as bag:
+    with open_bag(bag_path) as bag:
         with pytest.raises(TopicError, match=r"2 topics to choose from: /left \(sensor_msgs/Image"):
             bag.topic()
         assert bag.topic("/right").name == "/right"
         with pytest.raises(TopicError, match=r"no topic '/middle'; usable are /left .*, /right"):
             bag.topic("/middle")
-    with opened_bag(camera) as bag, pytest.raises(TopicError, match=r"/log is of type std_msgs"):
+    with open_bag(camera) as bag, pytest.raises(TopicError, match=r"/log is of type std_msgs"):
         bag.topic("/log")
 
 
 def test_a_recording_with_nothing_to_use_says_what_it_holds(tmp_path: Path) -> None:
     only_text = write_bag(tmp_path / "text", [("/log", text("hello"), START)])
     with (
-        opened_bag(only_text) as bag,
+        open_bag(only_text) as bag,
         pytest.raises(BagError, match=r"only /log \(std_msgs/String, 1 messages\); record a topic"),
     ):
         bag.topic()
@@ -142,7 +142,7 @@ def test_a_topic_without_messages_is_refused(tmp_path: Path) -> None:
     with Writer(tmp_path / "dive", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         writer.add_connection("/camera", "sensor_msgs/msg/Image", typestore=store)
     with (
-        opened_bag(tmp_path / "dive") as bag,
+        open_bag(tmp_path / "dive") as bag,
         pytest.raises(BagError, match=r"have no messages.*was the camera running"),
     ):
         bag.topic()
@@ -177,7 +177,7 @@ def test_flipped_bytes_give_frames_or_one_line_and_nothing_else(tmp_path: Path, 
     file.write_bytes(content)
     said, frames = "", 1
     try:
-        with opened_bag(file) as bag:
+        with open_bag(file) as bag:
             frames = len(list(BagFrames(bag, bag.topic())))
     except (BagError, VideoError) as error:
         said = str(error)

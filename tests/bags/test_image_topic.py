@@ -13,9 +13,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from app.bags.bag import opened_bag
-from app.bags.picture_frames import BagFrames
-from app.bags.pictures import raw_image
+from app.bags.bag import open_bag
+from app.bags.image_messages import raw_image
+from app.bags.image_topic import BagFrames
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.video import VideoFrame
@@ -31,7 +31,7 @@ def frames_of(
     path: Path, rows: list[Row], limits: VideoLimits | None = None
 ) -> tuple[list[VideoFrame], BagFrames]:
     """Write rows into a bag, and read its pictures back."""
-    with opened_bag(write_bag(path / "dive", rows)) as bag:
+    with open_bag(write_bag(path / "dive", rows)) as bag:
         reader = BagFrames(bag, bag.topic(), limits)
         return list(reader), reader
 

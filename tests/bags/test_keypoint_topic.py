@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.bags.bag import opened_bag
-from app.bags.clip import record_bag
-from app.bags.keypoints import ASSUMED_SIZE
+from app.bags.bag import open_bag
+from app.bags.extraction import record_bag
+from app.bags.keypoint_topic import ASSUMED_SIZE
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -157,7 +157,7 @@ def test_the_salute_in_the_same_namespace_is_taken(tmp_path: Path) -> None:
                 yield f"/another{topic}", message("std_msgs/msg/Bool", True), received
 
     bag_path = write_bag(tmp_path / "dive", two_divers())
-    with opened_bag(bag_path) as bag:
+    with open_bag(bag_path) as bag:
         assert bag.topic().name == "/buddy/pose_keypoints"
     read = record_bag(bag_path)
     assert np.array_equal(read.salute > 0.5, recording.salute > 0.5)

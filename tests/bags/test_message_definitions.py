@@ -8,7 +8,7 @@ import pytest
 from rosbags.typesys import get_types_from_msg
 
 from app.bags.bag import USES
-from app.bags.keypoints import _READERS
+from app.bags.keypoint_topic import _READERS
 from app.bags.message_definitions import DEFINITIONS
 from tests.conftest import ROOT
 

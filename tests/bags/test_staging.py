@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.bags import staging
-from app.bags.staging import is_bag_archive, placed
+from app.bags.staging import is_bag_archive, stage
 from app.recognition.errors import BagError
 from tests.bags.bag_files import zip_of
 
@@ -30,7 +30,7 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 )
 def test_paths_that_lead_out_are_refused(tmp_path: Path, scratch: Path, name: str) -> None:
     path = zip_of(tmp_path / "dive.zip", {name: b"x"})
-    with pytest.raises(BagError, match="leads out of its folder"), placed(path):
+    with pytest.raises(BagError, match="leads out of its folder"), stage(path):
         pass
     assert list(scratch.iterdir()) == []
     assert sorted(each.name for each in tmp_path.iterdir()) == ["dive.zip", "scratch"]
@@ -41,7 +41,7 @@ def test_links_are_refused(tmp_path: Path) -> None:
     entry.external_attr = (stat.S_IFLNK | 0o777) << 16
     with zipfile.ZipFile(tmp_path / "dive.zip", "w") as archive:
         archive.writestr(entry, "/etc/passwd")
-    with pytest.raises(BagError, match="leads out"), placed(tmp_path / "dive.zip"):
+    with pytest.raises(BagError, match="leads out"), stage(tmp_path / "dive.zip"):
         pass
 
 
@@ -50,13 +50,13 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
 ) -> None:
     path = zip_of(tmp_path / "dive.zip", {"dive/dive.mcap": bytes(3_000_000)})
     monkeypatch.setattr(staging, "MOST_BYTES", 2_000_000)
-    with pytest.raises(BagError, match="beyond the limit of"), placed(path):
+    with pytest.raises(BagError, match="beyond the limit of"), stage(path):
         pass
     # A lying directory: the size is written twice, and the second one is what is looked at first.
     content = path.read_bytes()
     size, less = (3_000_000).to_bytes(4, "little"), (1_000_000).to_bytes(4, "little")
     path.write_bytes(content.replace(size, less))
-    with pytest.raises(BagError), placed(path):
+    with pytest.raises(BagError), stage(path):
         pass
     assert list(scratch.iterdir()) == []
 
@@ -64,7 +64,7 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
 def test_a_million_entries_are_not_walked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = zip_of(tmp_path / "dive.zip", {f"{index}.mcap": b"" for index in range(12)})
     monkeypatch.setattr(staging, "MOST_ENTRIES", 10)
-    with pytest.raises(BagError, match="12 entries, more than the limit of 10"), placed(path):
+    with pytest.raises(BagError, match="12 entries, more than the limit of 10"), stage(path):
         pass
 
 
@@ -81,7 +81,7 @@ def test_archives_of_something_else_are_refused(
     tmp_path: Path, entries: dict[str, bytes], words: str
 ) -> None:
     path = zip_of(tmp_path / "dive.zip", entries)
-    with pytest.raises(BagError, match=words), placed(path):
+    with pytest.raises(BagError, match=words), stage(path):
         pass
 
 
@@ -95,7 +95,7 @@ def test_only_what_belongs_to_the_recording_is_unpacked(tmp_path: Path) -> None:
     }
     path = zip_of(tmp_path / "dive.zip", entries)
     assert is_bag_archive(path)
-    with placed(path) as folder:
+    with stage(path) as folder:
         found = {each.name: each.read_bytes() for each in folder.iterdir()}
         assert found == {"metadata.yaml": b"m", "dive_0.mcap": b"0", "dive_1.mcap": b"1"}
     assert not folder.exists()
@@ -107,7 +107,7 @@ def test_an_encrypted_archive_is_refused(tmp_path: Path) -> None:
     for start, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         content[content.index(start) + offset] |= 1
     path.write_bytes(content)
-    with pytest.raises(BagError, match="without a password"), placed(path):
+    with pytest.raises(BagError, match="without a password"), stage(path):
         pass
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.keypoint_files import keypoint_ending, placed
+from app.keypoint_files import keypoint_ending, stage
 from app.recognition.errors import KeypointFileError, VideoError
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -41,7 +41,7 @@ def test_what_a_file_is_read_as_follows_from_its_bytes_first(
 def test_a_file_gets_its_ending_back_and_stays_where_it_is(tmp_path: Path) -> None:
     file = tmp_path / "received"
     file.write_text("x")
-    with placed(file, ".csv") as place:
+    with stage(file, ".csv") as place:
         assert (place.suffix, place.read_text()) == (".csv", "x")
     assert not place.exists()
     assert file.read_text() == "x"
@@ -49,7 +49,7 @@ def test_a_file_gets_its_ending_back_and_stays_where_it_is(tmp_path: Path) -> No
 
 def test_only_frames_are_unpacked_and_no_name_becomes_a_path(tmp_path: Path) -> None:
     entries = {"../../a_1_keypoints.json": "{}", "__MACOSX/._a.json": "", "notes.txt": "x"}
-    with placed(archive_of(tmp_path / "z", **entries), ".zip") as place:
+    with stage(archive_of(tmp_path / "z", **entries), ".zip") as place:
         assert [each.name for each in place.iterdir()] == ["a_1_keypoints.json"]
 
 
@@ -63,14 +63,14 @@ def test_only_frames_are_unpacked_and_no_name_becomes_a_path(tmp_path: Path) -> 
 )
 def test_other_archives_are_refused(tmp_path: Path, entries: dict[str, str], words: str) -> None:
     path = archive_of(tmp_path / "z", **entries)
-    with pytest.raises(KeypointFileError, match=words), placed(path, ".zip"):
+    with pytest.raises(KeypointFileError, match=words), stage(path, ".zip"):
         pytest.fail("it was unpacked")
 
 
 def test_damaged_archives_and_those_of_too_many_frames_are_refused(tmp_path: Path) -> None:
     path = archive_of(tmp_path / "z", **{f"{n}.json": "{}" for n in range(3)})
-    with pytest.raises(VideoError, match="limit of 2"), placed(path, ".zip", VideoLimits(frames=2)):
+    with pytest.raises(VideoError, match="limit of 2"), stage(path, ".zip", VideoLimits(frames=2)):
         pytest.fail("it was unpacked")
     path.write_bytes(path.read_bytes()[:-30])
-    with pytest.raises(KeypointFileError, match="damaged"), placed(path, ".zip"):
+    with pytest.raises(KeypointFileError, match="damaged"), stage(path, ".zip"):
         pytest.fail("it was unpacked")

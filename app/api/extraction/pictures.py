@@ -64,7 +64,7 @@ class Poster:
             return
         height, width = self._image.shape[:2]
         size = (POSTER_WIDTH, round(height * POSTER_WIDTH / width))
-        _write(_resized(self._image, *size), self._path)
+        _write(_resize(self._image, *size), self._path)
         self._written, self._image = True, None
 
 
@@ -83,7 +83,7 @@ class Thumbnails:
         if index % self._stride:
             return
         height, width = image.shape[:2]
-        small = _resized(image, round(width * THUMBNAIL_HEIGHT / height), THUMBNAIL_HEIGHT)
+        small = _resize(image, round(width * THUMBNAIL_HEIGHT / height), THUMBNAIL_HEIGHT)
         self._images.append(small)
         if len(self._images) >= 2 * FEWEST_THUMBNAILS:
             self._images = self._images[::2]
@@ -103,7 +103,7 @@ def thumbnails_in(frames: int) -> int:
     return -(-frames // stride)
 
 
-def _resized(image: Image, width: int, height: int) -> Image:
+def _resize(image: Image, width: int, height: int) -> Image:
     size = (max(1, width), max(1, height))
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 

@@ -11,7 +11,7 @@ from app.api.http.problems import ProblemError
 from app.api.http.ranges import keep_single_range
 
 
-def sent_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:
+def send_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:
     """Return the JPEG at `path`.
 
     Raises

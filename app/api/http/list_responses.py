@@ -39,7 +39,7 @@ KnownTags = Annotated[frozenset[str], Depends(_tags)]
 """The ETags of what the caller has."""
 
 
-def listing(
+def list_response(
     views: Callable[[Store], list[View]], adapter: TypeAdapter[list[View]]
 ) -> Callable[[Store, frozenset[str]], Response]:
     """Return a function that answers with the list of what is in a store.

@@ -114,7 +114,7 @@ class ProblemError(HTTPException):
         )
 
 
-def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI ``responses`` of an operation that may answer with these statuses."""
     # Every operation may be refused by the guards or meet a store that cannot answer.
     return {
@@ -127,7 +127,7 @@ def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def schemas() -> dict[str, Any]:
-    """Return the JSON Schemas that `documented` refers to."""
+    """Return the JSON Schemas that `problem_responses` refers to."""
     schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     return {**schema.pop("$defs"), "Problem": schema}
 

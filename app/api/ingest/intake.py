@@ -13,7 +13,7 @@ from app.api.extraction.messages import Failed, Probed
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.clip_sources.video_types import HEAD_BYTES
 from app.store import Clip

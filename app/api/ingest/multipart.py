@@ -40,7 +40,7 @@ class Upload:
     Attributes
     ----------
     name
-        What to show for it; see `shown_name`.
+        What to show for it; see `display_name`.
     size
         Bytes.
     fields
@@ -71,7 +71,7 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
-            async for chunk in paced(request, settings):
+            async for chunk in read_paced(request, settings):
                 parser.feed(chunk)
                 if len(parser.pending) >= _FLUSH_BYTES:
                     await _flush(parser, file)
@@ -83,7 +83,7 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
     return parser.finished()
 
 
-def shown_name(name: str) -> str:
+def display_name(name: str) -> str:
     """Return what to show for a file that its sender calls `name`.
 
     Folders, control characters and marks that turn the direction of writing are dropped, and
@@ -140,7 +140,7 @@ class _FilePart:
         if self._name is None:
             raise _malformed("the form has no part named 'file' with a file name; send one clip")
         texts = {name: text.decode("utf-8", "replace") for name, text in self._fields.items()}
-        return Upload(shown_name(self._name), self._size, UploadFields.read(texts))
+        return Upload(display_name(self._name), self._size, UploadFields.read(texts))
 
     def _on_part_begin(self) -> None:
         self._parts += 1
@@ -212,7 +212,7 @@ async def _flush(parser: _FilePart, file: BinaryIO) -> None:
     await run_in_threadpool(file.write, data)
 
 
-async def paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
+async def read_paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
     """Yield the body's chunks as long as they come fast enough.
 
     Raises

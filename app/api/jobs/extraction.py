@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.events.broadcast import Event
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import Failed, Finished, Progressed
-from app.api.extraction.workers import Workers
+from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
 from app.clip_sources import ReadOptions, source_named
 from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound

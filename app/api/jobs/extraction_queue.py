@@ -9,10 +9,10 @@ from contextlib import suppress
 from starlette.concurrency import run_in_threadpool
 
 from app.api.events.broadcast import Broadcast
-from app.api.extraction.workers import Workers
+from app.api.extraction.worker_processes import Workers
 from app.api.jobs.extraction import ExtractionJob, job_event
+from app.api.jobs.fair_queue import FairQueue
 from app.api.jobs.job import JobCancelled
-from app.api.jobs.queue import FairQueue
 from app.api.jobs.runner import JobRunner
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 

@@ -10,7 +10,7 @@ from app.api.events.broadcast import Event
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import Failed, Finished, Progressed
 from app.api.extraction.session_request import SessionRequest
-from app.api.extraction.workers import Workers
+from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
 
 

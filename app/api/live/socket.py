@@ -21,7 +21,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
 from app.api.live.watcher import Frame, Watcher
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.recognition import RecognitionError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator

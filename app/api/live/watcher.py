@@ -183,7 +183,7 @@ class Watcher:
             When the frame is no JPEG, or too large.
 
         """
-        image = decoded(frame.jpeg)
+        image = decode_frame(frame.jpeg)
         height, width = image.shape[:2]
         takes = self._takes
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
@@ -257,7 +257,7 @@ def _taken(take: Take, **answer: object) -> Recognized:
     return Recognized.model_validate(about | answer)
 
 
-def decoded(jpeg: bytes) -> Image:
+def decode_frame(jpeg: bytes) -> Image:
     """Return a JPEG as ``(height, width, 3)`` RGB.
 
     Raises

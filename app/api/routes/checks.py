@@ -8,12 +8,12 @@ from fastapi import APIRouter, Header, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.jobs.check import CheckJob
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.store import LanguageState
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -22,7 +22,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 @router.get(
     "/{language_id}/check",
     responses={
-        **documented(404, 409),
+        **problem_responses(404, 409),
         200: {"description": "The health report"},
         304: {"description": "The report that the caller has is still the newest"},
     },
@@ -53,7 +53,7 @@ async def check_language(
         raise _refusal(studio) from error
 
 
-@router.delete("/{language_id}/check", status_code=204, responses=documented(404))
+@router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
 async def cancel_check(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> Response:

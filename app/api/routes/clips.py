@@ -11,16 +11,16 @@ from fastapi.responses import FileResponse
 from pydantic import TypeAdapter
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.images import sent_picture
-from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, listing
-from app.api.http.problems import ProblemError, documented
+from app.api.http.images import send_picture
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
 from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import receive_file
 from app.api.services.clip_views import view_clip
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.segmentation import takes_in
 from app.store import ClipStore, JobStatus
@@ -58,7 +58,7 @@ router = APIRouter(prefix="/clips", tags=["clips"])
 @router.post(
     "",
     status_code=202,
-    responses=documented(408, 415, 429),
+    responses=problem_responses(408, 415, 429),
     openapi_extra=_UPLOAD_FORM,
 )
 async def upload_clip(
@@ -98,19 +98,19 @@ async def upload_clip(
         partial.unlink(missing_ok=True)
 
 
-@router.get("", response_model=list[ClipView], responses={**documented(), **NOT_SENT_AGAIN})
+@router.get("", response_model=list[ClipView], responses={**problem_responses(), **NOT_SENT_AGAIN})
 def list_clips(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the clips, newest first."""
     return _listed(studio.clips, known)
 
 
-@router.get("/{clip_id}", responses=documented(404))
+@router.get("/{clip_id}", responses=problem_responses(404))
 def get_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
     """Describe one clip."""
     return view_clip(studio.clips.get(clip_id))
 
 
-@router.delete("/{clip_id}", status_code=204, responses=documented(404))
+@router.delete("/{clip_id}", status_code=204, responses=problem_responses(404))
 async def delete_clip(clip_id: str, studio: CurrentStudio) -> Response:
     """Delete a clip and end its job. For a while it can be restored."""
     found = await run_in_threadpool(studio.clips.get, clip_id)
@@ -120,7 +120,7 @@ async def delete_clip(clip_id: str, studio: CurrentStudio) -> Response:
     return Response(status_code=204)
 
 
-@router.post("/{clip_id}/restore", responses=documented(404))
+@router.post("/{clip_id}/restore", responses=problem_responses(404))
 def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
     """Bring a deleted clip back."""
     studio.clips.restore(clip_id)
@@ -128,7 +128,7 @@ def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
     return view_clip(studio.clips.get(clip_id))
 
 
-@router.post("/{clip_id}/jobs", status_code=202, responses=documented(404, 409, 429))
+@router.post("/{clip_id}/jobs", status_code=202, responses=problem_responses(404, 409, 429))
 async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> ClipAccepted:
     """Extract the poses again, after a job that failed or was cancelled."""
     clip = (await run_in_threadpool(studio.clips.get, clip_id)).clip
@@ -138,7 +138,7 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> C
     return await _another_job(request, clip_id, studio)
 
 
-@router.post("/{clip_id}/topic", status_code=202, responses=documented(404, 409, 429))
+@router.post("/{clip_id}/topic", status_code=202, responses=problem_responses(404, 409, 429))
 async def choose_topic(
     request: Request, clip_id: str, choice: TopicChoice, studio: CurrentStudio
 ) -> ClipAccepted:
@@ -170,7 +170,7 @@ async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAc
     "/{clip_id}/video",
     response_class=FileResponse,
     responses={
-        **documented(404, 409, 416),
+        **problem_responses(404, 409, 416),
         200: {"description": "The clip's own bytes", "content": {"video/*": {}}},
         206: {"description": "The range asked for", "content": {"video/*": {}}},
     },
@@ -199,7 +199,7 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
     "/{clip_id}/poster",
     response_class=FileResponse,
     responses={
-        **documented(404, 416),
+        **problem_responses(404, 416),
         200: {"description": "A small still picture", "content": {"image/jpeg": {}}},
     },
 )
@@ -207,10 +207,10 @@ def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileRes
     """Send a still picture of the clip, once its job has begun."""
     studio.clips.get(clip_id)
     missing = "there is no still picture of this clip yet"
-    return sent_picture(request, studio.clips.poster(clip_id), "no_poster", missing)
+    return send_picture(request, studio.clips.poster(clip_id), "no_poster", missing)
 
 
-@router.get("/{clip_id}/poses", response_model=PosesView, responses=documented(404, 409))
+@router.get("/{clip_id}/poses", response_model=PosesView, responses=problem_responses(404, 409))
 def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the landmarks in every frame."""
     poses = studio.recording(clip_id).poses
@@ -218,7 +218,7 @@ def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     return Response(_poses_json(poses), media_type="application/json")
 
 
-@router.get("/{clip_id}/takes", responses=documented(404, 409))
+@router.get("/{clip_id}/takes", responses=problem_responses(404, 409))
 def get_takes(clip_id: str, studio: CurrentStudio) -> list[TakeView]:
     """List what lies between the salutes."""
     return [
@@ -237,7 +237,7 @@ def _views(clips: ClipStore) -> list[ClipView]:
     return [view_clip(found) for found in clips.all()]
 
 
-_listed = listing(_views, TypeAdapter(list[ClipView]))
+_listed = list_response(_views, TypeAdapter(list[ClipView]))
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

@@ -11,15 +11,17 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
 from app.api.events.broadcast import Event
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.routes.jobs import EVENT_STREAM, view_job
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.store import NotFound
 
 router = APIRouter(prefix="/events", tags=["events"])
 
 
-@router.get("", response_class=EventSourceResponse, responses={**documented(), **EVENT_STREAM})
+@router.get(
+    "", response_class=EventSourceResponse, responses={**problem_responses(), **EVENT_STREAM}
+)
 async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
     """Stream what changes, as server-sent events.
 

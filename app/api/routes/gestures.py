@@ -7,28 +7,28 @@ from functools import partial
 
 from fastapi import APIRouter, Response
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import GestureChange, GestureDraft
 from app.api.http.schemas.languages import LanguageView
-from app.api.services.context import CurrentStudio
-from app.api.services.demonstration_sources import remember
+from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import (
+    change_gesture_of,
     demonstration_at,
     gesture_in,
     require_free,
-    switched,
-    with_change,
+    set_switches,
 )
-from app.api.services.language_documents import editing
+from app.api.services.language_documents import edit_document
 from app.api.services.language_views import announce
+from app.api.services.studio import CurrentStudio
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.features.png import encode_png
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
 
 
-@router.post("", status_code=201, responses=documented(404, 409, 412))
+@router.post("", status_code=201, responses=problem_responses(404, 409, 412))
 def add_gesture(
     language_id: str,
     draft: GestureDraft,
@@ -45,20 +45,20 @@ def add_gesture(
         description=draft.description,
         command=draft.command,
     )
-    switches = switched(gesture.switches, draft.direction, draft.tempo, draft.mirror)
+    switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
     gesture = replace(gesture, switches=switches)
 
     def edited(language: Language) -> Language:
         require_free(language, gesture.label)
         return language.with_gesture(gesture)
 
-    edit = editing(f"Add {gesture.label}", edited)
+    edit = edit_document(f"Add {gesture.label}", edited)
     state = studio.languages.edit(language_id, edit, expected)
-    remember(studio, state, gesture.label, draft, demonstration)
+    keep_source(studio, state, gesture.label, draft, demonstration)
     return announce(studio, state, response)
 
 
-@router.patch("/{label:path}", responses=documented(404, 409, 412))
+@router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
 def change_gesture(
     language_id: str,
     label: str,
@@ -71,16 +71,16 @@ def change_gesture(
     demonstration = None
     if change.demonstration is not None:
         demonstration = demonstration_at(studio, change.demonstration)
-    changed = partial(with_change, label=label, change=change, demonstration=demonstration)
-    edit = editing(f"Change {label}", changed)
+    changed = partial(change_gesture_of, label=label, change=change, demonstration=demonstration)
+    edit = edit_document(f"Change {label}", changed)
     state = studio.languages.edit(language_id, edit, expected)
     if change.demonstration is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
-        remember(studio, state, now, change.demonstration, demonstration)
+        keep_source(studio, state, now, change.demonstration, demonstration)
     return announce(studio, state, response)
 
 
-@router.delete("/{label:path}", responses=documented(404, 409, 412))
+@router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
 def remove_gesture(
     language_id: str,
     label: str,
@@ -97,7 +97,7 @@ def remove_gesture(
         except LanguageError as error:
             raise ProblemError(409, "gesture_needed", str(error)) from error
 
-    edit = editing(f"Remove {label}", edited)
+    edit = edit_document(f"Remove {label}", edited)
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
@@ -105,7 +105,7 @@ def remove_gesture(
     "/{label:path}/image",
     response_class=Response,
     responses={
-        **documented(404),
+        **problem_responses(404),
         200: {"description": "The trajectory image", "content": {"image/png": {}}},
     },
 )

@@ -5,14 +5,14 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from app import __version__
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.http.schemas.health import Health
 from app.recognition.models import installed_models
 
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", responses=documented())
+@router.get("/healthz", responses=problem_responses())
 def get_health() -> Health:
     """Tell the version and the condition of the model files."""
     models: dict[str, str] = {model.name: model.state for model in installed_models()}

@@ -9,10 +9,10 @@ from fastapi import APIRouter, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.http.schemas.jobs import JobView
 from app.api.jobs.job import Progress
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.store import Job, JobStatus, NotFound
 
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
@@ -29,7 +29,7 @@ FINAL_EVENT_ID = "final"
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 
-@router.get("/{job_id}", responses=documented(404))
+@router.get("/{job_id}", responses=problem_responses(404))
 def get_job(job_id: str, studio: CurrentStudio) -> JobView:
     """Tell how far a job is."""
     return view_job(studio.jobs.get(job_id), studio.runner.progress(job_id))
@@ -38,7 +38,7 @@ def get_job(job_id: str, studio: CurrentStudio) -> JobView:
 @router.get(
     "/{job_id}/events",
     response_class=EventSourceResponse,
-    responses={**documented(404), **EVENT_STREAM, 204: {"description": "The job is over"}},
+    responses={**problem_responses(404), **EVENT_STREAM, 204: {"description": "The job is over"}},
 )
 async def follow_job(request: Request, job_id: str, studio: CurrentStudio) -> Response:
     """Stream a job's progress as server-sent events until it ends."""
@@ -49,7 +49,7 @@ async def follow_job(request: Request, job_id: str, studio: CurrentStudio) -> Re
     return EventSourceResponse(_progress_events(studio, job_id))
 
 
-@router.delete("/{job_id}", responses=documented(404))
+@router.delete("/{job_id}", responses=problem_responses(404))
 async def cancel_job(job_id: str, studio: CurrentStudio) -> JobView:
     """Cancel a job that waits or runs; one that is over stays as it is."""
     job = await run_in_threadpool(studio.jobs.get, job_id)

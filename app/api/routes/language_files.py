@@ -9,13 +9,13 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name
-from app.api.services.context import CurrentStudio, Studio
 from app.api.services.language_documents import draft_of
 from app.api.services.language_views import announce
+from app.api.services.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.language.file_format import FileFormat
 from app.recognition.language.osg_reference import from_reference, is_reference
@@ -29,7 +29,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 @router.post(
     "/import",
     status_code=201,
-    responses=documented(),
+    responses=problem_responses(),
     openapi_extra={
         "requestBody": {
             "required": True,
@@ -52,7 +52,7 @@ async def import_language(
     "/{language_id}/export",
     response_class=Response,
     responses={
-        **documented(404),
+        **problem_responses(404),
         200: {
             "description": "The language file",
             "content": {"application/json": {}, "application/xml": {}},
@@ -99,7 +99,7 @@ class ExportView(BaseModel):
     without_command: list[str] = Field(description="Gestures that tell a robot nothing to do")
 
 
-@router.get("/{language_id}/export/contents", responses=documented(404))
+@router.get("/{language_id}/export/contents", responses=problem_responses(404))
 def describe_export(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> ExportView:

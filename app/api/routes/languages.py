@@ -9,8 +9,8 @@ from typing import Any
 from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
-from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, listing
-from app.api.http.problems import documented
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
+from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.languages import (
     LanguageChange,
@@ -18,9 +18,9 @@ from app.api.http.schemas.languages import (
     LanguageSummary,
     LanguageView,
 )
-from app.api.services.context import CurrentStudio
-from app.api.services.language_documents import draft_of, editing, name_of_copy
+from app.api.services.language_documents import draft_of, edit_document, name_of_copy
 from app.api.services.language_views import announce, answer, view_summary
+from app.api.services.studio import CurrentStudio
 from app.recognition import Language
 from app.recognition.language.grammar_entry import grammar_of
 from app.recognition.language.tuning_entry import tuning_of
@@ -29,7 +29,7 @@ from app.store import LanguageStore
 router = APIRouter(prefix="/languages", tags=["languages"])
 
 
-@router.post("", status_code=201, responses=documented())
+@router.post("", status_code=201, responses=problem_responses())
 def create_language(
     draft: LanguageDraft, studio: CurrentStudio, response: Response
 ) -> LanguageView:
@@ -39,13 +39,15 @@ def create_language(
     return announce(studio, state, response)
 
 
-@router.get("", response_model=list[LanguageSummary], responses={**documented(), **NOT_SENT_AGAIN})
+@router.get(
+    "", response_model=list[LanguageSummary], responses={**problem_responses(), **NOT_SENT_AGAIN}
+)
 def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the languages, oldest first."""
     return _listed(studio.languages, known)
 
 
-@router.get("/{language_id}", responses=documented(404))
+@router.get("/{language_id}", responses=problem_responses(404))
 def get_language(
     language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
 ) -> LanguageView:
@@ -53,7 +55,7 @@ def get_language(
     return answer(studio, studio.languages.get(language_id, revision), response)
 
 
-@router.patch("/{language_id}", responses=documented(404, 412))
+@router.patch("/{language_id}", responses=problem_responses(404, 412))
 def change_language(
     language_id: str,
     change: LanguageChange,
@@ -69,7 +71,7 @@ def change_language(
         fields["tuning"] = tuning_of(change.tuning)
     if not fields:
         return answer(studio, studio.languages.get(language_id), response)
-    edit = editing(_describe(fields), lambda language: replace(language, **fields))
+    edit = edit_document(_describe(fields), lambda language: replace(language, **fields))
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
@@ -91,7 +93,7 @@ def _describe(fields: Mapping[str, Any]) -> str:
     return ", ".join(told)
 
 
-@router.post("/{language_id}/duplicate", status_code=201, responses=documented(404))
+@router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
 def duplicate_language(
     language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
 ) -> LanguageView:
@@ -105,7 +107,7 @@ def duplicate_language(
     return announce(studio, studio.languages.create(draft_of(copy, change)), response)
 
 
-@router.delete("/{language_id}", status_code=204, responses=documented(404, 412))
+@router.delete("/{language_id}", status_code=204, responses=problem_responses(404, 412))
 def delete_language(
     language_id: str, studio: CurrentStudio, expected: ExpectedRevision
 ) -> Response:
@@ -115,7 +117,7 @@ def delete_language(
     return Response(status_code=204)
 
 
-@router.post("/{language_id}/restore", responses=documented(404))
+@router.post("/{language_id}/restore", responses=problem_responses(404))
 def restore_language(language_id: str, studio: CurrentStudio, response: Response) -> LanguageView:
     """Bring a deleted language back."""
     return announce(studio, studio.languages.restore(language_id), response)
@@ -125,4 +127,4 @@ def _summaries(languages: LanguageStore) -> list[LanguageSummary]:
     return [view_summary(state) for state in languages.all()]
 
 
-_listed = listing(_summaries, TypeAdapter(list[LanguageSummary]))
+_listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]))

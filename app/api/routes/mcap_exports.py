@@ -13,12 +13,12 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.extraction.messages import Failed
 from app.api.extraction.session_request import SessionRecognition, SessionRequest
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.jobs.extraction import files_of
 from app.api.jobs.job import JobCancelled
 from app.api.jobs.session_export import SessionExportJob
 from app.api.middleware.shutdown import stopping
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 
 MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""
@@ -33,7 +33,7 @@ router = APIRouter(prefix="/clips", tags=["clips"])
     "/{clip_id}/session.mcap",
     response_class=FileResponse,
     responses={
-        **documented(404, 409),
+        **problem_responses(404, 409),
         200: {"description": "An MCAP file with its schemas inside", "content": {MEDIA_TYPE: {}}},
     },
 )

@@ -8,10 +8,10 @@ import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label
-from app.api.services.context import CurrentStudio
+from app.api.services.studio import CurrentStudio
 from app.recognition.explanation.pair_difference import Contrast, contrast
 from app.recognition.gestures.gesture import Gesture
 
@@ -49,7 +49,7 @@ class ContrastView(BaseModel):
 router = APIRouter(prefix="/languages", tags=["languages"])
 
 
-@router.get("/{language_id}/contrast", responses=documented(404))
+@router.get("/{language_id}/contrast", responses=problem_responses(404))
 def contrast_gestures(
     language_id: str,
     studio: CurrentStudio,

@@ -9,9 +9,9 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.context import CurrentStudio
+from app.api.services.studio import CurrentStudio
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
@@ -74,7 +74,7 @@ class PhrasesView(BaseModel):
     may_end: bool = Field(description="Whether a pause now would end the message, not drop it")
 
 
-@router.get("/{language_id}/phrases", responses=documented(404))
+@router.get("/{language_id}/phrases", responses=problem_responses(404))
 def describe_phrases(
     language_id: str,
     studio: CurrentStudio,

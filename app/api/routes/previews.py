@@ -10,14 +10,19 @@ import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from app.api.http.problems import Fault, ProblemError, documented
+from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, SwitchPosition
 from app.api.http.schemas.values import Body, Label
 from app.api.services.clip_ranges import Demonstration
-from app.api.services.context import CurrentStudio, Studio
-from app.api.services.gesture_edits import demonstration_at, gesture_in, switched, with_change
+from app.api.services.gesture_edits import (
+    change_gesture_of,
+    demonstration_at,
+    gesture_in,
+    set_switches,
+)
+from app.api.services.studio import CurrentStudio, Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.features.motion import hands_in
 from app.recognition.features.png import encode_png
@@ -114,7 +119,7 @@ class OutlookView(BaseModel):
     most_missed: float = Field(description="The same for missed takes")
 
 
-@router.post("/preview", responses=documented(404, 409))
+@router.post("/preview", responses=problem_responses(404, 409))
 def preview_gesture(
     language_id: str, request: PreviewRequest, studio: CurrentStudio
 ) -> PreviewView:
@@ -128,7 +133,7 @@ def preview_gesture(
     return _view(gesture, draft, None)
 
 
-@router.post("/preview/health", responses=documented(404, 409))
+@router.post("/preview/health", responses=problem_responses(404, 409))
 def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStudio) -> OutlookView:
     """Tell what a gesture would do to its language; nothing is written."""
     language = studio.language(studio.languages.get(language_id))
@@ -146,7 +151,7 @@ def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStu
     )
 
 
-@router.get("/gestures/{label:path}/demonstration", responses=documented(404))
+@router.get("/gestures/{label:path}/demonstration", responses=problem_responses(404))
 def get_demonstration(
     language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
 ) -> PosesView:
@@ -156,7 +161,7 @@ def get_demonstration(
     if trajectory is None:
         detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
         raise ProblemError(404, "no_demonstration", detail)
-    return _laid_out(trajectory)
+    return _lay_out(trajectory)
 
 
 @dataclass(frozen=True)
@@ -180,12 +185,12 @@ class _Draft:
         change = self.request.change
         if self.request.label is not None:
             words = change.model_copy(update={"label": None})
-            return with_change(self.of, self.label, words, self.demonstration)
+            return change_gesture_of(self.of, self.label, words, self.demonstration)
         assert self.demonstration is not None  # `_draft` refuses it otherwise
         made = Gesture.from_demonstration(
             self.label, self.demonstration.poses, salient=change.salient or None
         )
-        switches = switched(Switches(), change.direction, change.tempo, change.mirror)
+        switches = set_switches(Switches(), change.direction, change.tempo, change.mirror)
         return self.of.with_gesture(replace(made, switches=switches))
 
     def gesture(self) -> Gesture:
@@ -313,7 +318,7 @@ def _mirror_words(gesture: Gesture, counting: Counting) -> str:
     return "its mirror image, with the other hand, is not read as it"
 
 
-def _laid_out(trajectory: Trajectory) -> PosesView:
+def _lay_out(trajectory: Trajectory) -> PosesView:
     """Place a trajectory in a picture that it fills, x right, y down."""
     known = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
     low, high = known.min(axis=0), known.max(axis=0)

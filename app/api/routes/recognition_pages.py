@@ -6,9 +6,9 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Response
 
-from app.api.http.problems import documented
-from app.api.services.context import CurrentStudio
+from app.api.http.problems import problem_responses
 from app.api.services.stored_recognitions import load_recognition, load_situation
+from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.views import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.recognition_page import analysis_page
@@ -20,7 +20,7 @@ router = APIRouter(prefix="/recognitions", tags=["recognitions"])
     "/{recognition_id}/analysis",
     response_class=Response,
     responses={
-        **documented(404, 409),
+        **problem_responses(404, 409),
         200: {"description": "One file that plays without a server", "content": {"text/html": {}}},
     },
 )

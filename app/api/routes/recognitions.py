@@ -8,17 +8,17 @@ from typing import Annotated
 import numpy as np
 from fastapi import APIRouter, Query, Response
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_views import shows_pictures
-from app.api.services.context import CurrentStudio
 from app.api.services.stored_recognitions import (
     load_situation,
     tune_recognizer,
     view_recognition,
 )
+from app.api.services.studio import CurrentStudio
 from app.recognition import Language, PoseSequence
 from app.recognition.explanation.explanation import explain
 from app.recognition.language.requirements import require_landmarks
@@ -30,7 +30,7 @@ MOST_LISTED = 500
 router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 
 
-@router.post("", status_code=201, responses=documented(404, 409))
+@router.post("", status_code=201, responses=problem_responses(404, 409))
 def recognize(request: RecognitionRequest, studio: CurrentStudio) -> RecognitionView:
     """Recognise a take, a range or all of a clip, and keep the answer."""
     state = studio.languages.get(request.language_id)
@@ -59,7 +59,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     return view_recognition(record)
 
 
-@router.get("", responses=documented())
+@router.get("", responses=problem_responses())
 def list_recognitions(
     studio: CurrentStudio,
     clip_id: Annotated[str | None, Query(max_length=64)] = None,
@@ -71,13 +71,13 @@ def list_recognitions(
     return [view_recognition(record) for record in found]
 
 
-@router.get("/{recognition_id}", responses=documented(404))
+@router.get("/{recognition_id}", responses=problem_responses(404))
 def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionView:
     """Return a recognition as it was answered."""
     return view_recognition(studio.recognitions.get(recognition_id))
 
 
-@router.get("/{recognition_id}/explanation", responses=documented(404, 409))
+@router.get("/{recognition_id}/explanation", responses=problem_responses(404, 409))
 def explain_recognition(
     recognition_id: str,
     studio: CurrentStudio,

@@ -17,12 +17,12 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.ingest.fields import LONGEST, UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import paced, require_space, shown_name
+from app.api.ingest.multipart import display_name, read_paced, require_space
 from app.api.middleware.body_limit import too_large
-from app.api.services.context import CurrentStudio, Studio
+from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
 
 VERSION: Final = "1.0.0"
@@ -35,7 +35,7 @@ _COMMON = {"Tus-Resumable": VERSION, "Cache-Control": "no-store"}
 _finishing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
 
-def spoken(tus_resumable: Annotated[str | None, Header()] = None) -> None:
+def require_version(tus_resumable: Annotated[str | None, Header()] = None) -> None:
     """Refuse a version of the protocol that is not ours."""
     if tus_resumable != VERSION:
         detail = f"the header Tus-Resumable says {tus_resumable!r}; this server speaks {VERSION}"
@@ -45,7 +45,7 @@ def spoken(tus_resumable: Annotated[str | None, Header()] = None) -> None:
 router = APIRouter(prefix="/uploads", tags=["clips"])
 
 
-@router.options("", status_code=204, responses=documented())
+@router.options("", status_code=204, responses=problem_responses())
 def tell_abilities(studio: CurrentStudio) -> Response:
     """Tell what of the tus protocol is understood."""
     size = str(studio.settings.max_clip_bytes)
@@ -53,7 +53,12 @@ def tell_abilities(studio: CurrentStudio) -> Response:
     return Response(status_code=204, headers=_COMMON | told)
 
 
-@router.post("", status_code=201, dependencies=[Depends(spoken)], responses=documented(412, 429))
+@router.post(
+    "",
+    status_code=201,
+    dependencies=[Depends(require_version)],
+    responses=problem_responses(412, 429),
+)
 async def begin_upload(
     request: Request,
     studio: CurrentStudio,
@@ -73,7 +78,7 @@ async def begin_upload(
     await require_place_in_queue(request, studio)
     require_space(studio.clips.folder, upload_length, studio.settings)
     told = _metadata(upload_metadata)
-    name = shown_name(told.get("filename", ""))
+    name = display_name(told.get("filename", ""))
     # Before the bytes come: whoever tells nonsense need not send a gigabyte to hear so.
     fields = UploadFields.read(told).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
@@ -82,12 +87,16 @@ async def begin_upload(
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
 
-@router.head("/{upload_id}", dependencies=[Depends(spoken)], responses=documented(404, 412))
+@router.head(
+    "/{upload_id}", dependencies=[Depends(require_version)], responses=problem_responses(404, 412)
+)
 def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
     """Tell how much of a file has come; `Content-Location` is the clip once all of it has."""
     if clip := studio.clips.by_idempotency_key(upload_id):
         size = str(clip.clip.size)
-        return Response(headers=_finished(clip) | {"Upload-Offset": size, "Upload-Length": size})
+        return Response(
+            headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
+        )
     upload = studio.uploads.get(upload_id)
     told = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.size)}
     return Response(headers=_COMMON | told)
@@ -96,8 +105,8 @@ def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
 @router.patch(
     "/{upload_id}",
     status_code=204,
-    dependencies=[Depends(spoken)],
-    responses=documented(404, 409, 412, 415),
+    dependencies=[Depends(require_version)],
+    responses=problem_responses(404, 409, 412, 415),
     openapi_extra={"requestBody": {"content": {OFFSETS: {"schema": {"type": "string"}}}}},
 )
 async def append_part(
@@ -116,15 +125,18 @@ async def append_part(
         detail = f"{upload.offset} bytes have come; go on there instead of at {upload_offset}"
         raise ProblemError(409, "upload_offset", detail)
     require_space(studio.clips.folder, upload.size - upload.offset, studio.settings)
-    offset = await _written(request, upload, studio)
+    offset = await _write(request, upload, studio)
     headers = _COMMON | {"Upload-Offset": str(offset)}
     if offset == upload.size:
-        headers |= await _accepted(request, upload, studio)
+        headers |= await _accept(request, upload, studio)
     return Response(status_code=204, headers=headers)
 
 
 @router.delete(
-    "/{upload_id}", status_code=204, dependencies=[Depends(spoken)], responses=documented(404, 412)
+    "/{upload_id}",
+    status_code=204,
+    dependencies=[Depends(require_version)],
+    responses=problem_responses(404, 412),
 )
 def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
     """Forget an upload and what came of it."""
@@ -155,7 +167,7 @@ def _metadata(header: str) -> dict[str, str]:
     return told
 
 
-async def _written(request: Request, upload: Upload, studio: Studio) -> int:
+async def _write(request: Request, upload: Upload, studio: Studio) -> int:
     """Write what comes to where the upload ends; return the offset after it.
 
     What came before the connection was lost stays, so that the next part goes on after it.
@@ -164,7 +176,7 @@ async def _written(request: Request, upload: Upload, studio: Studio) -> int:
     with await run_in_threadpool(upload.path.open, "r+b") as file:
         file.seek(offset)
         try:
-            async for chunk in paced(request, studio.settings):
+            async for chunk in read_paced(request, studio.settings):
                 offset += len(chunk)
                 if offset > upload.size:
                     raise too_large(upload.size)
@@ -175,7 +187,7 @@ async def _written(request: Request, upload: Upload, studio: Studio) -> int:
     return offset
 
 
-async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
+async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
     """Make a clip of a file that is whole; of two who finish it the second gets the same one."""
     async with _finishing.setdefault(upload.id, asyncio.Lock()):
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
@@ -195,8 +207,8 @@ async def _accepted(request: Request, upload: Upload, studio: Studio) -> dict[st
             clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     if clip is None:
         raise NotFound(f"the clip of upload {upload.id} was deleted meanwhile")
-    return _finished(clip)
+    return _finished_headers(clip)
 
 
-def _finished(clip: ClipWithJob) -> dict[str, str]:
+def _finished_headers(clip: ClipWithJob) -> dict[str, str]:
     return _COMMON | {"Content-Location": f"/api/v1/clips/{clip.clip.id}"}

@@ -6,7 +6,7 @@ import json
 
 from fastapi import APIRouter, Response
 
-from app.api.http.problems import documented
+from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import GestureView
 from app.api.http.schemas.languages import (
@@ -16,23 +16,23 @@ from app.api.http.schemas.languages import (
     RevisionComparison,
     RevisionView,
 )
-from app.api.services.context import CurrentStudio
-from app.api.services.language_diff import compared, language_words
-from app.api.services.language_documents import editing
+from app.api.services.language_diff import compare_gestures, describe_changes
+from app.api.services.language_documents import edit_document
 from app.api.services.language_views import announce, view_gesture
+from app.api.services.studio import CurrentStudio
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
 router = APIRouter(prefix="/languages/{language_id}", tags=["revisions"])
 
 
-@router.get("/revisions", responses=documented(404))
+@router.get("/revisions", responses=problem_responses(404))
 def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView]:
     """List what was done to a language, newest first."""
     return [_revision_view(row) for row in studio.languages.revisions(language_id)]
 
 
-@router.post("/revert", responses=documented(404, 412))
+@router.post("/revert", responses=problem_responses(404, 412))
 def revert_language(
     language_id: str,
     to: LanguageRevert,
@@ -42,11 +42,11 @@ def revert_language(
 ) -> LanguageView:
     """Make a new revision that says what an older one said."""
     older = studio.language(studio.languages.get(language_id, to.revision))
-    edit = editing(f"Go back to revision {to.revision}", lambda _newest: older)
+    edit = edit_document(f"Go back to revision {to.revision}", lambda _newest: older)
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
-@router.get("/comparison", responses=documented(404))
+@router.get("/comparison", responses=problem_responses(404))
 def compare_revisions(
     language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
 ) -> RevisionComparison:
@@ -58,7 +58,7 @@ def compare_revisions(
     return RevisionComparison(
         older=None if before is None else _revision_view(before.revision),
         newer=_revision_view(after.revision),
-        words=[] if old is None else language_words(old, new),
+        words=[] if old is None else describe_changes(old, new),
         gestures=[
             GestureComparison(
                 kind=change.kind,
@@ -66,7 +66,7 @@ def compare_revisions(
                 after=_view(after, change.after),
                 words=list(change.words),
             )
-            for change in compared(old, new)
+            for change in compare_gestures(old, new)
         ],
     )
 

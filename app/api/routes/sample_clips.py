@@ -7,23 +7,23 @@ import shutil
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.http.schemas.samples import SampleChoice, SampleView
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import shown_name
-from app.api.services.context import CurrentStudio
+from app.api.ingest.multipart import display_name
+from app.api.services.studio import CurrentStudio
 
 router = APIRouter(prefix="/samples", tags=["samples"])
 
 
-@router.get("", responses=documented())
+@router.get("", responses=problem_responses())
 def list_samples(studio: CurrentStudio) -> list[SampleView]:
     """List the sample clips."""
     return [SampleView(name=clip.name, size=clip.size) for clip in studio.samples.clips().values()]
 
 
-@router.post("", status_code=202, responses=documented(404, 415, 429))
+@router.post("", status_code=202, responses=problem_responses(404, 415, 429))
 async def import_sample(
     request: Request, chosen: SampleChoice, studio: CurrentStudio
 ) -> ClipAccepted:
@@ -36,7 +36,7 @@ async def import_sample(
     partial = studio.clips.new_partial()
     try:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
-        clip = await inspect(partial, studio, name=shown_name(sample.name), size=sample.size)
+        clip = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
         return await store(clip, partial, studio, client_of(request))
     finally:
         partial.unlink(missing_ok=True)

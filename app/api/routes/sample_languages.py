@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
-from app.api.http.problems import ProblemError, documented
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.samples import SampleChoice, SampleLanguageView
-from app.api.services.context import CurrentStudio
 from app.api.services.language_views import announce
+from app.api.services.studio import CurrentStudio
 
 router = APIRouter(prefix="/samples/languages", tags=["samples"])
 
 
-@router.get("", responses=documented())
+@router.get("", responses=problem_responses())
 def list_sample_languages(studio: CurrentStudio) -> list[SampleLanguageView]:
     """List the sample languages, whether or not they are among the languages."""
     return [
@@ -22,7 +22,7 @@ def list_sample_languages(studio: CurrentStudio) -> list[SampleLanguageView]:
     ]
 
 
-@router.post("", status_code=201, responses=documented(404))
+@router.post("", status_code=201, responses=problem_responses(404))
 def add_sample_language(
     chosen: SampleChoice, studio: CurrentStudio, response: Response
 ) -> LanguageView:

@@ -10,9 +10,9 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from app.api.extraction.pictures import thumbnails_in
-from app.api.http.images import sent_picture
-from app.api.http.problems import documented
-from app.api.services.context import CurrentStudio
+from app.api.http.images import send_picture
+from app.api.http.problems import problem_responses
+from app.api.services.studio import CurrentStudio
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -40,7 +40,9 @@ class TimelineView(BaseModel):
     thumbnails: int = Field(description="How many the filmstrip has")
 
 
-@router.get("/{clip_id}/timeline", response_model=TimelineView, responses=documented(404, 409))
+@router.get(
+    "/{clip_id}/timeline", response_model=TimelineView, responses=problem_responses(404, 409)
+)
 def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the curves along the clip, one value a frame."""
     recording = studio.recording(clip_id)
@@ -60,7 +62,7 @@ def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
     "/{clip_id}/filmstrip",
     response_class=FileResponse,
     responses={
-        **documented(404, 416),
+        **problem_responses(404, 416),
         200: {"description": "Thumbnails side by side", "content": {"image/jpeg": {}}},
     },
 )
@@ -68,7 +70,7 @@ def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> File
     """Send the thumbnails along the clip, once its poses are found."""
     studio.clips.get(clip_id)
     missing = "there are no thumbnails of this clip yet"
-    return sent_picture(request, studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
+    return send_picture(request, studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
 
 
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:

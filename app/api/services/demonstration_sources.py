@@ -7,14 +7,14 @@ import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.clip_ranges import Demonstration
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.segmentation import takes_in
 from app.store import DemonstrationSource, LanguageState
 
 
-def remember(
+def keep_source(
     studio: Studio,
     state: LanguageState,
     label: str,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from app.api.http.problems import Fault, ProblemError
 from app.api.http.schemas.gestures import GestureChange, NewDemonstration, SwitchPosition
 from app.api.services.clip_ranges import Demonstration, demonstration_in
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
 
@@ -30,7 +30,7 @@ def demonstration_at(studio: Studio, where: NewDemonstration) -> Demonstration:
     return demonstration_in(recording, where.start, where.end, keep_transit=where.keep_transit)
 
 
-def switched(
+def set_switches(
     switches: Switches,
     direction: SwitchPosition | None,
     tempo: SwitchPosition | None,
@@ -45,7 +45,7 @@ def switched(
     )
 
 
-def with_change(
+def change_gesture_of(
     language: Language, label: str, change: GestureChange, demonstration: Demonstration | None
 ) -> Language:
     """Return a language in which one gesture is changed.
@@ -81,10 +81,10 @@ def with_change(
     }
     changed = gesture
     if demonstration is not None:
-        changed = _shown_anew(gesture, demonstration, change.salient)
+        changed = _remake(gesture, demonstration, change.salient)
     elif change.salient:
-        changed = _with_salient(gesture, change.salient)
-    switches = switched(changed.switches, change.direction, change.tempo, change.mirror)
+        changed = _set_salient(gesture, change.salient)
+    switches = set_switches(changed.switches, change.direction, change.tempo, change.mirror)
     changed = replace(changed, switches=switches, **fields)
     if changed.label != gesture.label:
         language = language.renamed(gesture.label, changed.label)  # and in its phrases
@@ -122,9 +122,7 @@ def require_free(language: Language, label: str) -> None:
         raise ProblemError(409, "label_taken", detail, errors=[fault])
 
 
-def _shown_anew(
-    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None
-) -> Gesture:
+def _remake(gesture: Gesture, demonstration: Demonstration, salient: list[str] | None) -> Gesture:
     """Make a gesture from another demonstration; what it says and what counts stays."""
     made = Gesture.from_demonstration(gesture.label, demonstration.poses, salient=salient or None)
     return replace(
@@ -135,7 +133,7 @@ def _shown_anew(
     )
 
 
-def _with_salient(gesture: Gesture, names: list[str]) -> Gesture:
+def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:
     """Draw and describe a gesture anew with other salient keypoints."""
     try:
         return gesture.with_salient(names)

@@ -45,7 +45,7 @@ class Change:
         return "changed" if self.words else "same"
 
 
-def compared(older: Language | None, newer: Language) -> list[Change]:
+def compare_gestures(older: Language | None, newer: Language) -> list[Change]:
     """Pair the gestures of two revisions.
 
     One that goes while another with the same demonstration comes was renamed.
@@ -67,10 +67,10 @@ def compared(older: Language | None, newer: Language) -> list[Change]:
     return changes + [Change(gesture, None) for gesture in gone.values()]
 
 
-def language_words(older: Language, newer: Language) -> list[str]:
+def describe_changes(older: Language, newer: Language) -> list[str]:
     """Say what changed about a language apart from its gestures."""
     words = [
-        f"{what} was {_quoted(old)}, is {_quoted(new)}"
+        f"{what} was {_quote(old)}, is {_quote(new)}"
         for what, old, new in (
             ("name", older.name, newer.name),
             ("author", older.author, newer.author),
@@ -94,10 +94,10 @@ def _grammar_words(older: Grammar | None, newer: Grammar | None) -> list[str]:
     before = {phrase.name: phrase for phrase in older.phrases}
     after = {phrase.name: phrase for phrase in newer.phrases}
     words = [
-        *(f"the phrase {_quoted(name)} is new" for name in after.keys() - before.keys()),
-        *(f"the phrase {_quoted(name)} is gone" for name in before.keys() - after.keys()),
+        *(f"the phrase {_quote(name)} is new" for name in after.keys() - before.keys()),
+        *(f"the phrase {_quote(name)} is gone" for name in before.keys() - after.keys()),
         *(
-            f"the phrase {_quoted(name)} was changed"
+            f"the phrase {_quote(name)} was changed"
             for name in after.keys() & before.keys()
             if after[name] != before[name]
         ),
@@ -108,12 +108,15 @@ def _grammar_words(older: Grammar | None, newer: Grammar | None) -> list[str]:
 
 
 def _same_demonstration(gesture: Gesture, candidates: dict[str, Gesture]) -> str | None:
-    return next((name for name, each in candidates.items() if not _shown_anew(each, gesture)), None)
+    return next(
+        (name for name, each in candidates.items() if not _differ_in_demonstration(each, gesture)),
+        None,
+    )
 
 
 def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
     words = [
-        f"{what} was {_quoted(old)}, is {_quoted(new)}"
+        f"{what} was {_quote(old)}, is {_quote(new)}"
         for what, old, new in (
             ("label", before.label, after.label),
             ("description", before.description, after.description),
@@ -126,7 +129,7 @@ def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
         if old != new
     ]
     words += _salient_words(before, after)
-    if _shown_anew(before, after):
+    if _differ_in_demonstration(before, after):
         words.append(f"another demonstration{_seconds(before, after)}")
     elif not (words or np.array_equal(before.image, after.image)):
         words.append("drawn anew from the same demonstration")
@@ -145,7 +148,7 @@ def _salient_words(before: Gesture, after: Gesture) -> list[str]:
     ]
 
 
-def _shown_anew(before: Gesture, after: Gesture) -> bool:
+def _differ_in_demonstration(before: Gesture, after: Gesture) -> bool:
     """Whether they come from different demonstrations, or, without any, have different images."""
     old, new = before.trajectory, after.trajectory
     if old is None or new is None:
@@ -169,7 +172,7 @@ def _command_text(gesture: Gesture) -> str:
     return command if isinstance(command, str) else json.dumps(command) if command else ""
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     if not text:
         return "empty"
     short = text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 1]}\u2026"

@@ -37,7 +37,7 @@ def draft_of(language: Language, change: str) -> Draft:
     )
 
 
-def editing(
+def edit_document(
     change: str, edited: Callable[[Language], Language]
 ) -> Callable[[LanguageRevision, int], Draft]:
     """Return what `LanguageStore.edit` wants: how a revision's document becomes the next one's."""

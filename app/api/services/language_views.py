@@ -10,8 +10,8 @@ from fastapi import Response
 from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
-from app.api.services.context import Studio
 from app.api.services.demonstration_sources import sources_in
+from app.api.services.studio import Studio
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.grammar_entry import grammar_entry_of
 from app.recognition.language.tuning_entry import tuning_entry_of

@@ -7,7 +7,7 @@ from typing import Any
 
 from app.api.http.schemas.recognitions import RecognitionView
 from app.api.services.clip_ranges import demonstration_in, surroundings_in
-from app.api.services.context import Studio
+from app.api.services.studio import Studio
 from app.recognition import Recognition, Recognizer
 from app.recognition.explanation.context import Situation
 from app.recognition.language.schema import TuningEntry

@@ -16,7 +16,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from app.api.events.broadcast import Broadcast
-from app.api.extraction.workers import Workers
+from app.api.extraction.worker_processes import Workers
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.runner import JobRunner
@@ -147,7 +147,7 @@ def _recognizer(document: str, profile: str | None) -> Recognizer:
 
 
 @asynccontextmanager
-async def running_studio(settings: Settings) -> AsyncIterator[Studio]:
+async def open_studio(settings: Settings) -> AsyncIterator[Studio]:
     """Open and migrate the store, start the jobs; stop them at the end.
 
     Raises

@@ -8,8 +8,8 @@ from typing import Annotated, Final
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
-from app.api.http.problems import ProblemError, documented
-from app.api.services.context import CurrentStudio
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.registry import CurrentWorkspaces, find
 from app.api.viser_workspaces.views import ViewRequest, view_of
 from app.recognition.errors import RecognitionError
@@ -37,7 +37,7 @@ class OpenedWorkspace(BaseModel):
     url: str
 
 
-router = APIRouter(prefix="/workspaces", tags=["workspaces"], responses=documented(404))
+router = APIRouter(prefix="/workspaces", tags=["workspaces"], responses=problem_responses(404))
 
 
 @router.post("", status_code=201)

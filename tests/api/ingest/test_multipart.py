@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, shown_name
+from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
 from app.settings import Settings
 from tests.api.routes.test_clips import CLIPS, assert_nothing_kept, upload
 from tests.api.running import Running, assert_problem, running, until
@@ -35,15 +35,15 @@ PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\
     ],
 )
 def test_a_name_is_shown_without_what_could_do_harm(given_name: str, shown: str) -> None:
-    assert shown_name(given_name) == shown
+    assert display_name(given_name) == shown
 
 
 @given(st.text(max_size=500))
 def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
-    shown = shown_name(name)
+    shown = display_name(name)
     assert 1 <= len(shown) <= LONGEST_NAME
     assert not set(shown) & set("/\\\0\r\n\u202e")
-    assert shown_name(shown) == shown
+    assert display_name(shown) == shown
 
 
 @pytest.mark.parametrize(

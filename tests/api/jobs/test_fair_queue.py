@@ -5,7 +5,7 @@ import asyncio
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.api.jobs.queue import FairQueue
+from app.api.jobs.fair_queue import FairQueue
 
 
 async def drained(entries: list[tuple[str, str]]) -> list[str]:

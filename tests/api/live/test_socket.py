@@ -21,7 +21,7 @@ from websockets.typing import Origin
 
 from app.api.http.websockets import UNSUPPORTED_DATA
 from app.api.live.socket import MESSAGE_TOO_BIG, MOST_VIEWS, TRY_AGAIN_LATER
-from app.api.live.watcher import decoded
+from app.api.live.watcher import decode_frame
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.settings import Settings
@@ -193,6 +193,6 @@ def test_pages_of_other_sites_may_not_watch(server: Running) -> None:
 
 
 def test_a_frame_is_refused_by_its_size_before_it_takes_memory() -> None:
-    assert decoded(jpeg_of(np.zeros((1080, 1920, 3), np.uint8))).shape == (1080, 1920, 3)
+    assert decode_frame(jpeg_of(np.zeros((1080, 1920, 3), np.uint8))).shape == (1080, 1920, 3)
     with pytest.raises(VideoError, match="JPEG of at most"):
-        decoded(jpeg_of(np.zeros((1600, 2400, 3), np.uint8)))
+        decode_frame(jpeg_of(np.zeros((1600, 2400, 3), np.uint8)))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.api.services.language_diff import compared, language_words
+from app.api.services.language_diff import compare_gestures, describe_changes
 from app.recognition import Gesture, Language
 from app.recognition.gestures.switches import Switches
 from app.recognition.gestures.tuning import Tuning
@@ -22,7 +22,7 @@ def line() -> Gesture:
 
 
 def words(before: Gesture, after: Gesture) -> tuple[str, ...]:
-    (change,) = compared(Language("pool", [before]), Language("pool", [after]))
+    (change,) = compare_gestures(Language("pool", [before]), Language("pool", [after]))
     return change.words
 
 
@@ -30,8 +30,8 @@ def test_a_language_compared_with_itself_has_changed_in_nothing(
     circle: Gesture, line: Gesture
 ) -> None:
     language = Language("pool", [circle, line])
-    assert {change.kind for change in compared(language, language)} == {"same"}
-    assert language_words(language, language) == []
+    assert {change.kind for change in compare_gestures(language, language)} == {"same"}
+    assert describe_changes(language, language) == []
 
 
 def test_every_edit_of_a_gesture_has_its_words(circle: Gesture, line: Gesture) -> None:
@@ -59,14 +59,14 @@ def test_a_long_text_is_quoted_in_short(circle: Gesture) -> None:
 
 def test_another_order_is_said(circle: Gesture, line: Gesture) -> None:
     older, newer = Language("pool", [circle, line]), Language("pool", [line, circle])
-    assert language_words(older, newer) == ["the gestures are in another order"]
-    assert {change.kind for change in compared(older, newer)} == {"same"}
+    assert describe_changes(older, newer) == ["the gestures are in another order"]
+    assert {change.kind for change in compare_gestures(older, newer)} == {"same"}
 
 
 def test_how_it_is_recognised_is_compared_in_words(circle: Gesture) -> None:
     language = Language("pool", [circle])
     tuned = replace(language, profile="paper", tuning=Tuning(weights={"hu": 0.0}))
-    assert language_words(language, tuned) == [
+    assert describe_changes(language, tuned) == [
         "profile was “full”, is “paper”",
         "was recognised as the profile does, is without the voter hu",
     ]

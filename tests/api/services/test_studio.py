@@ -6,7 +6,7 @@ from contextlib import closing
 import httpx
 import pytest
 
-from app.api.services.context import check_store
+from app.api.services.studio import check_store
 from app.settings import Settings
 from app.store import StoreUnavailable
 from tests.api.recordings import add_recorded_clip, recording_of

@@ -7,7 +7,7 @@ from typing import Final
 from av.error import FFmpegError
 from sensor_msgs.msg import CompressedImage, Image
 
-from app.bags.pictures import PacketDecoder, raw_image
+from app.bags.image_messages import PacketDecoder, raw_image
 from app.recognition.errors import VideoError
 from app.recognition.estimation import Image as RGBImage
 from app.recognition.recording.video_limits import VideoLimits
