@@ -1,1 +1,1 @@
-"""The HTTP service: routers per noun under ``/api/v1``, and what stands before and behind them."""
+"""HTTP API: one router per noun under ``/api/v1``, with middleware, services and jobs."""

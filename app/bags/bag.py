@@ -1,4 +1,4 @@
-"""A rosbag2 open for reading: its topics, and their messages one at a time."""
+"""rosbag2 reader: topics, and their messages one at a time."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Message:
 
     @property
     def stamp(self) -> int:
-        """Nanoseconds when it was acquired (its header's stamp), or 0 where the message is mute."""
+        """Nanoseconds when it was acquired (its header's stamp), or 0 where the message has none."""
         header = getattr(self.content, "header", self.content)
         stamp = getattr(header, "stamp", getattr(self.content, "timestamp", None))
         return 0 if stamp is None else int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)

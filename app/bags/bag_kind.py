@@ -1,4 +1,4 @@
-"""What kind of dive recording a file or folder is, by its content."""
+"""Kind of a dive recording by its content: MCAP, SQLite, zip, folder, ROS 1."""
 
 from __future__ import annotations
 
@@ -49,5 +49,5 @@ def bag_and_topic(text: str) -> tuple[Path, str | None]:
 
 
 def is_bag(path: Path) -> bool:
-    """Tell whether `path` is to be read as a dive recording and not as a video file."""
+    """Return whether `path` is to be read as a dive recording and not as a video file."""
     return kind_of(path) is not None

@@ -1,4 +1,4 @@
-"""From a dive recording to what a clip gives: landmarks, and a video to look at."""
+"""Landmarks and a playable video from one topic of a dive recording."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
 
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
-    """Tell whether the topic that `record_bag` would take holds keypoints; raises as it does."""
+    """Return whether the topic that `record_bag` would take holds keypoints; raises as it does."""
     with open_bag(path) as bag:
         return bag.topic(topic).use == "keypoints"
 

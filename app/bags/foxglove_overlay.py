@@ -1,4 +1,4 @@
-"""Bodies and labels as drawings over a video, in Foxglove's terms."""
+"""Foxglove image annotations: skeletons and labels drawn over a video."""
 
 from __future__ import annotations
 

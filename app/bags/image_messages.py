@@ -1,4 +1,4 @@
-"""Pictures in messages: raw ones in ROS's encodings, and compressed ones through FFmpeg."""
+"""Decoders of image messages: raw in ROS's encodings, compressed by FFmpeg."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A topic of pictures as the frames of a clip, with the recording's own timestamps."""
+"""Frames of a clip from a topic of pictures, with the recording's own timestamps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A topic of recorded keypoints as a `Recording`, without any pose model."""
+"""Landmark recording from a topic of recorded keypoints, without a pose model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.recognition.recording.timestamps import FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
 ASSUMED_SIZE = (1280, 720)
-"""Width and height in pixels where a recording tells fractions of a picture and nothing of the
+"""Width and height in pixels where a recording has fractions of a picture and nothing of the
 picture: the published port's camera (a ZED) at its default resolution."""
 
 LARGEST_FRACTION = 10.0
@@ -35,12 +35,12 @@ class Posed:
     Attributes
     ----------
     xy
-        ``(33, 2)`` of `POSE_LANDMARKS`; NaN: not seen or not told.
+        ``(33, 2)`` of `POSE_LANDMARKS`; NaN: not seen or not given.
     confidence
         ``(33,)`` in [0, 1]; 0 where not seen, 1 where a message gives none.
     size
         Width and height of the picture in pixels, or None where `xy` are fractions of it.
-    told
+    given
         Names that the message has.
 
     """
@@ -48,7 +48,7 @@ class Posed:
     xy: FloatArray
     confidence: FloatArray
     size: tuple[int, int] | None
-    told: frozenset[str]
+    given: frozenset[str]
 
 
 def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> Recording:
@@ -75,7 +75,7 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
         if not gathered.posed:
             raise
         gathered.broken = str(error)
-    if not any(posed.told for posed in gathered.posed):
+    if not any(posed.given for posed in gathered.posed):
         raise BagError(
             f"{bag.name}: no message of {topic.name} names a landmark that is known here, such as "
             "right_wrist; is it a topic of a body?"
@@ -135,7 +135,7 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
     if size is None:
         size = ASSUMED_SIZE
         warnings.append(
-            f"{topic.name} tells fractions of a picture whose size the recording does not hold; "
+            f"{topic.name} has fractions of a picture whose size the recording does not hold; "
             f"{size[0]} x {size[1]} is taken"
         )
     stamps = np.array(gathered.stamps, dtype=np.int64)
@@ -170,10 +170,10 @@ def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[st
             f"{clock.repaired} of {frames} messages had no timestamp, or one not later than that "
             "of the message before; their time is estimated"
         )
-    if nobody := sum(not posed.told for posed in gathered.posed):
+    if nobody := sum(not posed.given for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
-    told = frozenset[str]().union(*(posed.told for posed in gathered.posed))
-    if missing := missing_from(tuple(told)):
+    given = frozenset[str]().union(*(posed.given for posed in gathered.posed))
+    if missing := missing_from(tuple(given)):
         found.append(f"{topic.name} has no {', '.join(missing)}")
     if salute.topic is None:
         found.append(
@@ -206,18 +206,18 @@ def _picture_size(bag: Bag) -> tuple[int, int] | None:
 def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] | None) -> Posed:
     """Sort named points into the landmarks that are known here; others are left out."""
     xy, confidence = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
-    told = set()
+    given = set()
     farthest = LARGEST_FRACTION * (1 if size is None else max(size))
     for said, x, y, belief in points:
         if (name := landmark_named(said)) is None:
             continue
-        told.add(name)
+        given.add(name)
         # NaN is not nearer than anything.
         if abs(x) <= farthest and abs(y) <= farthest:
             row = POSE_LANDMARKS.index(name)
             xy[row] = x, y
             confidence[row] = 1.0 if np.isnan(belief) else min(max(belief, 0.0), 1.0)
-    return Posed(xy, confidence, size, frozenset(told))
+    return Posed(xy, confidence, size, frozenset(given))
 
 
 def _published(content: Any) -> Posed:

@@ -1,4 +1,4 @@
-"""The salute as it was recorded beside a topic of keypoints."""
+"""Salute confidence and hands from the topics recorded beside keypoints."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class SaluteTrack:
     scores
         ``(M,)`` in [0, 1].
     hands
-        M tuples: the hands told with each score.
+        M tuples: the hands that come with each score.
     frame_size
-        Width and height of the picture, where the messages tell.
+        Width and height of the picture, where the messages say it.
 
     """
 

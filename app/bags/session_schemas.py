@@ -17,7 +17,7 @@ FLAG: Schema = {"type": "boolean"}
 BYTES: Schema = {"type": "string", "contentEncoding": "base64"}
 
 
-def told(schema: Schema, description: str) -> Schema:
+def describe(schema: Schema, description: str) -> Schema:
     """Return `schema` with a description."""
     return {**schema, "description": description}
 
@@ -107,16 +107,16 @@ LOG = record(
 KEYPOINTS = record(
     "osg_studio.Keypoints",
     timestamp=TIME,
-    image_width=told(NUMBER, "Pixels"),
-    image_height=told(NUMBER, "Pixels"),
-    body=told(
+    image_width=describe(NUMBER, "Pixels"),
+    image_height=describe(NUMBER, "Pixels"),
+    body=describe(
         many(
             record(
                 "osg_studio.Keypoint",
-                name=told(TEXT, "MediaPipe's, in snake_case"),
-                x=told(NUMBER, "Pixels to the right of the picture's left edge"),
-                y=told(NUMBER, "Pixels below the picture's top edge"),
-                confidence=told(NUMBER, "0 to 1; 1 where the source gives none"),
+                name=describe(TEXT, "MediaPipe's, in snake_case"),
+                x=describe(NUMBER, "Pixels to the right of the picture's left edge"),
+                y=describe(NUMBER, "Pixels below the picture's top edge"),
+                confidence=describe(NUMBER, "0 to 1; 1 where the source gives none"),
             )
         ),
         "Landmarks seen; empty where nobody is",
@@ -124,9 +124,9 @@ KEYPOINTS = record(
     hands=many(
         record(
             "osg_studio.Hand",
-            side=told(TEXT, "The person's own: left or right"),
-            score=told(NUMBER, "0 to 1, the belief that there is a hand at all"),
-            keypoints=told(many(POINT), "Pixels, MediaPipe's 21 in their order"),
+            side=describe(TEXT, "The person's own: left or right"),
+            score=describe(NUMBER, "0 to 1, the belief that there is a hand at all"),
+            keypoints=describe(many(POINT), "Pixels, MediaPipe's 21 in their order"),
         )
     ),
 )
@@ -134,35 +134,35 @@ KEYPOINTS = record(
 SALUTE = record(
     "osg_studio.Salute",
     timestamp=TIME,
-    score=told(NUMBER, "0 to 1, how much the best hand salutes"),
-    held=told(FLAG, "Whether the salute counts now"),
-    state=told(TEXT, "Of the recogniser: idle, recording, done"),
+    score=describe(NUMBER, "0 to 1, how much the best hand salutes"),
+    held=describe(FLAG, "Whether the salute counts now"),
+    state=describe(TEXT, "Of the recogniser: idle, recording, done"),
 )
 
 TAKE = record(
     "osg_studio.Take",
-    start=told(NUMBER, "Seconds: the start salute is released"),
-    end=told(NUMBER, "Seconds: the stop salute begins"),
-    closed=told(FLAG, "Whether a stop salute ended it"),
-    stroke_start=told(NUMBER, "Seconds: the gesture itself begins"),
-    stroke_end=told(NUMBER, "Seconds: the gesture itself ends"),
+    start=describe(NUMBER, "Seconds: the start salute is released"),
+    end=describe(NUMBER, "Seconds: the stop salute begins"),
+    closed=describe(FLAG, "Whether a stop salute ended it"),
+    stroke_start=describe(NUMBER, "Seconds: the gesture itself begins"),
+    stroke_end=describe(NUMBER, "Seconds: the gesture itself ends"),
 )
 
 RECOGNITION = record(
     "osg_studio.Recognition",
-    start=told(NUMBER, "Seconds: what was recognised begins"),
-    end=told(NUMBER, "Seconds: what was recognised ends"),
+    start=describe(NUMBER, "Seconds: what was recognised begins"),
+    end=describe(NUMBER, "Seconds: what was recognised ends"),
     language=TEXT,
     revision={"type": "integer", "minimum": 0},
-    profile=told(TEXT, "Of the recogniser: full or paper"),
-    label=told(TEXT, "The gesture; empty when rejected"),
-    nearest=told(TEXT, "The best gesture, also when rejected"),
+    profile=describe(TEXT, "Of the recogniser: full or paper"),
+    label=describe(TEXT, "The gesture; empty when rejected"),
+    nearest=describe(TEXT, "The best gesture, also when rejected"),
     rejected=FLAG,
-    reason=told(TEXT, "Why the take is too poor to judge; else empty"),
-    confidence=told(NUMBER, "0 to 1"),
-    expected=told(TEXT, "The gesture meant, where somebody told; else empty"),
+    reason=describe(TEXT, "Why the take is too poor to judge; else empty"),
+    confidence=describe(NUMBER, "0 to 1"),
+    expected=describe(TEXT, "The gesture meant, where it is known; else empty"),
     votes=many(record("osg_studio.Vote", voter=TEXT, label=TEXT, weight=NUMBER)),
-    distances=told(
+    distances=describe(
         many(record("osg_studio.Distance", voter=TEXT, gesture=TEXT, distance=NUMBER)),
         "Smaller is more alike, each voter in its own unit; without those not comparable",
     ),

@@ -1,4 +1,4 @@
-"""A body as a picture, for clips that have landmarks and no video."""
+"""Drawing of a skeleton on black, for clips that have landmarks and no video."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A recording of landmarks as a video to look at: the skeleton on black, frame by frame."""
+"""Video of a landmark recording: the skeleton on black, frame by frame."""
 
 from __future__ import annotations
 

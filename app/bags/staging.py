@@ -1,4 +1,4 @@
-"""A recording's place on disk while it is read: archives are unpacked, files get an ending."""
+"""Staging of a dive recording for rosbags: unpack archives, give files their ending."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MOST_BYTES = 4 * 512 * 1024 * 1024
 ones by their noise to a half or a third at best; what shrinks further is no recording."""
 
 ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
-"""By which rosbags tells the two storages apart."""
+"""File endings by which rosbags recognises the two storages."""
 
 
 @contextmanager
@@ -129,7 +129,7 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
 
 
 def _belongs(name: str) -> bool:
-    """Tell by its name whether a file is part of a recording."""
+    """Return by its name whether a file is part of a recording."""
     return name == METADATA or name.removesuffix(".zstd").endswith((".mcap", ".db3"))
 
 
@@ -141,7 +141,7 @@ def _too_large(name: str, size: int) -> BagError:
 
 
 def is_bag_archive(path: Path) -> bool:
-    """Tell whether the zip at `path` looks like a dive recording; names alone are read."""
+    """Return whether the zip at `path` looks like a dive recording; names alone are read."""
     with path.open("rb") as file:
         if bag_kind(file.read(8)) != "zip":
             return False

@@ -1,4 +1,4 @@
-"""What a recording offers to make a clip of, proven by its first pictures."""
+"""Summary of the topics that a clip can be made of; the first picture of each is decoded."""
 
 from __future__ import annotations
 

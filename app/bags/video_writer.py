@@ -1,4 +1,4 @@
-"""Video written by us: H.264, every frame at its own time."""
+"""H.264 video writer with a timestamp per frame."""
 
 from __future__ import annotations
 

@@ -52,11 +52,11 @@ class BagSource:
     )
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
-        """Tell whether a topic is named, or the content is that of a rosbag2."""
+        """Return whether a topic is named, or the content is that of a rosbag2."""
         return topic is not None or is_bag(path)
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
-        """Tell whether `head` is the beginning of a rosbag2; a zip may hold anything else."""
+        """Return whether `head` is the beginning of a rosbag2; a zip may hold anything else."""
         return bag_kind(head) is not None
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
@@ -82,7 +82,7 @@ class BagSource:
         return ClipFacts(first.width, first.height, first.duration, first.messages, topics)
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Tell whether the topic holds pictures."""
+        """Return whether the topic holds pictures."""
         return not holds_keypoints(path, options.topic)
 
     def record(

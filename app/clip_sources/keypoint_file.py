@@ -41,11 +41,11 @@ NO_HANDS = (
     "the handles on the timeline"
 )
 FRAME_RATE_NEEDED = (
-    "the file counts frames and tells no time; tell how many frames a second its video has (field "
+    "the file counts frames and has no timestamps; give the frames per second of its video (field "
     "frame_rate, as 30)"
 )
 FRAME_SIZE_NEEDED = (
-    "the file tells fractions of a picture, whose shape it does not tell; tell the size of its "
+    "the file holds fractions of a picture, whose size it does not say; give the size of its "
     "video in pixels (field frame_size, as 1920x1080)"
 )
 
@@ -70,11 +70,11 @@ class KeypointFileSource:
     )
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
-        """Tell whether a file has the ending of a keypoint file, or a folder holds OpenPose's."""
+        """Return whether a file has the ending of a keypoint file, or a folder holds OpenPose's."""
         return topic is None and is_keypoint_file(path)
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
-        """Tell by the first bytes, and of text by the name's ending."""
+        """Decide by the first bytes, and for text by the name's ending."""
         return keypoint_ending(head, name) is not None
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
@@ -86,7 +86,7 @@ class KeypointFileSource:
         return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
-        """Tell whether it is a keypoint file; a folder of OpenPose is one take."""
+        """Return whether it is a keypoint file; a folder of OpenPose is one take."""
         return is_keypoint_file(path)
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:

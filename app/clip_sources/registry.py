@@ -53,7 +53,7 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
 
 
 def is_take(path: Path) -> bool:
-    """Tell whether `path` in a folder of labelled takes is one."""
+    """Return whether `path` in a folder of labelled takes is one."""
     return any(source.is_take(path) for source in SOURCES)
 
 

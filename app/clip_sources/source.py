@@ -219,11 +219,11 @@ class ClipSource(Protocol):
     broken_off: Refusal
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
-        """Tell whether the file or folder at `path` is of this kind."""
+        """Return whether the file or folder at `path` is of this kind."""
         ...
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
-        """Tell whether a received file of this name that begins with `head` may be of this kind."""
+        """Return whether a received file that begins with `head` may be of this kind."""
         ...
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
@@ -235,7 +235,7 @@ class ClipSource(Protocol):
         ...
 
     def is_take(self, path: Path) -> bool:
-        """Tell by its name whether `path` in a folder of labelled takes is one."""
+        """Return by its name whether `path` in a folder of labelled takes is one."""
         ...
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
@@ -252,7 +252,7 @@ class ClipSource(Protocol):
         ...
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
-        """Tell whether landmarks are found in pictures; else the file holds keypoints."""
+        """Return whether landmarks are found in pictures; else the file holds keypoints."""
         ...
 
     def record(
@@ -287,7 +287,7 @@ class ClipSource(Protocol):
         ...
 
     def refuse(self, error: RecognitionError, path: Path) -> Refusal:
-        """Return what to answer to whoever sent the file, which is stored as `path`."""
+        """Return the answer to the sender of the file, which is stored as `path`."""
         ...
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:

@@ -33,14 +33,14 @@ class VideoSource:
     )
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
-        """Tell whether the first bytes of a file are those of a video."""
+        """Return whether the first bytes of a file are those of a video."""
         if topic is not None or not path.is_file():
             return False
         with path.open("rb") as file:
             return video_type(file.read(HEAD_BYTES)) is not None
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
-        """Tell whether `head` is the beginning of a video."""
+        """Return whether `head` is the beginning of a video."""
         return video_type(head) is not None
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
@@ -54,7 +54,7 @@ class VideoSource:
         return found
 
     def is_take(self, path: Path) -> bool:
-        """Tell whether a file is a video by its ending."""
+        """Return whether a file is a video by its ending."""
         return path.suffix.lower() in self.endings and path.is_file()
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:

@@ -1,4 +1,4 @@
-"""Keypoint files of other programs as recordings: OpenPose, MediaPipe, DeepLabCut, SLEAP."""
+"""Readers of keypoint files: OpenPose, MediaPipe, DeepLabCut, SLEAP."""
 
 from app.keypoint_files.file_kind import Ending, keypoint_ending
 from app.keypoint_files.keypoint_table import KeypointOptions

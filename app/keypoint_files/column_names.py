@@ -1,4 +1,4 @@
-"""What the columns of a table of keypoints mean, by their headings."""
+"""Meaning of the columns of a keypoint table, by their headings."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ ONLY: Final = "single"
 
 
 def is_deeplabcut(path: Path) -> bool:
-    """Tell whether a CSV file begins as DeepLabCut's do."""
+    """Return whether a CSV file begins as DeepLabCut's do."""
     with path.open("rb") as file:
         return file.read(9).removeprefix(codecs.BOM_UTF8).lower().startswith(b"scorer")
 
@@ -100,8 +100,8 @@ def _headings(lines: Iterator[list[str]], path: Path) -> dict[str, list[str]]:
         if "coords" in rows or len(rows) > MOST_HEADINGS:
             break
     coords = rows.get("coords", [])
-    told = {"x", "y"} <= set(coords) <= set(COORDINATES)
-    if not told or len(rows.get("bodyparts", ())) != len(coords):
+    complete = {"x", "y"} <= set(coords) <= set(COORDINATES)
+    if not complete or len(rows.get("bodyparts", ())) != len(coords):
         raise KeypointFileError(
             f"{path} lacks DeepLabCut's headings scorer, bodyparts, coords (x, y, likelihood); "
             f"write it with deeplabcut.analyze_videos_converth5_to_csv"

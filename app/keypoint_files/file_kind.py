@@ -1,11 +1,11 @@
-"""What kind of keypoint file came, by its first bytes and, where those tell nothing, its name."""
+"""Kind of a keypoint file by its first bytes, and of text by its name."""
 
 from __future__ import annotations
 
 from typing import Final, Literal, get_args
 
 Ending = Literal[".csv", ".json", ".slp", ".h5", ".zip"]
-"""By which `app.keypoint_files.read_keypoints` tells the readers apart; an archive holds a folder
+"""By which `app.keypoint_files.read_keypoints` chooses the reader; an archive holds a folder
 of OpenPose."""
 
 _HDF5: Final = b"\x89HDF\r\n\x1a\n"
@@ -15,7 +15,7 @@ _ZIP: Final = b"PK\x03\x04"
 def keypoint_ending(head: bytes, name: str) -> Ending | None:
     """Return as what a file that begins with `head` is read, or None when it holds no keypoints.
 
-    Text has no mark of its kind, so there the name tells; what has bytes of zero is no text.
+    Text has no mark of its kind, so there the name decides; what has bytes of zero is no text.
     """
     if head.startswith(_ZIP):
         return ".zip"

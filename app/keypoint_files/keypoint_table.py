@@ -1,4 +1,4 @@
-"""What a keypoint file holds, before its names are mapped and its units are made ours."""
+"""Keypoint table: the content of a keypoint file in its own names and units."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ NEARLY_ALL = 95.0
 
 @dataclass(frozen=True)
 class KeypointOptions:
-    """What keypoint files do not tell, and the user must.
+    """Values that a keypoint file may lack, given by the user.
 
     Attributes
     ----------
     frame_rate
         Frames per second of the video, for files that count frames.
     frame_size
-        Width and height of the video in pixels, for files that tell fractions of it.
+        Width and height of the video in pixels, for files with fractions of it.
     landmarks
         What the file calls a keypoint, and what it is here: a name of `POSE_LANDMARKS` or any
         other name to keep it under. Names that are known anyway need not be given.
@@ -124,13 +124,13 @@ class KeypointTable:
     xy
         ``(T, K, 2)``, x right, y down, pixels or fractions of the picture; NaN: not seen.
     confidence
-        ``(T, K)`` in [0, 1]; None where the file tells none.
+        ``(T, K)`` in [0, 1]; None where the file has none.
     times
         When the frames are.
     frame_size
-        Width and height of the picture in pixels; None where the file does not tell.
+        Width and height of the picture in pixels; None where the file does not say.
     frame_rate
-        Frames per second; None where the file does not tell.
+        Frames per second; None where the file does not say.
     hands
         T tuples of hands, in the unit of `xy`; None where the file has no hands at all.
     notes
@@ -172,8 +172,8 @@ def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> 
 def visibility_of(points: FloatArray) -> FloatArray:
     """Return how well points ``(..., 3)`` of x, y and visibility are seen, in [0, 1].
 
-    A point whose visibility is not told is seen where it has a place.
+    A point whose visibility is unknown is seen where it has a place.
     """
     has_place = np.asarray(np.isfinite(points[..., :2]).all(axis=-1))
-    told = np.where(np.isnan(points[..., 2]), 1.0, np.clip(points[..., 2], 0, 1))
-    return np.where(has_place, told, 0.0)
+    visibility = np.where(np.isnan(points[..., 2]), 1.0, np.clip(points[..., 2], 0, 1))
+    return np.where(has_place, visibility, 0.0)

@@ -64,8 +64,8 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         )
     unseen = (np.nan, np.nan, np.nan)
     points = np.array([[row.get(name, unseen) for name in names] for row in rows])
-    told = bool(np.isfinite(points[..., 2]).any())
-    table = table_of(names, points, told, times)
+    has_visibility = bool(np.isfinite(points[..., 2]).any())
+    table = table_of(names, points, has_visibility, times)
     return replace(table, frame_size=about.frame_size, frame_rate=about.frame_rate)
 
 
@@ -79,7 +79,7 @@ def _frames(content: Any) -> list[Any]:
 
 
 def _about(content: Any) -> KeypointOptions:
-    """Return size and rate of the video, where the file tells them beside the frames."""
+    """Return size and rate of the video, where the file has them beside the frames."""
     if not isinstance(content, Mapping):
         return KeypointOptions()
     rate, width, height = (content.get(key) for key in ("fps", "width", "height"))

@@ -72,7 +72,7 @@ def _wide(
 ) -> KeypointTable:
     names = tuple(columns.points)
     places = [columns.points[name] for name in names]
-    told = any("v" in each for each in places)
+    has_visibility = any("v" in each for each in places)
     rows: list[list[list[float]]] = []
     times: list[float] = []
     for number, line in enumerate(_lines(lines)):
@@ -86,7 +86,9 @@ def _wide(
         times.append(
             float(number) if columns.when is None else _number(line, columns.when, number, path)
         )
-    return table_of(names, _points(rows, len(names)), told, times_of(np.array(times), columns.unit))
+    return table_of(
+        names, _points(rows, len(names)), has_visibility, times_of(np.array(times), columns.unit)
+    )
 
 
 def _long(
@@ -120,22 +122,24 @@ def _long(
     )
 
 
-def table_of(names: tuple[str, ...], points: FloatArray, told: bool, times: Times) -> KeypointTable:
-    """Make a table of landmarks as MediaPipe tells them.
+def table_of(
+    names: tuple[str, ...], points: FloatArray, has_visibility: bool, times: Times
+) -> KeypointTable:
+    """Make a table of landmarks as MediaPipe gives them.
 
     Parameters
     ----------
     names
         K names.
     points
-        ``(T, K, 3)``: x, y and visibility; NaN: not told.
-    told
-        Whether the file tells visibilities at all.
+        ``(T, K, 3)``: x, y and visibility; NaN: unknown.
+    has_visibility
+        Whether the file has visibilities at all.
     times
         When the frames are.
 
     """
-    confidence = visibility_of(points) if told else None
+    confidence = visibility_of(points) if has_visibility else None
     return KeypointTable(
         names=names,
         xy=mask_unseen(points[..., :2], confidence, 0.0),

@@ -50,7 +50,7 @@ class _Person:
 
 
 def is_openpose(path: Path) -> bool:
-    """Tell whether a folder holds frames of OpenPose."""
+    """Return whether a folder holds frames of OpenPose."""
     return path.is_dir() and bool(_files(path))
 
 
@@ -103,7 +103,7 @@ def _numbered(folder: Path) -> list[tuple[int, Path]]:
         digits = re.search(r"(\d{1,15})\D*$", file.stem)
         if digits is None:
             raise KeypointFileError(
-                f"{file.name} tells no frame number; OpenPose's files do, as in "
+                f"{file.name} has no frame number in its name; OpenPose's files do, as in "
                 f"dive_000000000012_keypoints.json"
             )
         number = int(digits[1])
@@ -172,7 +172,7 @@ def _followed(everybody: list[list[_Person]], times: FloatArray) -> list[_Person
 
 
 def _hands(person: _Person | None) -> tuple[Hand, ...]:
-    """Return the hands that are seen whole: of a half seen one no salute can be told."""
+    """Return the hands of which every keypoint is seen; a salute needs all of them."""
     found = []
     for side, points in zip(SIDES, person.hands if person else (None, None), strict=True):
         if points is None or not np.isfinite(points).all() or not (points[:, 2] > 0).all():

@@ -1,4 +1,4 @@
-"""How much a person stands out in a file of several."""
+"""Prominence of a person among several: size and confidence over time."""
 
 from __future__ import annotations
 

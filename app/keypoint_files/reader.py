@@ -1,4 +1,4 @@
-"""Keypoint files as recordings: names mapped, units in pixels and seconds, gaps stated."""
+"""Keypoint file reader: maps names to landmarks, converts to pixels and seconds."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ReadKeypoints:
 
 
 def is_keypoint_file(path: Path) -> bool:
-    """Tell whether a file or folder is to be read as keypoints and not as a video."""
+    """Return whether a file or folder is to be read as keypoints and not as a video."""
     return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
 
 
@@ -65,7 +65,7 @@ def read_keypoints(
     """Read one person's keypoints.
 
     Names are mapped by `landmark_named` and by the user's own `options.landmarks`; what has no
-    counterpart is left out and told. Of several people the largest is followed.
+    counterpart is left out with a warning. Of several people the largest is followed.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def read_keypoints(
         A folder of OpenPose's JSON; MediaPipe's landmarks as CSV or JSON; DeepLabCut's CSV; SLEAP's
         .slp or analysis .h5 (extra ``keypoints``).
     options
-        What the file does not tell.
+        What the file does not say.
     limits
         How long the recording may be.
 
@@ -82,7 +82,7 @@ def read_keypoints(
     KeypointFileError
         When the file cannot be read, or no name in it is known.
     FrameRateError, FrameSizeError
-        When neither the file tells its frame rate or frame size nor the user.
+        When neither the file nor `options` give the frame rate or frame size.
     VideoError
         When the recording is longer than the limits.
 
@@ -154,7 +154,7 @@ def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> Floa
     rate = options.frame_rate or table.frame_rate
     if rate is None:
         raise FrameRateError(
-            f"{path} counts frames and tells no time; give the video's frame rate, as in "
+            f"{path} counts frames and has no timestamps; give the video's frame rate, as in "
             f"--frame-rate 30"
         )
     return table.times.values / rate
@@ -197,13 +197,13 @@ def _map_names(
 
 
 def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> tuple[int, int]:
-    """Return the picture's size; of pixels the box around them will do where nobody tells."""
+    """Return the picture's size; of keypoints in pixels, else the box around them."""
     size = options.frame_size or table.frame_size
     if size is not None:
         return size
     if table.in_fractions:
         raise FrameSizeError(
-            f"{path} tells fractions of the picture, whose shape it does not tell; give the "
+            f"{path} holds fractions of the picture, whose size it does not say; give the "
             f"video's size in pixels, as in --frame-size 1920x1080"
         )
     known = table.xy[np.isfinite(table.xy).all(axis=2)]

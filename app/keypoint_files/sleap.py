@@ -114,7 +114,7 @@ def _of_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
 
 
 def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
-    """``(T, K, 3)`` of whoever is followed, and the most people in a frame."""
+    """``(T, K, 3)`` of the person followed, and the most people in a frame."""
     followed = np.full((len(labelled), nodes, 3), np.nan)
     choice, most = SubjectChoice(), 0
     for row, (frame, time) in enumerate(zip(labelled, times.tolist(), strict=True)):
@@ -131,7 +131,7 @@ def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[Float
 
 
 def _size(labels: Any) -> tuple[int, int] | None:
-    """Return width and height of the video where the file tells them."""
+    """Return width and height of the video where the file has them."""
     shape = labels.videos[0].shape if labels.videos else None
     if shape is None or not shape[1] or not shape[2]:
         return None

@@ -1,4 +1,4 @@
-"""A keypoint file's place on disk while it is read: under its ending, or unpacked."""
+"""Staging of a keypoint file: give it its ending back, or unpack it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iter
 
 
 def is_openpose_archive(path: Path) -> bool:
-    """Tell whether the zip at `path` looks like a folder of OpenPose; names alone are read."""
+    """Return whether the zip at `path` looks like a folder of OpenPose; names alone are read."""
     return any(map(_is_frame, names_in(path)))
 
 

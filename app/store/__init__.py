@@ -1,4 +1,4 @@
-"""Where clips, languages, jobs and recognitions are kept: a database and files beside it."""
+"""Store of clips, languages, jobs and recognitions: a database, and files beside it."""
 
 from app.store.clips import ClipStore, ClipWithJob
 from app.store.database import Database

@@ -1,4 +1,4 @@
-"""Files that are either whole or absent, also after a power cut."""
+"""Atomic file replacement, durable across a power cut."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clips: a row each, and a folder of files named by our own id."""
+"""Clip store: one row per clip, and a folder of files named by its id."""
 
 from __future__ import annotations
 

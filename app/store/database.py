@@ -1,4 +1,4 @@
-"""The database: SQLite made durable, or any other that SQLAlchemy reaches; migrated at start."""
+"""Database access: SQLite with durable settings, or another URL; migrated at start."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where demonstrations come from: which part of which clip."""
+"""Store of provenance: the clip and range of each demonstration."""
 
 from __future__ import annotations
 

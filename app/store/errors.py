@@ -1,4 +1,4 @@
-"""What can go wrong in the store, as one tree of exceptions."""
+"""Exceptions of the store."""
 
 
 class StoreError(Exception):

@@ -1,4 +1,4 @@
-"""One server per data folder: a second one would take the first one's uploads for orphans."""
+"""Lock of the data folder: a second server would remove the first one's uploads."""
 
 from __future__ import annotations
 

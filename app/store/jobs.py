@@ -1,4 +1,4 @@
-"""Jobs: what is to be extracted, what is being extracted, and how it ended."""
+"""Job store: queue, state and result of every extraction."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class JobStore:
             return job
 
     def is_running(self, job_id: str) -> bool:
-        """Tell whether a job was started and is neither over nor removed."""
+        """Return whether a job was started and is neither over nor removed."""
         with self._database.reading() as session:
             job = session.get(Job, job_id)
             return job is not None and job.status == JobStatus.RUNNING

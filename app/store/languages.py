@@ -1,4 +1,4 @@
-"""Languages: immutable revisions, the newest of which is the head."""
+"""Language store: immutable revisions, the newest of which is the head."""
 
 from __future__ import annotations
 

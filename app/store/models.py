@@ -1,4 +1,4 @@
-"""The tables. Rows leave the store as detached, read-only values."""
+"""Database tables as SQLModel classes; rows leave the store as detached, read-only values."""
 
 from __future__ import annotations
 

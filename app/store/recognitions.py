@@ -1,4 +1,4 @@
-"""Recognitions: answers kept as they were given."""
+"""Recognition store: answers kept as they were given."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Uploads under way: the bytes that came so far, kept over lost connections and restarts."""
+"""Store of unfinished uploads: the bytes so far survive lost connections and restarts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Upload:
     path
         What has come of it so far.
     fields
-        What its sender tells beside the bytes, by name.
+        Values that its sender gave beside the bytes, by name.
 
     """
 
@@ -65,13 +65,13 @@ class UploadStore:
         folder.mkdir(parents=True, exist_ok=True)
 
     def create(self, name: str, size: int, fields: Mapping[str, str] | None = None) -> Upload:
-        """Begin an upload of `size` bytes, with what its sender tells beside them."""
-        upload_id, told = new_id(), dict(fields or {})
-        about = {"name": name, "size": size, "fields": told}
+        """Begin an upload of `size` bytes, with the values that its sender gave."""
+        upload_id, given = new_id(), dict(fields or {})
+        about = {"name": name, "size": size, "fields": given}
         self._about(upload_id).write_text(json.dumps(about))
         path = self._folder / upload_id
         path.touch()
-        return Upload(upload_id, name, size, path, told)
+        return Upload(upload_id, name, size, path, given)
 
     def get(self, upload_id: str) -> Upload:
         """Return an upload that is not finished.
@@ -86,9 +86,9 @@ class UploadStore:
         # Only ids of our own become paths.
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
-        told = json.loads(self._about(upload_id).read_text())
+        about = json.loads(self._about(upload_id).read_text())
         # An upload that was begun before there were fields has none.
-        return Upload(upload_id, told["name"], told["size"], path, told.get("fields", {}))
+        return Upload(upload_id, about["name"], about["size"], path, about.get("fields", {}))
 
     def remove(self, upload_id: str) -> None:
         """Forget an upload and what came of it; does nothing where there is none."""

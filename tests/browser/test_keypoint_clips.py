@@ -45,7 +45,7 @@ def test_a_folder_of_openpose_becomes_a_clip_and_a_gesture(
     assert faults(page) == []
     page.keyboard.press("Escape")
     upload = page.get_by_role("list", name="Uploads").get_by_role("listitem")
-    expect(upload).to_contain_text("tell how many frames a second its video has")
+    expect(upload).to_contain_text("give the frames per second of its video")
     upload.get_by_role("button", name="Retry dive.zip").click()
     dialog.get_by_label("Frames a second").fill("many")
     dialog.get_by_role("button", name="Add the clip").click()

@@ -163,5 +163,5 @@ def test_two_clips_in_one_folder_and_mixed_models_are_refused(tmp_path: Path) ->
         read_keypoints(mixed, AT_30)
     (tmp_path / "odd").mkdir()
     (tmp_path / "odd" / "last_keypoints.json").write_text('{"people": []}')
-    with pytest.raises(KeypointFileError, match="tells no frame number"):
+    with pytest.raises(KeypointFileError, match="has no frame number"):
         read_keypoints(tmp_path / "odd", AT_30)

@@ -1,1 +1,1 @@
-"""Server-sent events: an event is published once, and fanned out to every open stream."""
+"""Server-sent events: publish/subscribe within the server process."""

@@ -1,1 +1,1 @@
-"""Clips are read in processes of their own: a file that crashes a decoder ends only its job."""
+"""Worker processes that read clips: a file that crashes a decoder ends its own job only."""

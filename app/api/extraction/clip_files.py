@@ -1,4 +1,4 @@
-"""Which files a worker writes for a clip."""
+"""Paths of the files that belong to one clip."""
 
 from __future__ import annotations
 

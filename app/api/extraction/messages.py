@@ -1,4 +1,4 @@
-"""What a worker process tells the server, one JSON object per line."""
+"""Messages from a worker process to the server, one JSON object per line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Still pictures of a clip: its poster, and the thumbnails along its timeline."""
+"""Poster and timeline thumbnails of a clip, as JPEG."""
 
 from __future__ import annotations
 

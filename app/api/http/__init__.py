@@ -1,1 +1,1 @@
-"""HTTP without knowledge of gestures: problems, schemas, ranges, media types."""
+"""HTTP building blocks: problems, schemas, ranges, ETags, images."""

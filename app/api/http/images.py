@@ -1,4 +1,4 @@
-"""Still pictures of a clip, as files that a job has written."""
+"""Response with a JPEG that a job has written, or 404 before that."""
 
 from __future__ import annotations
 

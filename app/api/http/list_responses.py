@@ -1,4 +1,4 @@
-"""Lists of everything: written once after a change, and not sent to who has them already."""
+"""List responses: serialised once per change, 304 when the caller has the newest."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def list_response(
     """Return a function that answers with the list of what is in a store.
 
     A library of a thousand clips is listed by every page at every start, and changes rarely: its
-    list is read and written after a change only, and a browser that has it is told so.
+    list is read and written after a change only, and a browser that has it gets a 304.
 
     Parameters
     ----------

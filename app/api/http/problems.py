@@ -1,4 +1,4 @@
-"""Errors as RFC 9457 problem documents: one shape for everything that can go wrong."""
+"""Problem documents (RFC 9457): the one form of every error response."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ranges of a file: one at a time, and cheap to refuse."""
+"""Range requests: one range per request, all other forms are ignored."""
 
 from __future__ import annotations
 

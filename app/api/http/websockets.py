@@ -1,4 +1,4 @@
-"""Websockets: close codes, and the check of the page that opens one."""
+"""Websockets: close codes and the check of the Origin header."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SERVICE_RESTART: Final = 1012
 
 
 def same_origin(websocket: WebSocket) -> bool:
-    """Tell whether the page that opens the websocket is one of ours.
+    """Return whether the page that opens the websocket is from this server.
 
     Browsers send Origin with every websocket and let scripts of other sites open them; programs
     that are no browser need not send it.

@@ -1,1 +1,1 @@
-"""Uploaded files: received, inspected and stored as clips."""
+"""Uploads: receive a file, probe it, store it as a clip."""

@@ -44,7 +44,7 @@ class UploadFields(BaseModel):
     )
     frame_size: Size | None = Field(
         default=None,
-        description="Of a keypoint file that tells fractions of the picture: pixels, as 1920x1080",
+        description="Of a keypoint file with fractions of the picture: pixels, as 1920x1080",
     )
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Receiving one file by multipart, streamed to where it will stay."""
+"""Multipart parser: streams one uploaded file to disk."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ class ExtractionJob:
 
 
 def job_event(job: Job) -> Event:
-    """Return the event that tells of a stored job."""
+    """Return the event about a stored job."""
     return Event("jobs", {"id": job.id, "clip_id": job.clip_id})
 
 

@@ -54,7 +54,7 @@ class Job(Protocol[Result]):
     Attributes
     ----------
     key
-        Identity: whoever runs a job whose key is running already waits for that one.
+        Identity: running a job whose key runs already waits for that run.
     resumable
         Whether the next start of the server runs it again, so that stopping need not cancel it.
 

@@ -1,1 +1,1 @@
-"""The live view: frames of a camera in, landmarks and recognitions out, over a websocket."""
+"""Live view: frames of a camera in, landmarks and recognitions out, over a websocket."""

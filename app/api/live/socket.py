@@ -68,7 +68,7 @@ class Listening(BaseModel):
 
 
 class _End(Exception):
-    """Ends a view, with what the page is told."""
+    """Ends a view with a close code and a reason."""
 
     def __init__(self, code: int, reason: str) -> None:
         super().__init__(reason)
@@ -95,7 +95,7 @@ async def watch_camera(
     if not same_origin(browser):
         await browser.close(POLICY_VIOLATION, "foreign_origin")
         return
-    # Only an accepted websocket can be told why it is closed.
+    # Only an accepted websocket can be closed with a reason.
     await browser.accept()
     try:
         if places.locked():

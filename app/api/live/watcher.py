@@ -1,4 +1,4 @@
-"""What one live view sees: frames of a camera go in, landmarks and recognised takes come out."""
+"""Frame pipeline of one live view: decode, find landmarks, segment takes, recognise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who may talk to the server: the right host name, our own pages only, and whoever has the token.
+"""ASGI middleware: checks host name, origin and token of every request.
 
 Plain ASGI, for HTTP and websockets alike. A browser lets every page of the web send requests to
 127.0.0.1, and DNS rebinding even lets it read the answers; so the `Host` must be ours, a request
@@ -27,7 +27,7 @@ COOKIE_SECONDS = 30 * 24 * 60 * 60
 
 
 OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
-"""Answered without a token, for whoever watches whether the server lives."""
+"""Answered without a token, for monitoring."""
 
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -53,7 +53,7 @@ class SameOrigin:
         self._any_host = settings.host in {"0.0.0.0", "::"} and not settings.allowed_hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is ours."""
+        """Pass on requests of the right host and origin."""
         if scope["type"] in ("http", "websocket") and (reason := self._refusal(scope)):
             await _refuse(ProblemError(403, "foreign_origin", reason), scope, receive, send)
         else:
@@ -94,7 +94,7 @@ def _is_navigation(headers: Headers) -> bool:
 
 
 class TokenRequired:
-    """Lets in only who shows the token: as bearer, or by the cookie that ``/?token=`` sets.
+    """Requires the token: as bearer, or in the cookie that ``/?token=`` sets.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ class TokenRequired:
         self._session = hmac.new(key, b"osg-studio session", hashlib.sha256).hexdigest()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what shows the token."""
+        """Pass on requests with the token."""
         if self._token is None or scope["type"] not in ("http", "websocket"):
             return await self._app(scope, receive, send)
         if scope["path"] in OPEN_PATHS or self._is_known(Headers(scope=scope)):

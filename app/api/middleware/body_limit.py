@@ -1,4 +1,4 @@
-"""Bodies that are too large are refused: before reading when they say so, else at the limit.
+"""ASGI middleware: limits the request body by Content-Length or while streaming.
 
 Starlette has a middleware of this kind; it answers with plain text, and ours are problems.
 """
@@ -33,7 +33,7 @@ class BodyLimit:
         self._exceptions = dict(exceptions)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, counting."""
+        """Pass on, counting the bytes."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         path = scope["path"]

@@ -1,4 +1,4 @@
-"""Response headers that make a browser distrust everything we did not write ourselves."""
+"""ASGI middleware: security headers, with a strict policy for what users uploaded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The end of a server: who waits for an answer is told, and what goes on is ended in order."""
+"""Graceful shutdown: cancels jobs, answers open requests with 503, closes connections."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class OpenRequests:
         self._ending = False
 
     async def answer(self, app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let `app` answer one; with 503 instead when the server stops before the answer begins."""
+        """Answer one by `app`, or with 503 when the server stops before the answer begins."""
         task = asyncio.current_task()
         assert task is not None
         begun = False
@@ -85,7 +85,7 @@ class EndsInTime:
 
 
 class StudioServer(uvicorn.Server):
-    """Ends what goes on before it stops.
+    """Cancels jobs and ends open requests before it stops.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class StudioServer(uvicorn.Server):
         await requests.end()
         await asyncio.sleep(FLUSH_SECONDS)
         for connection in list(self.server_state.connections):
-            # Whoever has not read by now, as a player that is paused, would hold the server up.
+            # A client that does not read, as a paused player, would hold the server up.
             if connection.transport.get_write_buffer_size():
                 connection.transport.abort()
         await super().shutdown(sockets)
@@ -123,5 +123,5 @@ def stopping() -> ProblemError:
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Leave out that an answer was broken off, as of a video that somebody watches: we did it."""
+    """Filter out errors of answers that the shutdown itself cancelled."""
     return not (record.exc_info and isinstance(record.exc_info[1], asyncio.CancelledError))

@@ -1,1 +1,1 @@
-"""One router a noun under ``/api/v1``."""
+"""Routers under ``/api/v1``, one per noun."""

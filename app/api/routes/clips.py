@@ -69,7 +69,7 @@ async def upload_clip(
     """Store a clip and queue the extraction of its poses.
 
     Another program's keypoint file is taken too (CSV, JSON, SLEAP, OpenPose's folder as zip); its
-    video is the skeleton, drawn. What the file does not tell is refused as `frame_rate_needed` or
+    video is the skeleton, drawn. What the file lacks is refused as `frame_rate_needed` or
     `frame_size_needed`.
 
     A dive recording (rosbag2) is taken too: of the topic named, or of the only one that can be

@@ -1,4 +1,4 @@
-"""The gestures of a language: saved from a clip, changed, taken out, shown."""
+"""Routes of a language's gestures: add, change, remove, image."""
 
 from __future__ import annotations
 

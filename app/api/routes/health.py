@@ -1,4 +1,4 @@
-"""Whether the server works, and whether its models are there."""
+"""Route of the health check: version and state of the model files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ router = APIRouter(tags=["health"])
 
 @router.get("/healthz", responses=problem_responses())
 def get_health() -> Health:
-    """Tell the version and the condition of the model files."""
+    """Return the version and the state of the model files."""
     models: dict[str, str] = {model.name: model.state for model in installed_models()}
     status = "ok" if all(state == "ok" for state in models.values()) else "models_missing"
     return Health(status=status, version=__version__, models=models)

@@ -24,14 +24,14 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 """OpenAPI ``responses`` of an endless answer."""
 
 FINAL_EVENT_ID = "final"
-"""Id of a job's last event; a browser that reconnects with it is told not to."""
+"""Id of a job's last event; a browser that reconnects with it gets a 204."""
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 
 @router.get("/{job_id}", responses=problem_responses(404))
 def get_job(job_id: str, studio: CurrentStudio) -> JobView:
-    """Tell how far a job is."""
+    """Return how far a job is."""
     return view_job(studio.jobs.get(job_id), studio.runner.progress(job_id))
 
 

@@ -96,14 +96,14 @@ class ExportView(BaseModel):
     limbs: list[str] = Field(description="Landmarks that make recognition surer")
     torso: list[str] = Field(description="Landmarks that distance and drift are taken out by")
     models: list[str]
-    without_command: list[str] = Field(description="Gestures that tell a robot nothing to do")
+    without_command: list[str] = Field(description="Gestures without a command for the robot")
 
 
 @router.get("/{language_id}/export/contents", responses=problem_responses(404))
 def describe_export(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> ExportView:
-    """Tell what the export holds, before it is taken to the robot."""
+    """Return what the export holds, before it is taken to the robot."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
     needed = requirements_of(language)

@@ -82,15 +82,15 @@ def _describe(fields: Mapping[str, Any]) -> str:
         "author": "Name {} as author",
         "grammar": "Change the phrases",
     }
-    told = [words[field].format(value) for field, value in fields.items() if field in words]
+    sentences = [words[field].format(value) for field, value in fields.items() if field in words]
     recognised = []
     if "profile" in fields:
         recognised.append(f"by the profile {fields['profile']}")
     if "tuning" in fields:
         recognised.append(fields["tuning"].words)
     if recognised:
-        told.append(f"Recognise {', '.join(recognised)}")
-    return ", ".join(told)
+        sentences.append(f"Recognise {', '.join(recognised)}")
+    return ", ".join(sentences)
 
 
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))

@@ -1,4 +1,4 @@
-"""Contrasts: two gestures of a language side by side, on one time cursor."""
+"""Route of the pair difference: two gestures of a language side by side."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def contrast_gestures(
     other: Annotated[Label, Query(description="Another one's")],
     revision: Revision = None,
 ) -> ContrastView:
-    """Tell in what two gestures differ, and which of their moments correspond."""
+    """Return in what two gestures differ, and which of their moments correspond."""
     state = studio.languages.get(language_id, revision)
     recognizer = studio.recognizer(state, "full")
     labels = recognizer.language.labels

@@ -1,4 +1,4 @@
-"""The phrases of a language: what is ambiguous about them, and what gestures in a row mean."""
+"""Route of a language's phrases: ambiguities, examples, and the meaning of gestures in a row."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def describe_phrases(
     gesture: Shown = [],  # noqa: B006  FastAPI copies it
     then: Literal["wait", "pause"] = "wait",
 ) -> PhrasesView:
-    """Tell what is ambiguous about the phrases, and what the gestures given would mean.
+    """Return the ambiguities of the phrases, and the meaning of the gestures given.
 
     They are taken to be shown without a pause; `then` says whether a pause longer than the
     grammar's time-out follows.

@@ -1,4 +1,4 @@
-"""Previews: what a gesture would be, and do to its language, before anything is saved."""
+"""Routes of the preview: a gesture and its effect on the language, before it is saved."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class OutlookView(BaseModel):
 def preview_gesture(
     language_id: str, request: PreviewRequest, studio: CurrentStudio
 ) -> PreviewView:
-    """Tell what a gesture would be; nothing is written."""
+    """Return what a gesture would be; nothing is written."""
     language = studio.language(studio.languages.get(language_id))
     draft = _draft(language, request, studio)
     try:
@@ -135,7 +135,7 @@ def preview_gesture(
 
 @router.post("/preview/health", responses=problem_responses(404, 409))
 def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStudio) -> OutlookView:
-    """Tell what a gesture would do to its language; nothing is written."""
+    """Return how a gesture would change its language's report; nothing is written."""
     language = studio.language(studio.languages.get(language_id))
     draft = _draft(language, request, studio)
     gesture = draft.gesture()

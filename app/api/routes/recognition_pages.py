@@ -1,4 +1,4 @@
-"""A recognition as one HTML file, for whoever has no studio."""
+"""Route that exports a recognition as one HTML file, which needs no server."""
 
 from __future__ import annotations
 

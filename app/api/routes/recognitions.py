@@ -40,9 +40,9 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     require_given(studio.clips.get(request.clip_id).clip, recording.poses, language)
     demonstration = demonstration_in(recording, request.start, request.end)
     recognizer = tune_recognizer(studio.recognizer(state, profile), request.tuning)
-    told = recognizer.recognize(demonstration.poses).to_dict()
+    result = recognizer.recognize(demonstration.poses).to_dict()
     if request.tuning is not None:
-        told["tuning"] = request.tuning.model_dump()
+        result["tuning"] = request.tuning.model_dump()
     record = studio.recognitions.add(
         RecognitionRecord(
             clip_id=request.clip_id,
@@ -52,7 +52,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
             end=demonstration.end,
             profile=profile,
             expected=request.expected,
-            result=json.dumps(told, allow_nan=False),
+            result=json.dumps(result, allow_nan=False),
         )
     )
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)

@@ -1,4 +1,4 @@
-"""Uploads that go on after a lost connection: the tus protocol 1.0.0 (https://tus.io).
+"""Resumable uploads by the tus protocol 1.0.0 (https://tus.io).
 
 Core, creation and termination, which every tus client knows. Not by a library: the kept one for
 FastAPI answers with files of its own that anybody may fetch, and knows neither our limits of rate,
@@ -47,10 +47,10 @@ router = APIRouter(prefix="/uploads", tags=["clips"])
 
 @router.options("", status_code=204, responses=problem_responses())
 def tell_abilities(studio: CurrentStudio) -> Response:
-    """Tell what of the tus protocol is understood."""
+    """Return the version and the extensions of the tus protocol."""
     size = str(studio.settings.max_clip_bytes)
-    told = {"Tus-Version": VERSION, "Tus-Extension": EXTENSIONS, "Tus-Max-Size": size}
-    return Response(status_code=204, headers=_COMMON | told)
+    abilities = {"Tus-Version": VERSION, "Tus-Extension": EXTENSIONS, "Tus-Max-Size": size}
+    return Response(status_code=204, headers=_COMMON | abilities)
 
 
 @router.post(
@@ -77,10 +77,10 @@ async def begin_upload(
         raise too_large(studio.settings.max_clip_bytes)
     await require_place_in_queue(request, studio)
     require_space(studio.clips.folder, upload_length, studio.settings)
-    told = _metadata(upload_metadata)
-    name = display_name(told.get("filename", ""))
-    # Before the bytes come: whoever tells nonsense need not send a gigabyte to hear so.
-    fields = UploadFields.read(told).model_dump(exclude_none=True, mode="json")
+    given = _metadata(upload_metadata)
+    name = display_name(given.get("filename", ""))
+    # Before the bytes come: a malformed field is refused without sending a gigabyte.
+    fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
     upload = await run_in_threadpool(studio.uploads.create, name, upload_length, texts)
     location = f"{request.url.path}/{upload.id}"
@@ -91,15 +91,15 @@ async def begin_upload(
     "/{upload_id}", dependencies=[Depends(require_version)], responses=problem_responses(404, 412)
 )
 def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
-    """Tell how much of a file has come; `Content-Location` is the clip once all of it has."""
+    """Return how many bytes have arrived; `Content-Location` is the clip once all of it has."""
     if clip := studio.clips.by_idempotency_key(upload_id):
         size = str(clip.clip.size)
         return Response(
             headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
         )
     upload = studio.uploads.get(upload_id)
-    told = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.size)}
-    return Response(headers=_COMMON | told)
+    progress = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.size)}
+    return Response(headers=_COMMON | progress)
 
 
 @router.patch(
@@ -146,11 +146,11 @@ def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
 
 
 def _metadata(header: str) -> dict[str, str]:
-    """Return what ``Upload-Metadata`` tells that is read here, by key.
+    """Parse ``Upload-Metadata``, and return the known keys.
 
     The header lists keys with their values in base64, and keys alone.
     """
-    told: dict[str, str] = {}
+    values: dict[str, str] = {}
     for pair in header.split(","):
         key, _, value = pair.strip().partition(" ")
         if key not in ("filename", *LONGEST):
@@ -163,8 +163,8 @@ def _metadata(header: str) -> dict[str, str]:
         if len(text) > LONGEST.get(key, len(text)):
             detail = f"the field {key!r} is longer than {LONGEST[key]} bytes"
             raise ProblemError(400, "malformed_upload", detail)
-        told[key] = text.decode("utf-8", "replace")
-    return told
+        values[key] = text.decode("utf-8", "replace")
+    return values
 
 
 async def _write(request: Request, upload: Upload, studio: Studio) -> int:

@@ -1,4 +1,4 @@
-"""A language's revisions: list them, go back to one, compare two."""
+"""Routes of a language's revisions: list, revert, diff."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def revert_language(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Make a new revision that says what an older one said."""
+    """Make a new revision with the content of an older one."""
     older = studio.language(studio.languages.get(language_id, to.revision))
     edit = edit_document(f"Go back to revision {to.revision}", lambda _newest: older)
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
@@ -50,7 +50,7 @@ def revert_language(
 def compare_revisions(
     language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
 ) -> RevisionComparison:
-    """Tell two revisions apart: by default the newest from nothing, so that all of it is new."""
+    """Diff two revisions; without `older`, against an empty language."""
     after = studio.languages.get(language_id, newer)
     before = None if older is None else studio.languages.get(language_id, older)
     new = studio.language(after)

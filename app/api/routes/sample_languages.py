@@ -1,4 +1,4 @@
-"""The languages that come with the program: to begin with, and to bring back one deleted."""
+"""Routes of the sample languages: list them, add one again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lies along a clip's time: thumbnails, the salute's confidence, the wrists' speed."""
+"""Routes of a clip's timeline: thumbnails, salute confidence, wrist speed."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What routes share: the running studio, edits of gestures, documents, event streams."""
+"""Services that routes share: the running studio, views, edits, diffs, clip ranges."""

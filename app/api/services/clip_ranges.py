@@ -1,4 +1,4 @@
-"""Which part of a clip is meant: a take between salutes, a range chosen by hand, or all of it."""
+"""Range of a clip that a request means: a take, a range chosen by hand, or all of it."""
 
 from __future__ import annotations
 
@@ -42,8 +42,7 @@ def demonstration_in(
     """Find the demonstration meant by a range of seconds.
 
     A range that is a take's own, from salute to salute, means its stroke, without the hand's way
-    from and to the salute unless `keep_transit`. Any other range is taken as it is: whoever chooses
-    by hand decides.
+    from and to the salute unless `keep_transit`. Any other range is taken as it is.
     Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
 
     Raises

@@ -1,4 +1,4 @@
-"""Which clip a gesture's demonstration comes from, so that it can be edited there."""
+"""Provenance of demonstrations: the clip and range that a gesture was saved from."""
 
 from __future__ import annotations
 

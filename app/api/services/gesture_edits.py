@@ -1,4 +1,4 @@
-"""Making and changing gestures as requests ask for it, before anything is written."""
+"""Edits of a gesture as a request describes them, applied to a language in memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What differs between two revisions of a language, gesture by gesture and in words."""
+"""Diff of two revisions of a language, by gesture and in sentences."""
 
 from __future__ import annotations
 

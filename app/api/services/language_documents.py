@@ -1,4 +1,4 @@
-"""Between the recogniser's languages and the store's revisions."""
+"""Conversion between languages in memory and the store's revisions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stored language as the API shows it, and the answers that carry one."""
+"""Response bodies of stored languages and gestures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The languages and clips we bring, so that a new user has something that works at once."""
+"""Library of the sample languages and clips that come with the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stored recognitions: read again as result, as context of an explanation, and as response."""
+"""Stored recognitions, loaded as result, as context of an explanation, or as response."""
 
 from __future__ import annotations
 

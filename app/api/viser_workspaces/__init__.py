@@ -1,1 +1,1 @@
-"""Workspaces in viser: opened, shown, played back and relayed over HTTP."""
+"""viser workspaces over HTTP: routes, playback websocket, reverse proxy."""

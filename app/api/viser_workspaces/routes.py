@@ -55,7 +55,7 @@ def open_workspace(
 
 @router.get("/{workspace_id}")
 def find_workspace(workspace_id: WorkspaceId, workspaces: CurrentWorkspaces) -> OpenedWorkspace:
-    """Tell whether a workspace is still open."""
+    """Return whether a workspace is still open."""
     workspace = find(workspaces, workspace_id)
     return OpenedWorkspace(id=workspace.id, url=f"/viser/{workspace.id}/")
 

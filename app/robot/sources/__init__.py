@@ -1,1 +1,1 @@
-"""Where a robot gets frames from: cameras, streams, clips and recorded bags."""
+"""Frame sources of a robot: cameras, streams, clips, dive recordings."""

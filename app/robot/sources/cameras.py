@@ -49,7 +49,7 @@ class CameraDevice:
 
     def __init__(self, device: int | str) -> None:
         self._name = f"camera {device}"
-        # What OpenCV warns of is told by us, once, and not with every attempt to open it again.
+        # OpenCV would repeat its warnings at every attempt; the source reports the fault once.
         cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)
         self._capture = cv2.VideoCapture(device)
         if not self._capture.isOpened():
@@ -130,7 +130,7 @@ def without_password(address: str) -> str:
 
 
 def is_address(text: str) -> bool:
-    """Tell whether a text is the address of a stream."""
+    """Return whether a text is the address of a stream."""
     return "://" in text and urlsplit(text).scheme.lower() in SCHEMES
 
 

@@ -1,4 +1,4 @@
-"""A live source: the newest frame of a camera that may drop frames, stall, or die and come back."""
+"""Live frame source: gives the newest frame, reconnects a camera that stalls or dies."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SHORTEST_STEP: Final = 1e-6
 """Seconds between two frames, at least: steady clocks of some systems tick only every 16 ms."""
 
 QUIET_SECONDS: Final = 0.5
-"""Without a frame for so long, whoever iterates is let look after other things, as a signal."""
+"""Without a frame for so long a `Quiet` is given, so that the caller can handle a signal."""
 
 MOST_NOTICES: Final = 64
 """That wait to be taken; the oldest are forgotten first. A camera that flaps must not fill memory
@@ -62,9 +62,9 @@ class Camera(Protocol):
 class LiveSource:
     """A `Source` that gives the newest frame and drops those that nobody asked for in time.
 
-    A thread of its own reads the camera. When the camera fails that is told once; it is then opened
-    again, after ever longer waits, until it gives frames. A frame's time is when it had arrived
-    here, in seconds of this machine's steady clock since the source was opened: clocks of cameras
+    A thread of its own reads the camera. A failure of the camera is reported once; it is then
+    opened again, after ever longer waits, until it gives frames. A frame's time is when it
+    arrived here, in seconds of this machine's steady clock since the source was opened: clocks of cameras
     restart when they do, and some streams have none.
 
     Parameters
@@ -146,7 +146,7 @@ class LiveSource:
                 if clock.monotonic() - began > STEADY_SECONDS:
                     self._wait = self._first_wait
                 current = None if reason is None else self._reopened(reason)
-        except Exception as error:  # whoever iterates learns of it: this thread has no other voice
+        except Exception as error:  # passed on to the iterating thread
             with self._news:
                 self._fault = error
                 self._news.notify_all()
@@ -188,7 +188,7 @@ class LiveSource:
             self._news.notify_all()
 
     def _tell(self, notice: SourceLost | SourceRestored) -> None:
-        """Put a notice behind the frame that nobody has taken, which it would be told too late."""
+        """Queue a notice, and drop the frame before it that nobody has taken."""
         with self._news:
             if self._newest is not None:
                 self._newest = None

@@ -1,4 +1,4 @@
-"""A recording as a source: every frame, at the recording's own timestamps."""
+"""Recorded frame source: every frame of a file, at the file's own timestamps."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class SourceKind:
     Attributes
     ----------
     accepts
-        Tells whether a text names a source of this kind.
+        Returns whether a text names a source of this kind.
     open
         Opens it; raises a `RecognitionError` that says what to do when that fails.
 
@@ -34,7 +34,7 @@ class SourceKind:
 
 
 def is_device(text: str) -> bool:
-    """Tell whether a text is the number of a camera or its device file."""
+    """Return whether a text is the number of a camera or its device file."""
     return re.fullmatch(r"\d{1,2}|/dev/video\d{1,2}", text) is not None
 
 

@@ -1,4 +1,4 @@
-"""What frames come from: a clip, a camera, a network stream, a recorded bag."""
+"""Protocol of a frame source: a clip, a camera, a network stream, a dive recording."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Quiet:
-    """Nothing came for a moment: whoever iterates may look after other things.
+    """No frame came for a moment; lets the caller do other work.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Quiet:
 
 
 Notice = SourceLost | SourceRestored | SourceWarned | Quiet
-"""What a source may tell between two frames; but for `Quiet`, the runtime tells it on."""
+"""What a source may give between two frames; the runtime emits all but `Quiet`."""
 
 
 class Source(Protocol):

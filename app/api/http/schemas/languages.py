@@ -57,7 +57,7 @@ class LanguageView(LanguageSummary):
     """A language with its gestures."""
 
     gestures: list[GestureView]
-    grammar: GrammarEntry | None = Field(description="Null: gestures stand for themselves")
+    grammar: GrammarEntry | None = Field(description="Null: every gesture is a message of its own")
     profile: ProfileName = Field(description="The voters that recognise it")
     tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
     tuning_words: str = Field(description="The same for people: recognised ...")

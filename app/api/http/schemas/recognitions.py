@@ -50,7 +50,7 @@ class RecognitionView(BaseModel):
     )
     votes: dict[str, str | None] = Field(description="Each voter's nearest gesture")
     weights: dict[str, float] = Field(
-        default_factory=dict, description="Each voter's share in the decision; 0: has no say"
+        default_factory=dict, description="Each voter's normalised weight; 0: not counted"
     )
     findings: list[str] = Field(default_factory=list, description="What was repaired, in sentences")
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
