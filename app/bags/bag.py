@@ -82,7 +82,7 @@ class Message:
 
     @property
     def stamp(self) -> int:
-        """Nanoseconds when it was acquired (its header's stamp), or 0 where the message has none."""
+        """Nanoseconds when it was acquired (its header's stamp), or 0 where it has none."""
         header = getattr(self.content, "header", self.content)
         stamp = getattr(header, "stamp", getattr(self.content, "timestamp", None))
         return 0 if stamp is None else int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
@@ -126,18 +126,18 @@ class Bag:
         """
         usable = [topic for topic in self.topics if topic.usable]
         if not usable:
-            raise BagError(self._without_use())
+            raise BagError(self._explain_unusable())
         if name is None:
             if len(usable) == 1:
                 return usable[0]
             raise TopicError(
-                f"{self.name} has {len(usable)} topics to choose from: {_listed(usable)}; name one "
-                f"(--topic {usable[0].name})"
+                f"{self.name} has {len(usable)} topics to choose from: {_list_topics(usable)}; "
+                f"name one (--topic {usable[0].name})"
             )
         for topic in usable:
             if topic.name == name:
                 return topic
-        raise TopicError(f"{self.name}: {self._refusal(name)}; usable are {_listed(usable)}")
+        raise TopicError(f"{self.name}: {self._refusal(name)}; usable are {_list_topics(usable)}")
 
     def messages(self, topic: str) -> Iterator[Message]:
         """Go through a topic's messages in the order in which they were received.
@@ -171,14 +171,14 @@ class Bag:
                 spans[connection.topic] = min(first, received), max(last, received)
         return {name: (last - first) / 1e9 for name, (first, last) in spans.items()}
 
-    def _without_use(self) -> str:
+    def _explain_unusable(self) -> str:
         empty = [topic for topic in self.topics if topic.use]
         if empty:
             return (
                 f"{self.name}: its topics of pictures or keypoints have no messages "
-                f"({_listed(empty)}); was the camera running? Record it again"
+                f"({_list_topics(empty)}); was the camera running? Record it again"
             )
-        held = _listed(list(self.topics)) or "no topics at all"
+        held = _list_topics(list(self.topics)) or "no topics at all"
         return (
             f"{self.name} holds nothing to recognise gestures in, only {held}; record a topic of "
             f"{', '.join(kind.replace('/msg/', '/') for kind in USES)}"
@@ -272,7 +272,7 @@ def _convert_errors(place: Path, name: str) -> Iterator[None]:
         ) from error
 
 
-def _listed(topics: list[Topic]) -> str:
+def _list_topics(topics: list[Topic]) -> str:
     shown = [
         f"{topic.name} ({topic.type.replace('/msg/', '/')}, {topic.messages} messages)"
         for topic in topics[:MOST_TOPICS_NAMED]

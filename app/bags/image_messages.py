@@ -138,7 +138,7 @@ class PacketDecoder:
         """
         # Not one decoder for all PNGs: FFmpeg's adds what is left of the picture before.
         if self._codec is None or self._codec.name == "png":
-            self._codec = self._opened(data, stated)
+            self._codec = self._open(data, stated)
         packet = av.Packet(data)
         packet.pts, packet.time_base = stamp, NANOSECONDS
         yield from self._pictures(packet)
@@ -155,7 +155,7 @@ class PacketDecoder:
             image = frame.to_ndarray(format="rgb24")
             yield int(frame.pts or 0), np.asarray(image, dtype=np.uint8)
 
-    def _opened(self, data: bytes, stated: str) -> VideoCodecContext:
+    def _open(self, data: bytes, stated: str) -> VideoCodecContext:
         codec = CodecContext.create(_codec_of(data, stated), "r")
         assert isinstance(codec, VideoCodecContext)
         codec.options = {"max_pixels": str(self._limits.pixels)}

@@ -123,7 +123,7 @@ class BagFrames(Iterator[VideoFrame]):
         self._limits.require_seconds(time)
         self._limits.require_frames(self._count + 1)
         self._count += 1
-        return VideoFrame(index=self._count - 1, time=time, image=self._fitted(image))
+        return VideoFrame(index=self._count - 1, time=time, image=self._fit(image))
 
     def _read(self, bag: Bag) -> Iterator[tuple[int | None, Image]]:
         """Go through the readable pictures, with nanoseconds after the first one's stamp."""
@@ -131,24 +131,26 @@ class BagFrames(Iterator[VideoFrame]):
         messages = bag.messages(self._topic.name)
         try:
             for message in messages:
-                yield from self._decoded(message, decoder)
-            yield from ((self._relative(stamp), _even(image)) for stamp, image in decoder.rest())
+                yield from self._decode(message, decoder)
+            yield from (
+                (self._relative(stamp), _crop_to_even(image)) for stamp, image in decoder.rest()
+            )
         except (BagError, FFmpegError) as error:
             self._broken = str(error)
 
-    def _decoded(
+    def _decode(
         self, message: Message, decoder: PacketDecoder
     ) -> Iterator[tuple[int | None, Image]]:
         content: Any = message.content
         stamp = self._stamp(message)
         try:
             if self._topic.type == RAW:
-                yield self._relative(stamp), _even(raw_image(content, self._limits))
+                yield self._relative(stamp), _crop_to_even(raw_image(content, self._limits))
                 return
             stated = getattr(content, "encoding", None) or getattr(content, "format", "")
             data = np.asarray(content.data, dtype=np.uint8).tobytes()
             for taken, image in decoder.decode(data, str(stated), stamp):
-                yield self._relative(taken), _even(image)
+                yield self._relative(taken), _crop_to_even(image)
         except VideoError:
             raise
         except (BagError, FFmpegError, ValueError) as error:
@@ -169,7 +171,7 @@ class BagFrames(Iterator[VideoFrame]):
             self._first_stamp = stamp
         return stamp - self._first_stamp
 
-    def _fitted(self, image: Image) -> Image:
+    def _fit(self, image: Image) -> Image:
         size = (self.info.width, self.info.height)
         if image.shape[1::-1] == size:
             return image
@@ -177,7 +179,7 @@ class BagFrames(Iterator[VideoFrame]):
         return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-def _even(image: Image) -> Image:
+def _crop_to_even(image: Image) -> Image:
     """Leave out a last odd row or column; raise BagError where nothing would be left."""
     height, width = image.shape[:2]
     if min(height, width) < 2:

@@ -203,7 +203,9 @@ def _picture_size(bag: Bag) -> tuple[int, int] | None:
     return None
 
 
-def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] | None) -> Posed:
+def _convert_points(
+    points: list[tuple[str, float, float, float]], size: tuple[int, int] | None
+) -> Posed:
     """Sort named points into the landmarks that are known here; others are left out."""
     xy, confidence = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
     given = set()
@@ -220,17 +222,17 @@ def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] 
     return Posed(xy, confidence, size, frozenset(given))
 
 
-def _published(content: Any) -> Posed:
+def _convert_published(content: Any) -> Posed:
     """Read the published port's message: MediaPipe's names, fractions of the picture."""
     points = [(str(p.name), float(p.x), float(p.y), np.nan) for p in content.keypoints]
-    return _posed(points, None)
+    return _convert_points(points, None)
 
 
 def _ours(content: Any) -> Posed:
     """Read our own message: pixels, NaN where not seen."""
     points = [(str(p.name), float(p.x), float(p.y), float(p.confidence)) for p in content.keypoints]
     width, height = int(content.image_width), int(content.image_height)
-    return _posed(points, (width, height) if width and height else None)
+    return _convert_points(points, (width, height) if width and height else None)
 
 
 def _ros4hri(content: Any) -> Posed:
@@ -239,11 +241,11 @@ def _ros4hri(content: Any) -> Posed:
         (name or "", float(p.x) if p.c else np.nan, float(p.y), float(p.c))
         for name, p in zip(SKELETON_2D, content.skeleton, strict=True)
     ]
-    return _posed(points, None)
+    return _convert_points(points, None)
 
 
 _READERS: dict[str, Callable[[Any], Posed]] = {
-    "keypoints_interfaces/msg/PoseKeypointsArray": _published,
+    "keypoints_interfaces/msg/PoseKeypointsArray": _convert_published,
     "osg_interfaces/msg/BodyKeypoints": _ours,
     "hri_msgs/msg/Skeleton2D": _ros4hri,
 }

@@ -93,7 +93,7 @@ def salute_track(bag: Bag, keypoints: Topic, by_header: bool) -> SaluteTrack:
         Whether the keypoints' time is their headers' stamp. The salute's is compared with it.
 
     """
-    topic = _chosen(bag, keypoints)
+    topic = _choose_topic(bag, keypoints)
     if topic is None:
         return SaluteTrack(None, np.array([], dtype=np.int64), np.array([]), ())
     stamps: list[int] = []
@@ -129,7 +129,7 @@ def _readable(bag: Bag, topic: Topic) -> Iterator[Message]:
         return
 
 
-def _chosen(bag: Bag, keypoints: Topic) -> Topic | None:
+def _choose_topic(bag: Bag, keypoints: Topic) -> Topic | None:
     namespace = keypoints.name.rpartition("/")[0]
     candidates = [
         topic

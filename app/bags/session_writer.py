@@ -149,7 +149,7 @@ def _events(
         _log(recording),
         _frames(recording, progress),
         _takes(takes_in(recording)),
-        _recognised(recognitions),
+        _recognition_events(recognitions),
         _labels(recognitions),
     ]
     if video is not None:
@@ -219,7 +219,7 @@ def _takes(takes: Sequence[Take]) -> Iterator[_Event]:
         yield _Event(take.end, "/takes", content | stroke)
 
 
-def _recognised(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
+def _recognition_events(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
     for each in sorted(recognitions, key=lambda one: one.end):
         result = each.result
         votes = [

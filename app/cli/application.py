@@ -28,7 +28,7 @@ from app.cli.clip_argument import (
     demonstration_poses,
     keypoint_options,
     read_clip,
-    spotted_takes,
+    spot_takes,
 )
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
@@ -196,7 +196,7 @@ def recognize(
     read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), spoken)
     recording = read.recording
     if spotter is not None:
-        results = spotted_takes(spotter, recording, span)
+        results = spot_takes(spotter, recording, span)
     else:
         results = [(take, recognizer.recognize(take.poses)) for take in read.takes(span)]
     if mcap is not None:

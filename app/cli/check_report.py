@@ -42,7 +42,7 @@ def _gestures(report: HealthReport) -> Iterator[str]:
         return
     yield ""
     head = ("gesture", "missed", "of it refused", "false alarms", "seconds", "depends on (visible)")
-    yield from _aligned([head, *(_gesture_row(gesture) for gesture in report.gestures)])
+    yield from _align([head, *(_gesture_row(gesture) for gesture in report.gestures)])
 
 
 def _gesture_row(gesture: GestureHealth) -> tuple[str, ...]:
@@ -71,7 +71,7 @@ def _pairs(report: HealthReport) -> Iterator[str]:
         yield f"no pair is predicted to be confused more often than {WORTH_LISTING:.1%}"
         return
     head = ("pair", "", "first read as second", "second as first")
-    yield from _aligned([head, *listed[:MOST_PAIRS]])
+    yield from _align([head, *listed[:MOST_PAIRS]])
 
 
 def _warnings(report: HealthReport) -> Iterator[str]:
@@ -94,7 +94,7 @@ def percentage(forecast: Forecast | None) -> str:
     return f"{forecast.rate:.1%} ({forecast.low:.1%}-{forecast.high:.1%})"
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+def _align(rows: Sequence[Sequence[str]]) -> Iterator[str]:
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))

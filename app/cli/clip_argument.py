@@ -241,7 +241,7 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
     )
 
 
-def spotted_takes(
+def spot_takes(
     spotter: Spotter, recording: Recording, span: tuple[float, float] | None
 ) -> list[tuple[Take, Recognition]]:
     """Find the gestures in a recording, or in a range of it, without salutes around them."""

@@ -110,9 +110,9 @@ def evaluate(
                 labelled_files(source, layout), keypoints=keypoints, progress=advance
             )
         problems = collection.problems
-        findings = list(_of_takes(collection, profiles, language, problems))
+        findings = list(_evaluate_takes(collection, profiles, language, problems))
     else:
-        findings = list(_of_variants(Language.load(source), profiles, variants, person, seed))
+        findings = list(_evaluate_variants(Language.load(source), profiles, variants, person, seed))
     if as_json:
         report = {
             "source": str(source),
@@ -128,7 +128,7 @@ def evaluate(
         _draw(picture, findings)
 
 
-def _of_variants(
+def _evaluate_variants(
     language: Language, profiles: list[str], count: int, person: Person, seed: int
 ) -> Iterator[Finding]:
     for profile in profiles:
@@ -146,7 +146,7 @@ def _of_variants(
         )
 
 
-def _of_takes(
+def _evaluate_takes(
     collection: Collection, profiles: list[str], language: Path | None, problems: dict[str, str]
 ) -> Iterator[Finding]:
     given = None if language is None else Language.load(language)

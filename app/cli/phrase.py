@@ -41,7 +41,7 @@ def phrase(
         return
     for label in gestures:
         language.gesture(label)  # a mistyped label is told before anything is made of it
-    events = simulated(language.grammar, gestures)
+    events = simulate_phrase(language.grammar, gestures)
     for event in events:
         if as_json:
             typer.echo(json.dumps(event.to_dict(), allow_nan=False))
@@ -53,7 +53,7 @@ def phrase(
         raise typer.Exit(NOT_COMPLETE)
 
 
-def simulated(grammar: Grammar, gestures: list[str]) -> list[PhraseEvent]:
+def simulate_phrase(grammar: Grammar, gestures: list[str]) -> list[PhraseEvent]:
     """Show gestures without any pause, and then none any more.
 
     Stamps count the gestures, as if each took no time.

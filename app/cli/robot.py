@@ -113,7 +113,7 @@ def robot(
         runtime = Runtime(
             frames, finder, listener, water=water, changes=spoken.changes, observer=observer
         )
-        with signals_heeded(runtime.stop, spoken.reload):
+        with handle_signals(runtime.stop, spoken.reload):
             recognised = told(runtime, heard)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
@@ -147,7 +147,7 @@ def profile_until_stopped(
     from app.cli.robot_stages import show_stages
 
     asked: list[bool] = []
-    with signals_heeded(lambda: asked.append(True), lambda: None):
+    with handle_signals(lambda: asked.append(True), lambda: None):
         show_stages(source, body, whole, listener, water=water, is_over=lambda: bool(asked))
 
 
@@ -159,7 +159,7 @@ def tell(event: Event) -> None:
 
 
 @contextmanager
-def signals_heeded(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
+def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
     """Stop after the frame at hand on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
     wanted = {signal.SIGINT: stop, signal.SIGTERM: stop}
     if hasattr(signal, "SIGHUP"):  # Windows has none
@@ -167,14 +167,14 @@ def signals_heeded(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
 
     before = {number: signal.getsignal(number) for number in wanted}
 
-    def heed(number: int, frame: FrameType | None) -> None:
+    def handle(number: int, frame: FrameType | None) -> None:
         kind = signal.Signals(number)
         if wanted[kind] is stop:
             signal.signal(kind, before[kind])
         wanted[kind]()
 
     for number in wanted:
-        signal.signal(number, heed)
+        signal.signal(number, handle)
     try:
         yield
     finally:

@@ -46,8 +46,7 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
     if path.is_dir():
         folders = [source.folder for source in SOURCES if source.folder is not None]
         raise VideoError(
-            f"{path} holds neither {_joined(folders, 'nor')}; give the folder that holds one of "
-            "them"
+            f"{path} holds neither {_join(folders, 'nor')}; give the folder that holds one of them"
         )
     return VIDEO
 
@@ -59,10 +58,10 @@ def is_take(path: Path) -> bool:
 
 def supported_kinds() -> str:
     """Say in words which files are none of the known kinds, and what to send instead."""
-    nouns = _joined([source.noun for source in SOURCES], "nor")
-    formats = _joined([source.formats for source in SOURCES], "or")
+    nouns = _join([source.noun for source in SOURCES], "nor")
+    formats = _join([source.formats for source in SOURCES], "or")
     return f"neither {nouns} this app knows, whatever its name says; send {formats}"
 
 
-def _joined(words: Sequence[str], last: str) -> str:
+def _join(words: Sequence[str], last: str) -> str:
     return f" {last} ".join(filter(None, (", ".join(words[:-1]), words[-1])))

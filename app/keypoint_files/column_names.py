@@ -77,7 +77,7 @@ def columns_of(headings: Sequence[str]) -> Columns:
             points.setdefault(match["name"], {})[AXES[match["axis"].lower()]] = place
     whole = {name: places for name, places in points.items() if {"x", "y"} <= set(places)}
     when, unit = time_column(headings)
-    return Columns(_numbered(whole), when, unit)
+    return Columns(_number_points(whole), when, unit)
 
 
 def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
@@ -102,7 +102,7 @@ def numbered_landmark(name: str, first: int = 0) -> str:
     return name
 
 
-def _numbered(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:
+def _number_points(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:
     numbers = {int(name) for name in points if name.isdigit()}
     for first in (0, 1):
         if numbers == set(range(first, first + len(POSE_LANDMARKS))) and len(points) == len(

@@ -56,7 +56,7 @@ def is_openpose(path: Path) -> bool:
 
 def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
     """Read a folder of frames, sorted by the number in their names; see `read_keypoints`."""
-    files = _numbered(path)
+    files = _number_files(path)
     limits.require_frames(len(files))
     frames = np.array([number for number, _ in files], dtype=np.float64)
     everybody = [_people(file) for _, file in files]
@@ -69,7 +69,7 @@ def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> 
             f" run OpenPose with one model for all frames"
         )
     landmarks = SETS[sizes.pop()]
-    followed = _followed(everybody, frames / (options.nominal_rate))
+    followed = _follow_person(everybody, frames / (options.nominal_rate))
     empty = np.full((len(landmarks), 3), np.nan)
     rows = np.stack([empty if one is None else one.body for one in followed])
     kept = [index for index, name in enumerate(landmarks) if name is not None]
@@ -91,7 +91,7 @@ def _files(folder: Path) -> list[Path]:
     return named or sorted(folder.glob("*.json"))
 
 
-def _numbered(folder: Path) -> list[tuple[int, Path]]:
+def _number_files(folder: Path) -> list[tuple[int, Path]]:
     files = _files(folder)
     if not files:
         raise KeypointFileError(
@@ -158,7 +158,7 @@ def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
     return numbers.reshape(-1, 3)
 
 
-def _followed(everybody: list[list[_Person]], times: FloatArray) -> list[_Person | None]:
+def _follow_person(everybody: list[list[_Person]], times: FloatArray) -> list[_Person | None]:
     choice = SubjectChoice()
     followed: list[_Person | None] = []
     for people, time in zip(everybody, times.tolist(), strict=True):

@@ -42,10 +42,10 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
     tracks = list(labels.tracks)
     if tracks:
         track = _most_prominent(labelled, tracks)
-        followed = _of_track(labelled, track, len(names))
+        followed = _read_track(labelled, track, len(names))
         notes = _notes(len(tracks), f"track {track.name!r} stands out most and is followed")
     else:
-        followed, most = _by_place(labelled, frames / options.nominal_rate, len(names))
+        followed, most = _follow_largest(labelled, frames / options.nominal_rate, len(names))
         notes = _notes(most, "the largest is followed")
     if len(labels.videos) > 1:
         notes += (f"the file holds {len(labels.videos)} videos; the first is read",)
@@ -103,7 +103,7 @@ def _most_prominent(labelled: list[Any], tracks: list[Any]) -> Any:
     return max(tracks, key=lambda track: total[id(track)])
 
 
-def _of_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
+def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
     """``(T, K, 3)`` x, y, score of one track."""
     points = np.full((len(labelled), nodes, 3), np.nan)
     for row, frame in enumerate(labelled):
@@ -113,7 +113,7 @@ def _of_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
     return points
 
 
-def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
+def _follow_largest(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
     """``(T, K, 3)`` of the person followed, and the most people in a frame."""
     followed = np.full((len(labelled), nodes, 3), np.nan)
     choice, most = SubjectChoice(), 0

@@ -85,7 +85,7 @@ class Database:
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that sees one consistent state and changes nothing."""
-        with _named_failures(), Session(self.engine, expire_on_commit=False) as session:
+        with _convert_errors(), Session(self.engine, expire_on_commit=False) as session:
             yield session
 
     @contextmanager
@@ -97,7 +97,7 @@ class Database:
         """
         engine = self.engine.execution_options(writing=True)
         with (
-            _named_failures(),
+            _convert_errors(),
             engine.begin() as connection,
             Session(connection, expire_on_commit=False) as session,
         ):
@@ -128,7 +128,7 @@ class Database:
 
 
 @contextmanager
-def _named_failures() -> Iterator[None]:
+def _convert_errors() -> Iterator[None]:
     """Turn what the database refuses to do for now into `StoreUnavailable`."""
     try:
         yield

@@ -40,7 +40,7 @@ class FolderLock:
                 f"the data folder {self._path.parent} cannot be written to ({error.strerror}); "
                 "choose another one with --data-dir"
             ) from error
-        if not self._acquired():
+        if not self._acquire():
             self._close()
             raise StoreUnavailable(
                 f"the data folder {self._path.parent} is in use by another OSG Studio; "
@@ -51,7 +51,7 @@ class FolderLock:
     def __exit__(self, *_: object) -> None:
         self._close()
 
-    def _acquired(self) -> bool:
+    def _acquire(self) -> bool:
         if os.name != "posix":
             return True
         import fcntl

@@ -102,7 +102,9 @@ class UploadStore:
         """Remove uploads to which nothing came since `before`; return how many went."""
         newest: dict[str, datetime] = {}
         for path in self._folder.iterdir():
-            newest[path.stem] = max(_changed(path), newest.get(path.stem, _changed(path)))
+            newest[path.stem] = max(
+                _modification_time(path), newest.get(path.stem, _modification_time(path))
+            )
         stale = [upload_id for upload_id, changed in newest.items() if changed < before]
         for upload_id in stale:
             self.remove(upload_id)
@@ -112,7 +114,7 @@ class UploadStore:
         return self._folder / f"{upload_id}.json"
 
 
-def _changed(path: Path) -> datetime:
+def _modification_time(path: Path) -> datetime:
     with suppress(OSError):
         return datetime.fromtimestamp(path.stat().st_mtime, UTC)
     return datetime.now(UTC)

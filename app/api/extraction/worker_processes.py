@@ -53,7 +53,7 @@ class Workers:
             async for message in messages:
                 if isinstance(message, Probed | Failed):
                     return message
-        return _failed(source.broken_off)
+        return _failure(source.broken_off)
 
     async def record(
         self, source: ClipSource, file: Path, options: ReadOptions, files: ClipFiles
@@ -139,10 +139,10 @@ async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step
                 yield message
                 return
     # Also of other files: what breaks off while landmarks are looked for is the decoder.
-    yield _failed(VIDEO.broken_off)
+    yield _failure(VIDEO.broken_off)
 
 
-def _failed(refusal: Refusal) -> Failed:
+def _failure(refusal: Refusal) -> Failed:
     return Failed(code=refusal.code, detail=refusal.detail)
 
 

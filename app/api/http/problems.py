@@ -159,9 +159,9 @@ def problem_of(error: Exception) -> ProblemError:
             headers = {"Retry-After": RETRY_SECONDS}
             return ProblemError(503, "store_unavailable", str(error), headers=headers)
         case RecognitionError():
-            return _of_recognition(error)
+            return _convert_recognition_error(error)
         case OSError():
-            return _of_storage(error)
+            return _convert_os_error(error)
     logger.error("unexpected error", exc_info=error)
     return ProblemError(
         500,
@@ -170,7 +170,7 @@ def problem_of(error: Exception) -> ProblemError:
     )
 
 
-def _of_recognition(error: RecognitionError) -> ProblemError:
+def _convert_recognition_error(error: RecognitionError) -> ProblemError:
     if isinstance(error, ModelError):
         return ProblemError(503, "model_missing", str(error))
     if isinstance(error, LanguageError):
@@ -187,7 +187,7 @@ def _of_recognition(error: RecognitionError) -> ProblemError:
     return ProblemError(422, codes.get(type(error), "recognition"), str(error))
 
 
-def _of_storage(error: OSError) -> ProblemError:
+def _convert_os_error(error: OSError) -> ProblemError:
     # The path stays in the log: it is nobody's business outside this machine.
     logger.error("storage failed", exc_info=error)
     reason = error.strerror or type(error).__name__

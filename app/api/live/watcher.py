@@ -203,7 +203,7 @@ class Watcher:
             seconds=round(clock.monotonic() - frame.arrived, 4),
             skipped=frame.skipped,
         )
-        return (seen, *self._recognized(sight))
+        return (seen, *self._recognize(sight))
 
     def close(self) -> None:
         """Release the models."""
@@ -218,13 +218,13 @@ class Watcher:
         lasted = now - self._looks[0]
         return round((len(self._looks) - 1) / lasted, 2) if lasted > 0 else 0.0
 
-    def _recognized(self, sight: Sight) -> tuple[Recognized, ...]:
+    def _recognize(self, sight: Sight) -> tuple[Recognized, ...]:
         if sight.take is None:
             return ()
         try:
             return (answer_of(sight.take, self._recognizer()),)
         except RecognitionError as error:
-            return (_taken(sight.take, problem=str(error)),)
+            return (_view_take(sight.take, problem=str(error)),)
 
 
 def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
@@ -237,10 +237,10 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
 
     """
     if recognizer is None:
-        return _taken(take, problem="no language is chosen; choose one above")
+        return _view_take(take, problem="no language is chosen; choose one above")
     result: Recognition = recognizer.recognize(take.poses)
     votes = list(result.counted.values())
-    return _taken(
+    return _view_take(
         take,
         language=recognizer.language.name,
         label=result.label,
@@ -252,7 +252,7 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
     )
 
 
-def _taken(take: Take, **answer: object) -> Recognized:
+def _view_take(take: Take, **answer: object) -> Recognized:
     about = {"start": take.start, "end": take.end, "closed": take.closed}
     return Recognized.model_validate(about | answer)
 

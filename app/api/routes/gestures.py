@@ -48,11 +48,11 @@ def add_gesture(
     switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
     gesture = replace(gesture, switches=switches)
 
-    def edited(language: Language) -> Language:
+    def edit_language(language: Language) -> Language:
         require_free(language, gesture.label)
         return language.with_gesture(gesture)
 
-    edit = edit_document(f"Add {gesture.label}", edited)
+    edit = edit_document(f"Add {gesture.label}", edit_language)
     state = studio.languages.edit(language_id, edit, expected)
     keep_source(studio, state, gesture.label, draft, demonstration)
     return announce(studio, state, response)
@@ -90,14 +90,14 @@ def remove_gesture(
 ) -> LanguageView:
     """Take a gesture out that no phrase needs; the revisions before still have it."""
 
-    def edited(language: Language) -> Language:
+    def edit_language(language: Language) -> Language:
         gesture_in(language, label)
         try:
             return language.without(label)
         except LanguageError as error:
             raise ProblemError(409, "gesture_needed", str(error)) from error
 
-    edit = edit_document(f"Remove {label}", edited)
+    edit = edit_document(f"Remove {label}", edit_language)
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 

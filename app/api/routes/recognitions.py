@@ -37,7 +37,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     recording = studio.recording(request.clip_id)
     language = studio.language(state)
     profile = request.profile or language.profile
-    require_given(studio.clips.get(request.clip_id).clip, recording.poses, language)
+    require_landmarks_of(studio.clips.get(request.clip_id).clip, recording.poses, language)
     demonstration = demonstration_in(recording, request.start, request.end)
     recognizer = tune_recognizer(studio.recognizer(state, profile), request.tuning)
     result = recognizer.recognize(demonstration.poses).to_dict()
@@ -100,7 +100,7 @@ def explain_recognition(
     return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
 
 
-def require_given(clip: Clip, poses: PoseSequence, language: Language) -> None:
+def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:
     """Refuse a clip that came as keypoints without those that a language follows.
 
     What our models look at may show any landmark, and is judged when it is recognised.

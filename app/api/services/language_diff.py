@@ -62,7 +62,7 @@ def compare_gestures(older: Language | None, newer: Language) -> list[Change]:
         before = paired[gesture.label]
         if before is None and (renamed := _same_demonstration(gesture, gone)):
             before = gone.pop(renamed)
-        words = () if before is None else _gesture_words(before, gesture)
+        words = () if before is None else _describe_gesture(before, gesture)
         changes.append(Change(before, gesture, words))
     return changes + [Change(gesture, None) for gesture in gone.values()]
 
@@ -83,10 +83,10 @@ def describe_changes(older: Language, newer: Language) -> list[str]:
     shared = [label for label in newer.labels if label in older.labels]
     if shared != [label for label in older.labels if label in newer.labels]:
         words.append("the gestures are in another order")
-    return words + _grammar_words(older.grammar, newer.grammar)
+    return words + _describe_grammar(older.grammar, newer.grammar)
 
 
-def _grammar_words(older: Grammar | None, newer: Grammar | None) -> list[str]:
+def _describe_grammar(older: Grammar | None, newer: Grammar | None) -> list[str]:
     if older is None or newer is None:
         if older is newer:
             return []
@@ -114,7 +114,7 @@ def _same_demonstration(gesture: Gesture, candidates: dict[str, Gesture]) -> str
     )
 
 
-def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
+def _describe_gesture(before: Gesture, after: Gesture) -> tuple[str, ...]:
     words = [
         f"{what} was {_quote(old)}, is {_quote(new)}"
         for what, old, new in (
@@ -128,7 +128,7 @@ def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
         )
         if old != new
     ]
-    words += _salient_words(before, after)
+    words += _describe_salient(before, after)
     if _differ_in_demonstration(before, after):
         words.append(f"another demonstration{_seconds(before, after)}")
     elif not (words or np.array_equal(before.image, after.image)):
@@ -138,7 +138,7 @@ def _gesture_words(before: Gesture, after: Gesture) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _salient_words(before: Gesture, after: Gesture) -> list[str]:
+def _describe_salient(before: Gesture, after: Gesture) -> list[str]:
     new = [name for name in after.salient if name not in before.salient]
     gone = [name for name in before.salient if name not in after.salient]
     return [

@@ -38,12 +38,12 @@ def draft_of(language: Language, change: str) -> Draft:
 
 
 def edit_document(
-    change: str, edited: Callable[[Language], Language]
+    change: str, change_language: Callable[[Language], Language]
 ) -> Callable[[LanguageRevision, int], Draft]:
     """Return what `LanguageStore.edit` wants: how a revision's document becomes the next one's."""
 
     def draft(head: LanguageRevision, number: int) -> Draft:
-        language = edited(Language.from_json(head.document)).calibrated()
+        language = change_language(Language.from_json(head.document)).calibrated()
         return draft_of(replace(language, revision=number), change)
 
     return draft

@@ -89,7 +89,7 @@ class NetworkStream:
 
     def __init__(self, address: str) -> None:
         self._name = without_password(address)
-        self._container = _opened(address, self._name)
+        self._container = _open(address, self._name)
         try:
             stream = self._container.streams.video[0]
         except IndexError as error:
@@ -134,7 +134,7 @@ def is_address(text: str) -> bool:
     return "://" in text and urlsplit(text).scheme.lower() in SCHEMES
 
 
-def _opened(address: str, name: str) -> InputContainer:
+def _open(address: str, name: str) -> InputContainer:
     try:
         return av.open(
             address,

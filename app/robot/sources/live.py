@@ -64,8 +64,8 @@ class LiveSource:
 
     A thread of its own reads the camera. A failure of the camera is reported once; it is then
     opened again, after ever longer waits, until it gives frames. A frame's time is when it
-    arrived here, in seconds of this machine's steady clock since the source was opened: clocks of cameras
-    restart when they do, and some streams have none.
+    arrived here, in seconds of this machine's steady clock since the source was opened: clocks of
+    cameras restart when they do, and some streams have none.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ class LiveSource:
                 reason = self._read_until_lost(current)
                 if clock.monotonic() - began > STEADY_SECONDS:
                     self._wait = self._first_wait
-                current = None if reason is None else self._reopened(reason)
+                current = None if reason is None else self._reopen(reason)
         except Exception as error:  # passed on to the iterating thread
             with self._news:
                 self._fault = error
@@ -162,7 +162,7 @@ class LiveSource:
             camera.close()
         return None
 
-    def _reopened(self, reason: str) -> Camera | None:
+    def _reopen(self, reason: str) -> Camera | None:
         """Open the camera again, as often as it takes; None when the source is closed meanwhile."""
         self._tell(SourceLost(self._now(), reason))
         attempts = 0
