@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 
 _DAMAGE = (
     zipfile.BadZipFile,
@@ -50,7 +50,7 @@ class UnpackedTooLarge(Exception):
 
 
 @contextmanager
-def open_archive(path: Path, called: str, refusal: type[RecognitionError]) -> Iterator[ZipFile]:
+def open_archive(path: Path, called: str, refusal: type[OsgError]) -> Iterator[ZipFile]:
     """Open an archive to look at and unpack it.
 
     Parameters
@@ -64,7 +64,7 @@ def open_archive(path: Path, called: str, refusal: type[RecognitionError]) -> It
 
     Raises
     ------
-    RecognitionError
+    OsgError
         Of the kind `refusal`, when it turns out to be damaged, encrypted or of an unusual kind.
 
     """
@@ -97,9 +97,9 @@ def visible_files(archive: ZipFile) -> list[ZipInfo]:
 def names_in(path: Path) -> list[str]:
     """Return the plain names of an archive's visible files, none where it cannot be read."""
     try:
-        with open_archive(path, path.name, RecognitionError) as archive:
+        with open_archive(path, path.name, OsgError) as archive:
             return [plain_name(entry) for entry in visible_files(archive)]
-    except RecognitionError:
+    except OsgError:
         return []
 
 

@@ -1,7 +1,7 @@
 """What each voter of profile ``full`` contributes: alone, and left out.
 
 One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
-distances are measured once and fused anew for every choice of voters, in the readings that all of
+distances are measured once and fused anew for every choice of voters, in the traversals that all of
 them together chose.
 
     python -m benchmarks.ablation ../shared/data
@@ -14,10 +14,10 @@ import numpy as np
 from app.recognition import PoseError
 from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
 from app.recognition.decision.fusion import fused
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.repair import repair_poses
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
@@ -49,11 +49,13 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
         for query in random.choice(pool, min(queries, len(pool)), replace=False):
             asked += 1
             try:
-                seen = condensed(Trajectory.from_poses(repaired(recorded.recordings[query]).poses))
+                seen = condense(
+                    Trajectory.from_poses(repair_poses(recorded.recordings[query]).poses)
+                )
             except PoseError:
                 continue
             compared = vote.compare(seen)
-            penalties = np.array([each.penalty if each else 1.0 for each in compared.readings])
+            penalties = np.array([each.penalty if each else 1.0 for each in compared.traversals])
             for name, factor in choices().items():
                 scores = fused(compared.distances, say * factor, between) * penalties
                 nearest = recorded.labels[templates[int(scores.argmin())]]

@@ -9,8 +9,8 @@ from app.recognition.decision.fused_vote import VOTERS
 from app.recognition.decision.fusion import fused, says
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
 from app.recognition.decision.shape_references import ShapeReferences
-from app.recognition.features.motion import movement
-from app.recognition.gestures.gesture import condensed
+from app.recognition.features.motion import build_movement
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion import MOTION_VOTERS
@@ -48,7 +48,7 @@ class TakeComparison:
     def features(self, take: Trajectory) -> FloatArray:
         """Return ``(F,)`` numbers, named by `FEATURES`.
 
-        Distances in the reading with the nearest path; of the looks, what they differ by.
+        Distances in the traversal with the nearest path; of the looks, what they differ by.
         """
         motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
         nearest = motion[:, motion[_PATH].argmin()]
@@ -58,7 +58,7 @@ class TakeComparison:
 
     def of_recording(self, poses: PoseSequence) -> FloatArray:
         """Return the features of a recorded take."""
-        take = condensed(Trajectory.from_poses(poses))
+        take = condense(Trajectory.from_poses(poses))
         return self.features(take.select(self.demonstration.landmarks))
 
 
@@ -75,7 +75,7 @@ def looks(take: Trajectory, salient: tuple[str, ...]) -> FloatArray:
     its speed over the mean); how sharply it turns (mean squared angle from step to step); the gap
     between start and end in sizes; and what smoothing takes away, in sizes.
     """
-    seen = movement(take, salient)
+    seen = build_movement(take, salient)
     steps = np.diff(seen.paths, axis=0)
     size = np.sqrt((seen.paths**2).sum(axis=(1, 2)).mean())
     lengths = np.sqrt((steps**2).sum(axis=(1, 2)))

@@ -14,7 +14,7 @@ from app.recognition.errors import BagError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.poses.skeletons import SKELETON_2D, landmark_named, missing_from
+from app.recognition.poses.skeletons import SKELETON_2D, find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.timestamps import FrameClock
 from app.recognition.recording.video_limits import VideoLimits
@@ -173,7 +173,7 @@ def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[st
     if nobody := sum(not posed.given for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
     given = frozenset[str]().union(*(posed.given for posed in gathered.posed))
-    if missing := missing_from(tuple(given)):
+    if missing := find_missing_landmarks(tuple(given)):
         found.append(f"{topic.name} has no {', '.join(missing)}")
     if salute.topic is None:
         found.append(
@@ -211,7 +211,7 @@ def _convert_points(
     given = set()
     farthest = LARGEST_FRACTION * (1 if size is None else max(size))
     for said, x, y, belief in points:
-        if (name := landmark_named(said)) is None:
+        if (name := translate_landmark(said)) is None:
             continue
         given.add(name)
         # NaN is not nearer than anything.

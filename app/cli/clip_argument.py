@@ -16,7 +16,7 @@ from app.clip_sources import ClipSource, ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
 from app.recognition import Language, PoseSequence, Recognition, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
-from app.recognition.estimation import create_estimator, landmarks_of
+from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
@@ -312,7 +312,7 @@ def _read_pictures(
     """Find landmarks in pictures, after a look at which ones the estimator can find."""
     with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
         if language is not None:
-            require_landmarks(language, landmarks_of(estimator), f"estimator {how.estimator}")
+            require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
         with progress_bar(path.name) as advance:
             recorded = source.record(path, options, estimator=estimator, progress=advance)
         return ReadClip(recorded.recording, recorded.has_hands)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SpokenLanguage
 
@@ -36,14 +36,14 @@ def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When ROS 2 or our packages are not in this environment.
 
     """
     try:
         from osg_ros.nodes.robot_node import published
     except ModuleNotFoundError as error:
-        raise RecognitionError(
+        raise OsgError(
             f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "
             "build them with colcon and source the workspace in this shell"
         ) from error

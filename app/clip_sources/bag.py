@@ -25,7 +25,7 @@ from app.clip_sources.source import (
     Refusal,
     UnsupportedFile,
 )
-from app.recognition.errors import BagError, RecognitionError, TopicError
+from app.recognition.errors import BagError, OsgError, TopicError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.recording.extraction import Observer, Progress
@@ -109,7 +109,7 @@ class BagSource:
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))
         return RecordedClip(found, estimator is None or finds_hands(estimator), seen)
 
-    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+    def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Name the clip, and not the file that it is stored as."""
         codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
         detail = str(error).replace(path.name, "the clip")

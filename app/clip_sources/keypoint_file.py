@@ -29,7 +29,7 @@ from app.recognition.errors import (
     FrameRateError,
     FrameSizeError,
     KeypointFileError,
-    RecognitionError,
+    OsgError,
 )
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.recording.extraction import Observer, Progress
@@ -124,7 +124,7 @@ class KeypointFileSource:
             recording = replace(recording, warnings=(*notes, *recording.warnings))
         return RecordedClip(recording, read.has_hands, recording.poses.landmarks)
 
-    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+    def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Ask for what is missing by the name of its form field; name no stored file."""
         match error:
             case FrameRateError():
@@ -155,7 +155,7 @@ def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
     with stage(path, options.ending) as place:
         try:
             read = read_keypoints(place, options.keypoints)
-        except RecognitionError as error:
+        except OsgError as error:
             raise type(error)(_without_path(str(error), place)) from error
         notes = tuple(_without_path(note, place) for note in read.recording.warnings)
     return replace(read, recording=replace(read.recording, warnings=notes))

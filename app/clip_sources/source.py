@@ -10,7 +10,7 @@ from typing import Final, Protocol
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.keypoint_files import Ending, KeypointOptions
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recording.extraction import Observer, Progress
@@ -21,7 +21,7 @@ MADE_VIDEO: Final = "video/mp4"
 """Media type of the video that is written for a clip whose file is no video."""
 
 
-class UnsupportedFile(RecognitionError):
+class UnsupportedFile(OsgError):
     """Raised when a file turns out not to be of the kind that its first bytes promised."""
 
 
@@ -245,7 +245,7 @@ class ClipSource(Protocol):
         ------
         UnsupportedFile
             When the file is of another kind after all.
-        RecognitionError
+        OsgError
             When no clip can be made of it.
 
         """
@@ -278,7 +278,7 @@ class ClipSource(Protocol):
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When the file cannot be read, or breaks a limit.
         ModelError
             When the default estimator's models are not installed.
@@ -286,7 +286,7 @@ class ClipSource(Protocol):
         """
         ...
 
-    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+    def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Return the answer to the sender of the file, which is stored as `path`."""
         ...
 
@@ -299,7 +299,7 @@ class ClipSource(Protocol):
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When the file holds no pictures, or cannot be read.
 
         """

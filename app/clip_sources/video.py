@@ -6,7 +6,7 @@ from pathlib import Path
 
 from app.clip_sources.source import ClipFacts, OpenFrames, ReadOptions, RecordedClip, Refusal
 from app.clip_sources.video_types import HEAD_BYTES, video_type
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.recording.extraction import Observer, Progress, record
@@ -83,7 +83,7 @@ class VideoSource:
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)
 
-    def refuse(self, error: RecognitionError, path: Path) -> Refusal:
+    def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Name the clip, and not the file that it is stored as."""
         return Refusal("video_unreadable", str(error).replace(path.name, "the clip"))
 

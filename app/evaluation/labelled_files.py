@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from app.clip_sources import is_take
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
 """Layouts assumed for files that lie one, two or three levels deep, when none is given."""
@@ -66,12 +66,12 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the layout has no label, or no file fits.
 
     """
     if layout is not None and "{label}" not in layout:
-        raise RecognitionError(
+        raise OsgError(
             f"layout {layout!r} does not say where the label stands: put {{label}} into it, as in "
             "{person}/{label}_#"
         )
@@ -82,7 +82,7 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
         if fields := _read(name, layout):
             found.append(LabelledFile(path, fields["label"], fields.get("person") or ""))
     if not found:
-        raise RecognitionError(
+        raise OsgError(
             f"{folder} holds no clip that fits {layout or ' or '.join(LAYOUTS)}; name its files "
             "so, or say how they are named with --layout"
         )

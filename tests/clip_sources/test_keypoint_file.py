@@ -9,7 +9,7 @@ import pytest
 from app.clip_sources import ReadOptions, Refusal
 from app.clip_sources.keypoint_file import DRAWN, NO_HANDS, KeypointFileSource
 from app.keypoint_files import Ending
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from tests.keypoint_files.files import renamed, write_named, write_numbered
 from tests.recognition.strategies import circle, recording
 
@@ -22,7 +22,7 @@ def refused(
 ) -> Refusal:
     options = ReadOptions(ending=ending, frame_rate=rate, frame_size=size)
     source = KeypointFileSource()
-    with pytest.raises(RecognitionError) as raised:
+    with pytest.raises(OsgError) as raised:
         source.record(file, options, video=file.with_name("video.mp4"))
     failed = source.refuse(raised.value, file)
     # Our own names of the file mean nothing to anybody else.

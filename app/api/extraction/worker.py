@@ -32,7 +32,7 @@ from app.api.extraction.pictures import Poster, Thumbnails, write_poster
 from app.api.extraction.session_request import SessionRequest
 from app.bags.session_writer import write_session as write_mcap
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
-from app.recognition.errors import ModelError, RecognitionError, VideoError
+from app.recognition.errors import ModelError, OsgError, VideoError
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import VideoFrame
@@ -203,7 +203,7 @@ def main() -> None:
         report(Failed(code="unsupported_media_type", detail=str(error)))
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
-    except RecognitionError as error:
+    except OsgError as error:
         refusal = chosen.source.refuse(error, chosen.file)
         report(Failed(code=refusal.code, detail=refusal.detail))
     except OSError as error:

@@ -19,7 +19,7 @@ from app.api.services.studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.language.file_format import FileFormat
 from app.recognition.language.osg_reference import from_reference, is_reference
-from app.recognition.language.requirements import requirements_of
+from app.recognition.language.requirements import find_requirements
 from app.recognition.language.schema import FORMAT, VERSION
 from app.store import LanguageState
 
@@ -106,7 +106,7 @@ def describe_export(
     """Return what the export holds, before it is taken to the robot."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
-    needed = requirements_of(language)
+    needed = find_requirements(language)
     return ExportView(
         name=language.name,
         revision=state.revision.revision,

@@ -22,8 +22,8 @@ from app.api.services.language_documents import draft_of, edit_document, name_of
 from app.api.services.language_views import announce, answer, view_summary
 from app.api.services.studio import CurrentStudio
 from app.recognition import Language
-from app.recognition.language.grammar_entry import grammar_of
-from app.recognition.language.tuning_entry import tuning_of
+from app.recognition.language.grammar_entry import entry_to_grammar
+from app.recognition.language.tuning_entry import entry_to_tuning
 from app.store import LanguageStore
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -66,9 +66,9 @@ def change_language(
     """Rename a language or its author, change its phrases, or how it is recognised."""
     fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
     if "grammar" in change.model_fields_set:
-        fields["grammar"] = None if change.grammar is None else grammar_of(change.grammar)
+        fields["grammar"] = None if change.grammar is None else entry_to_grammar(change.grammar)
     if "tuning" in change.model_fields_set:
-        fields["tuning"] = tuning_of(change.tuning)
+        fields["tuning"] = entry_to_tuning(change.tuning)
     if not fields:
         return answer(studio, studio.languages.get(language_id), response)
     edit = edit_document(_describe(fields), lambda language: replace(language, **fields))

@@ -13,8 +13,8 @@ from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.studio import Studio
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.language.grammar_entry import grammar_entry_of
-from app.recognition.language.tuning_entry import tuning_entry_of
+from app.recognition.language.grammar_entry import grammar_to_entry
+from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import LanguageState
 
 
@@ -35,9 +35,9 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
             view_gesture(state, gesture, sources.get(gesture.label))
             for gesture in language.gestures
         ],
-        grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
+        grammar=None if language.grammar is None else grammar_to_entry(language.grammar),
         profile=language.profile,
-        tuning=tuning_entry_of(language.tuning),
+        tuning=tuning_to_entry(language.tuning),
         tuning_words=language.tuning.words,
     )
 

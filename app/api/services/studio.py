@@ -124,7 +124,7 @@ class Studio:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When there is no such profile.
 
         """

@@ -12,7 +12,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.registry import CurrentWorkspaces, find
 from app.api.viser_workspaces.views import ViewRequest, view_of
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.ui.workspace_registry import TooManyWorkspacesError
 
 UNSHOWABLE: Final = HTTPStatus(422).name.lower()
@@ -81,7 +81,7 @@ def show_view(
     view = view_of(studio, request)
     try:
         workspace.show(view)
-    except RecognitionError as error:
+    except OsgError as error:
         raise ProblemError(422, UNSHOWABLE, str(error)) from error
     return Response(status_code=204)
 
