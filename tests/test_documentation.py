@@ -59,7 +59,7 @@ def test_every_voter_is_documented() -> None:
     from app.recognition.gestures.profile import PROFILES
 
     text = (ROOT / "docs" / "recognizer.md").read_text()
-    voters = {voter.name for profile in PROFILES.values() for voter in profile}
+    voters = {voter.name for profile in PROFILES.values() for voter in profile.voters}
     assert {voter for voter in voters if f"`{voter}`" not in text} == set()
 
 

@@ -17,6 +17,7 @@ from app.recognition.decision.rejection import calibrated_confidence
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import PoseError, RecognitionError
 from app.recognition.features.motion import followed_landmarks
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence, joined
 from app.recognition.poses.trajectory import Trajectory
@@ -120,7 +121,7 @@ class Spotter:
     """
 
     def __init__(self, recognizer: Recognizer, *, confident: float = CONFIDENT) -> None:
-        if recognizer.profile != "full":
+        if not PROFILES[recognizer.profile].rejects:
             raise RecognitionError(
                 f"profile {recognizer.profile!r} names every movement, also those that mean "
                 f"nothing; listen without salutes by profile full"

@@ -31,7 +31,7 @@ from app.recognition.preprocessing.salience import (
     representatives,
     salient_landmarks,
 )
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 
 SWITCHES = ("direction", "tempo", "mirror")
 

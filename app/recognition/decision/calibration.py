@@ -16,8 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
-from app.recognition.decision.fusion import TYPICAL
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_READ_OTHERWISE,
     describe_movement,
@@ -30,38 +29,25 @@ from app.recognition.simulation.model_error import UNFORESEEN
 from app.recognition.simulation.negatives import foreign_movements
 from app.recognition.simulation.rate_estimate import Forecast
 from app.recognition.simulation.variation import SPREADS, variants
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
 """Plausible takes drawn of each gesture: their mean is known to a quarter of its value."""
 
 OWN = 0.75
 """How much of the typical distance is the gesture's own, the rest being that of any gesture
-(`fusion.TYPICAL`), geometrically: twelve takes of one demonstration know more than the average
+(`Voter.within`), geometrically: twelve takes of one demonstration know more than the average
 over other gestures, but not all. From 0.7 to 1 the result is the same."""
-
-ANY_GESTURES = frozenset({"path_length", "wrist_bend"})
-"""Voters for which the typical distance is that of any gesture: the lengths of plausible takes
-differ by less than half of what those of real ones do, and their wrists bend alike for all."""
 
 REACH: Final[Mapping[str, float]] = MappingProxyType(
     {
-        "path": 7.0,
-        "direction": 7.0,
-        "path_length": 7.0,
-        "posture": 4.0,
-        "hand_attitude": 4.0,
-        "wrist_bend": 3.5,
+        voter.name: voter.cue.reach
+        for voter in sorted(VOTERS, key=lambda voter: -voter.cue.reach if voter.cue else 0.0)
+        if voter.cue is not None
     }
 )
-"""Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded
-sets, one in twenty of the takes lies beyond, once `foreign` has pulled in what it does. How an arm
-is held tells more than what it draws: with as long a reach, a quarter more of the foreign signals
-are accepted at as many true ones refused; with half the reach it is a twentieth less, but one in
-seven of the true signals is refused. Of other people's takes not one in a hundred has a
-way 1.5 times as long; the reach is 1.7 times. A wrist may bend otherwise by about 30 degrees: that
-refuses one in three hundred of the true signals that nothing else refuses, and one in ten of the
-foreign ones that nothing else does."""
+"""Per voter with a cue its `Cue.reach`, the longest first, as thresholds stand in language files.
+Over five recorded sets one in twenty of the demonstrator's takes lies beyond."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: where only one bone is seen, its
@@ -70,9 +56,6 @@ attitude may hardly differ."""
 OTHERS = 2.0
 """How much farther other people's takes lie than the demonstrator's own, in squared distances:
 variants by 1.9 to 2.1 times, recorded takes by 1.9 to 2.6."""
-
-NOT_SQUARED = frozenset({"path_length", "wrist_bend"})
-"""Voters whose distances are no squares: other people's takes lie the root of `OTHERS` farther."""
 
 LEAST_SHARE = 0.9
 """How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
@@ -119,7 +102,7 @@ def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
         Of one language, at least one.
 
     """
-    vote = CalibratedVote(gestures)
+    vote = FusedVote(gestures)
     reach = _reach(gestures, vote)
     foreign = _foreign(gestures, vote, reach.thresholds)
     return tuple(
@@ -149,7 +132,7 @@ def _with_thresholds(
     near = foreign[foreign > PLAUSIBLE].min(initial=1.0)
     limit = max(LEAST_SHARE, float(near))
     thresholds = {
-        voter: float(f"{limit * reach[VOTERS.index(voter)]:.{DIGITS}g}") for voter in REACH
+        voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in REACH
     }
     if not np.isfinite(takes).all() or np.isnan(foreign).any():
         return replace(gesture, thresholds=thresholds, rates=None)
@@ -161,12 +144,13 @@ def _with_thresholds(
     return replace(gesture, thresholds=thresholds, rates=rates)
 
 
-def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
+def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     """Draw plausible takes of every gesture and measure how far they lie."""
-    typical = np.array([TYPICAL[voter].within for voter in VOTERS])
-    multiples = np.array([REACH.get(voter, np.inf) for voter in VOTERS])
-    own = np.array([0.0 if voter in ANY_GESTURES else OWN for voter in VOTERS])
-    farther = np.array([OTHERS**0.5 if voter in NOT_SQUARED else OTHERS for voter in VOTERS])
+    typical = np.array([voter.within for voter in VOTERS])
+    cues = [voter.cue for voter in VOTERS]
+    multiples = np.array([cue.reach if cue else np.inf for cue in cues])
+    own = np.array([0.0 if cue and not cue.varies_by_gesture else OWN for cue in cues])
+    farther = np.array([OTHERS**0.5 if cue and not cue.squared else OTHERS for cue in cues])
     thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
     if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
@@ -181,7 +165,7 @@ def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
         thresholds[known, index] *= (mean / typical[known]) ** own[known]
         others = farther[:, None] * distances
-        takes[index] = novelty(others, thresholds[:, [index]], novelty_weights(VOTERS))
+        takes[index] = novelty(others, thresholds[:, [index]], novelty_weights(VOTER_NAMES))
     return _Reach(thresholds, takes)
 
 
@@ -189,7 +173,7 @@ def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
     return demonstration.once("takes to calibrate by", lambda: variants(demonstration, TAKES))
 
 
-def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> FloatArray:
+def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArray:
     """Compare a gesture as shown with `TAKES` plausible takes of it: ``(V, TAKES)``.
 
     Infinite for voters of drawings, which are slow to make and not asked.
@@ -201,13 +185,11 @@ def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> Flo
     for voter in MOTION_VOTERS:
         described = np.array([take[voter.name] for take in takes])
         shown = references.descriptors[voter.name][row]
-        distances[VOTERS.index(voter.name)] = voter.distances(shown, described)
+        distances[VOTER_NAMES.index(voter.name)] = voter.distances(shown, described)
     return distances
 
 
-def _foreign(
-    gestures: Sequence[Gesture], vote: CalibratedVote, thresholds: FloatArray
-) -> FloatArray:
+def _foreign(gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArray) -> FloatArray:
     """Measure how far foreign movements lie from the gesture they are nearest to.
 
     Returns

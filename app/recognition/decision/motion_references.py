@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.fusion import fused
+from app.recognition.decision.fusion import fuse
 from app.recognition.decision.shown_gesture import ShownGesture
 from app.recognition.features.motion import followed_landmarks, movement
 from app.recognition.features.traversals import Reading
@@ -19,7 +19,10 @@ from app.recognition.matching.dtw_kernel import alignment_costs
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
+from app.recognition.voters.motion.motion_voter import BAND, DtwVoter, UnorderedVoter
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.registry import MOTION_VOTERS
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as
@@ -56,9 +59,7 @@ ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
 _ELASTIC = {
-    voter.name: place
-    for place, voter in enumerate(MOTION_VOTERS)
-    if isinstance(voter, ElasticVoter)
+    voter.name: place for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, DtwVoter)
 }
 """Where the voters stand that align movements."""
 
@@ -69,10 +70,10 @@ _UNORDERED = {
 _OTHERS = {
     place: voter
     for place, voter in enumerate(MOTION_VOTERS)
-    if not isinstance(voter, ElasticVoter | UnorderedVoter)
+    if not isinstance(voter, DtwVoter | UnorderedVoter)
 }
 
-_TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
+_TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +173,7 @@ class MotionReferences:
         ``(V, R)``; infinite for the other rows.
 
         """
-        rows = self.promising(query["path"])
+        rows = self.promising(query[Path.name])
         distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
         distances[:, rows] = self._measured(query, rows)
         return distances
@@ -205,7 +206,7 @@ class MotionReferences:
     @cached_property
     def _flat_paths(self) -> tuple[FloatArray, FloatArray]:
         """Paths with all steps in a row, ``(R, N D)``, and the sums of their squares, ``(R,)``."""
-        paths = self.descriptors["path"].reshape(len(self), -1)
+        paths = self.descriptors[Path.name].reshape(len(self), -1)
         return paths, np.vecdot(paths, paths)
 
     @cached_property
@@ -277,7 +278,7 @@ class MotionReferences:
         chosen = np.arange(len(self)) if rows is None else rows
         costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
         found = np.empty((len(MOTION_VOTERS), len(chosen)))
-        found[[*_ELASTIC.values()]] = alignment_costs(costs, len(query["path"]), BAND)
+        found[[*_ELASTIC.values()]] = alignment_costs(costs, len(query[Path.name]), BAND)
         which = self._distinct[1].take(chosen)
         for place, voter in _UNORDERED.items():
             references = self._unordered[voter.name]
@@ -288,7 +289,7 @@ class MotionReferences:
         return found
 
     def nearest(
-        self, query: dict[str, FloatArray], say: FloatArray, between: FloatArray, count: int
+        self, query: dict[str, FloatArray], weights: FloatArray, between: FloatArray, count: int
     ) -> NearestReadings:
         """Choose for each gesture the reading that fits a query best.
 
@@ -302,9 +303,9 @@ class MotionReferences:
             G, the number of gestures in the language.
 
         """
-        compared = self.promising(query["path"])
+        compared = self.promising(query[Path.name])
         measured = self._measured(query, compared)
-        scores = fused(measured, say, between) * self.penalties[compared]
+        scores = fuse(measured, weights, between) * self.penalties[compared]
         # Writing the best last lets it stay, and of equals the first: as shown.
         order = np.argsort(scores, kind="stable")[::-1]
         chosen = np.full(count, -1, dtype=np.intp)
@@ -325,7 +326,7 @@ def _remembered(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
 def tempo_counts(
     references: MotionReferences,
     own: FloatArray,
-    say: FloatArray,
+    weights: FloatArray,
     between: FloatArray,
     gestures: Sequence[Gesture],
 ) -> npt.NDArray[np.bool_]:
@@ -335,7 +336,7 @@ def tempo_counts(
     `unambiguous`.
     """
     shown = references.as_shown
-    scores = fused(own, say, between)[:, shown]
+    scores = fuse(own, weights, between)[:, shown]
     doublings = own[_TEMPO][:, shown]
     twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER)
     needed = np.zeros(len(gestures), dtype=bool)
@@ -359,7 +360,7 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
 def unambiguous(
     references: MotionReferences,
     own: FloatArray,
-    say: FloatArray,
+    weights: FloatArray,
     between: FloatArray,
     free: Collection[int] = (),
 ) -> MotionReferences:
@@ -376,8 +377,8 @@ def unambiguous(
         In all thinkable readings.
     own
         `own_distances` of the rows as shown.
-    say, between
-        Of the voters, see `fusion.says`.
+    weights, between
+        Of the voters, see `fusion.weigh_voters`.
     free
         Indices of gestures whose direction does not count, whatever the others are.
 
@@ -385,7 +386,7 @@ def unambiguous(
     labels = references.gestures
     shown = references.as_shown
     same = labels[shown][:, None] == labels[None]
-    scores = np.where(same, np.inf, fused(own, say, between))
+    scores = np.where(same, np.inf, fuse(own, weights, between))
     backward = np.array([reading.backward for reading in references.readings], dtype=bool)
     exchanged = np.array([reading.exchanged for reading in references.readings], dtype=bool)
     keep = np.ones(len(references), dtype=bool)

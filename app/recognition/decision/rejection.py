@@ -1,17 +1,16 @@
-"""Rejection: whether a movement is any gesture of the language at all.
+"""Rejection: whether a query is any gesture of the language at all.
 
 The fused score (`fusion`) tells which gesture is nearest, in units of what the language's gestures
-differ by; it says little about a movement that is none of them. Novelty (novelty detection,
-Pimentel et al. 2014) is absolute instead: each voter's distance is divided by the gesture's own
-threshold for that voter, and
+differ by; it says little about an out-of-vocabulary movement. Novelty (novelty detection, Pimentel
+et al. 2014) is absolute: each voter's distance is divided by the gesture's threshold for it, and
 
-    novelty = penalty of the reading * max over the views of the weighted mean of
+    novelty = penalty of the traversal * max over the cue groups of the weighted mean of
               distance / threshold.
 
-Above 1 the gesture is rejected. A view is what one group of voters sees (`VIEWS`): voters of one
-view see the same thing and make up for each other's noise; views do not, so that an arm held as in
-any drawing cannot make up for another drawing. The thresholds come from plausible takes of the
-demonstration (`calibration`) and are kept in the language file.
+Above 1 the gesture is rejected. Voters of one cue group (`Cue.group`) look at the same thing and
+make up for each other's noise; groups do not, so that an arm held as demonstrated cannot make up
+for another figure. Thresholds come from simulated takes of the demonstration (`calibration`) and
+are kept in the language file.
 """
 
 from __future__ import annotations
@@ -25,20 +24,20 @@ import numpy as np
 
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import VOTERS
+from app.recognition.voters.voter import Voter
 
-VIEWS: Final[Mapping[str, Mapping[str, float]]] = MappingProxyType(
-    {
-        "figure": MappingProxyType({"path": 1.0, "direction": 0.5}),
-        "posture": MappingProxyType({"posture": 1.0, "hand_attitude": 2.0}),
-        "wrist": MappingProxyType({"wrist_bend": 1.0}),
-        "length": MappingProxyType({"path_length": 1.0}),
-    }
-)
-"""What the voters of each view count in its mean. Directions are mostly detail; with 0.3 to 0.75
-the result is the same. The hands tell a signal from its neighbour, where the arms do not; the wrist
-is a view of its own, for an arm held as before does not make up for a thumb turned down. The
-length tells a zigzag from a line, which its path and its directions, taken step by step, resemble
-as much as other people's lines do. Other voters changed nothing beyond chance."""
+
+def _group_cues(voters: Sequence[Voter]) -> Mapping[str, Mapping[str, float]]:
+    groups: dict[str, dict[str, float]] = {}
+    for voter in voters:
+        if voter.cue is not None:
+            groups.setdefault(voter.cue.group, {})[voter.name] = voter.cue.weight
+    return MappingProxyType({name: MappingProxyType(group) for name, group in groups.items()})
+
+
+CUE_GROUPS: Final[Mapping[str, Mapping[str, float]]] = _group_cues(VOTERS)
+"""Per cue group the weights of its voters, by name."""
 
 SCORE_FLOOR = 0.02
 """Added to scores and novelties before their logarithm: those of two takes by the same careful
@@ -60,8 +59,8 @@ def thresholds_of(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatAr
 
 
 def novelty_weights(voters: Sequence[str]) -> FloatArray:
-    """Return what each voter counts in each of the `VIEWS`, ``(K, V)``; 0: nothing."""
-    return np.array([[view.get(voter, 0.0) for voter in voters] for view in VIEWS.values()])
+    """Return the weight of each voter in each of the `CUE_GROUPS`, ``(K, V)``."""
+    return np.array([[view.get(voter, 0.0) for voter in voters] for view in CUE_GROUPS.values()])
 
 
 def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 
 
 @dataclass(frozen=True, eq=False)

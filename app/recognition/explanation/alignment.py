@@ -15,7 +15,11 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import elastic_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import BAND, Direction, HandAttitude, Path, Posture
+from app.recognition.voters.motion.direction import Direction
+from app.recognition.voters.motion.hand_attitude import HandAttitude
+from app.recognition.voters.motion.motion_voter import BAND
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
 
 DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond, and of what two gestures

@@ -23,7 +23,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
 from app.recognition.preprocessing.side_swaps import exchanged_back, mistaken_sides
 from app.recognition.text.wording import readable
-from app.recognition.voters.wrist_bend import WristBend
+from app.recognition.voters.motion.wrist_bend import WristBend
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",

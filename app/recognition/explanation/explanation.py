@@ -21,7 +21,9 @@ from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import in_words
 from app.recognition.explanation.vote_breakdown import Verdict, verdicts
 from app.recognition.features.motion import movement
-from app.recognition.voters.motion import Path, Posture
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -203,7 +205,7 @@ class _Pairings:
     def __init__(self, situation: Situation) -> None:
         self._gestures = situation.language.gestures
         self._comparison = situation.comparison
-        self._full = situation.profile == "full"
+        self._full = PROFILES[situation.profile].compares_motion
         self._start = float(situation.poses.time[0])
         self._landmarks = situation.recognizer.landmarks
         self._query = situation.trajectory

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from app.recognition.decision.fusion import TYPICAL
 from app.recognition.explanation.alignment import Example
 from app.recognition.features.motion import Movement, hands_in, movement
 from app.recognition.features.traversals import Reading, readings
@@ -16,9 +15,9 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import Path
+from app.recognition.voters.motion.path import Path
 
-ALIKE = TYPICAL["path"].within
+ALIKE = Path.within
 """Path distance between two people's takes of one figure, the mean."""
 
 

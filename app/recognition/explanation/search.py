@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
@@ -38,10 +37,6 @@ WEIGHTS = (0.5, 0.0, 2.0, 4.0)
 
 TOLERANCES = (0.5, 2.0, 4.0)
 """Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
-
-PROMISING = 0.05
-"""Score by which the expected gesture may still miss when a voter's weight is tried: as much as
-another reading of a gesture, which the new weight may bring about, is usually nearer."""
 
 Series = list[Change]
 
@@ -97,34 +92,16 @@ def _trims(situation: Situation) -> Iterator[Series]:
 
 def _weights(situation: Situation, expected: str) -> Iterator[Series]:
     """Weigh each voter that has a say less, and more, where that promises to help."""
-    promises = _promised_by_votes if situation.profile == "paper" else _promised_by_scores
+    gesture = situation.language.labels.index(expected)
+    vote = situation.recognizer.vote
     for voter, share in situation.result.weights.items():
         if 0 < share < 1:
             for factors in (WEIGHTS[:2], WEIGHTS[2:]):
                 yield [
                     VoterWeight(size=_moved(share, factor), voter=voter, factor=factor)
                     for factor in factors
-                    if promises(situation, expected, voter, factor)
+                    if vote.may_win(situation.comparison, situation.result, gesture, voter, factor)
                 ]
-
-
-def _promised_by_votes(situation: Situation, expected: str, voter: str, factor: float) -> bool:
-    """Tell whether no gesture has more votes than the expected one."""
-    count: dict[str, float] = defaultdict(float)
-    for name, vote in situation.result.counted.items():
-        weight = situation.result.weights[name]
-        count[vote] += weight * factor if name == voter else weight
-    return count[expected] >= max(count.values())
-
-
-def _promised_by_scores(situation: Situation, expected: str, voter: str, factor: float) -> bool:
-    """Tell whether the expected gesture comes close to the nearest one."""
-    comparison, at = situation.comparison, situation.language.labels.index(expected)
-    comparable = np.isfinite(comparison.scores)
-    contributions = comparison.contributions[comparison.voters.index(voter)]
-    scores = comparison.scores
-    scores[comparable] += (factor - 1) * contributions[comparable]
-    return bool(comparable[at] and scores[at] < scores.min() + PROMISING)
 
 
 def _moved(share: float, factor: float) -> float:
@@ -157,7 +134,7 @@ def _gestures(situation: Situation, expected: str) -> Iterator[Series]:
         if gesture.trajectory is None:
             continue
         yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
-        if situation.profile == "full":
+        if PROFILES[situation.profile].compares_motion:
             yield from _switches(situation, label, expected=label == expected)
     yield [NewDemonstration(size=1.0, label=expected)]
 

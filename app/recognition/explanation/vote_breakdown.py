@@ -74,7 +74,7 @@ def verdicts(
         Indices of the two gestures; without another one nothing speaks against the expected.
 
     """
-    units = {voter.name: voter.unit for voter in PROFILES[result.profile]}
+    units = {voter.name: voter.unit for voter in PROFILES[result.profile].voters}
     label = result.gestures[expected]
     given = []
     for row, voter in enumerate(result.voters):

@@ -34,10 +34,11 @@ from app.recognition.preprocessing.salience import (
     salient_landmarks,
 )
 from app.recognition.text.strict_json import read_json
-from app.recognition.voters import PAPER_VOTERS, describe
-from app.recognition.voters.fourier import HARMONICS, SAMPLES
-from app.recognition.voters.hu import FLOOR
-from app.recognition.voters.zernike import DEGREE
+from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape.fourier import HARMONICS, SAMPLES
+from app.recognition.voters.shape.hu import FLOOR
+from app.recognition.voters.shape.shape_voter import describe_drawing
+from app.recognition.voters.shape.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
 """Characters: more than fits on a gesture's card, far less than breaks a layout or a log line."""
@@ -229,7 +230,7 @@ class Gesture:
             salient=names,
             image=drawing.image,
             trajectory=kept,
-            descriptors=describe(drawing, PAPER_VOTERS),
+            descriptors=describe_drawing(drawing, PAPER_VOTERS),
             description=description,
             command=command,
         )
@@ -262,7 +263,7 @@ class Gesture:
             salient=salient,
             trajectory=trajectory,
             image=drawing.image,
-            descriptors=describe(drawing, PAPER_VOTERS),
+            descriptors=describe_drawing(drawing, PAPER_VOTERS),
         )
 
     def with_salient(self, salient: Sequence[str]) -> Gesture:
@@ -289,7 +290,7 @@ class Gesture:
         drawing = self.drawing
         if drawing.trajectory is not None and self.salient:
             drawing = draw(drawing.trajectory, simplification)
-        descriptors = describe(drawing, PAPER_VOTERS)
+        descriptors = describe_drawing(drawing, PAPER_VOTERS)
         return replace(self, image=drawing.image, descriptors=descriptors)
 
 

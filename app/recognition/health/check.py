@@ -10,6 +10,7 @@ import numpy as np
 
 from app.recognition.explanation.pair_difference import Contrast, contrast
 from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.embedding import placed
 from app.recognition.health.false_alarms import Alarm, alarms
@@ -274,7 +275,7 @@ def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contr
 
 
 def _profile_findings(language: Language) -> list[Finding]:
-    if language.profile == "full":
+    if PROFILES[language.profile].rejects:
         return []
     message = (
         f"the language is recognised by the profile {language.profile}, which gives every movement "

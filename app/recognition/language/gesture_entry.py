@@ -18,7 +18,7 @@ from app.recognition.language.schema import GestureEntry, PathEntry, RatesEntry,
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.strict_json import pointer_to
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 
 
 def entry_of(gesture: Gesture) -> GestureEntry:

@@ -13,7 +13,7 @@ from zlib import crc32
 from app.recognition.decision.calibration import RULE, calibrated
 from app.recognition.errors import LanguageError, RecognitionError
 from app.recognition.gestures.gesture import SETTINGS, Gesture
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, voters_of
+from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.file import read_content, read_document, write_document
 from app.recognition.language.gesture_entry import entry_of, gesture_of
@@ -286,11 +286,11 @@ def _check_text(text: Any, most: int, pointer: str) -> None:
 
 def _check_tuning(profile: str, tuning: Tuning) -> None:
     try:
-        voters = voters_of(profile)
+        voters = find_profile(profile).voters
     except RecognitionError as error:
         raise LanguageError(str(error), "/profile") from error
     try:
-        tuning.weights_of(voters)
+        tuning.weights_of([voter.name for voter in voters])
     except RecognitionError as error:
         raise LanguageError(str(error), "/tuning/weights") from error
 

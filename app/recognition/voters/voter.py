@@ -1,64 +1,96 @@
-"""What every voter gives: a descriptor of a drawing, and how far descriptors lie apart."""
+"""The base of all voters: descriptors, their distances, and what is known of both."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import accumulate
-from typing import Protocol
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
 
+CueGroup = Literal["figure", "posture", "wrist", "length"]
+"""What voters of one group look at; see `app.recognition.decision.rejection`."""
 
-class Voter(Protocol):
-    """Judges how much a query looks like each reference, from one point of view.
 
-    A voter sees drawings only through its descriptors, so that each drawing is described once.
-    It may look at a drawing's image or at its trajectory.
+@dataclass(frozen=True)
+class Cue:
+    """How a voter's distance counts towards the rejection of a query.
+
+    Attributes
+    ----------
+    group
+        The cue group it is averaged in: voters of a group make up for each other's noise.
+    weight
+        Its weight in the mean of its group.
+    reach
+        The threshold of a gesture, in typical distances of the demonstrator's own further takes.
+    squared
+        Whether distances are squares, which grow faster from one person to another.
+    varies_by_gesture
+        Whether the typical distance is measured on the gesture; else it is `Voter.within`.
+
     """
 
-    @property
-    def name(self) -> str:
-        """The name in results and language files, in snake_case."""
-        ...
+    group: CueGroup
+    weight: float
+    reach: float
+    squared: bool = True
+    varies_by_gesture: bool = True
 
-    @property
-    def unit(self) -> str:
-        """What a distance of 1 means, for people."""
-        ...
 
-    def length(self, keypoints: int) -> int:
-        """Return the length D of the descriptor of a drawing with so many salient keypoints."""
-        ...
+class Voter(ABC):
+    """One voter: a distance between a query and each reference, with its statistics.
 
-    def describe(self, drawing: Drawing) -> FloatArray:
-        """Describe a drawing that has a stroke.
+    The statistics are measured on air-drawn digits, letters and commands, two-handed figures and
+    aircraft marshalling by other people: the geometric mean over the sets
+    (``benchmarks/studies``).
 
-        Returns
-        -------
-        ``(D,)`` finite numbers.
+    Attributes
+    ----------
+    name
+        In results and language files, in snake_case.
+    unit
+        What a distance of 1 means, for people.
+    prior
+        Weight before any language is known; `path` has 1.
+    within
+        Within-class distance: mean between two people's takes of one gesture.
+    between
+        Between-class distance: median between two gestures; stands in where a language has one.
+    cue
+        How its distance counts towards rejection; None: it does not.
 
-        """
-        ...
+    """
 
+    name: ClassVar[str]
+    unit: ClassVar[str]
+    prior: ClassVar[float]
+    within: ClassVar[float]
+    between: ClassVar[float]
+    cue: ClassVar[Cue | None] = None
+
+    def prior_for(self, landmarks: int) -> float:
+        """Return the prior in a language that follows so many landmarks."""
+        return self.prior
+
+    @abstractmethod
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Measure how far the query lies from each reference.
 
         Parameters
         ----------
         query
-            ``(D,)`` descriptor.
+            The descriptor of the query.
         references
-            ``(G, D)``, one descriptor a row.
+            One descriptor of the same shape for each reference, stacked along the first axis.
 
         Returns
         -------
-        ``(G,)`` in `unit`, >= 0, 0 for the same descriptor.
+        ``(M,)`` in `unit`, >= 0, 0 for the same descriptor; infinite where nothing is comparable.
 
         """
-        ...
 
 
 def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray:
@@ -73,27 +105,3 @@ def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray
 def absolute_differences(query: FloatArray, references: FloatArray) -> FloatArray:
     """Measure by how much ``(1,)`` differs from each row of ``(G, 1)``: ``(G,)``."""
     return np.asarray(np.abs(references - query)[:, 0], dtype=np.float64)
-
-
-DESCRIPTOR_DIGITS = 6
-"""Decimals of a descriptor: files stay small, and a saved language decides as before saving."""
-
-
-def describe(drawing: Drawing, voters: Sequence[Voter]) -> dict[str, FloatArray]:
-    """Describe a drawing once for each voter.
-
-    Returns
-    -------
-    Per voter's name its descriptor, rounded; empty for an empty drawing.
-
-    """
-    if drawing.empty:
-        return {}
-    described = [voter.describe(drawing) for voter in voters]
-    # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
-    rounded = np.round(np.concatenate([*described, []]), DESCRIPTOR_DIGITS) + 0.0
-    ends = accumulate(len(each) for each in described)
-    return {
-        voter.name: rounded[end - len(each) : end]
-        for voter, each, end in zip(voters, described, ends, strict=True)
-    }

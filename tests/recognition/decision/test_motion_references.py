@@ -11,7 +11,7 @@ from app.recognition.decision.motion_references import MotionReferences, describ
 from app.recognition.gestures.gesture import condensed
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 from tests.recognition.demonstrations import ARMS, shown
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 

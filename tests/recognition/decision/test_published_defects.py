@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
+from app.recognition.decision.majority_vote import MajorityVote
 from app.recognition.features.contour import Outline
 from app.recognition.features.trajectory_image import draw
 from app.recognition.gestures.gesture import condensed
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS, describe
+from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape.shape_voter import describe_drawing
 from tests.recognition.strategies import SHAPES, circle, line, recording, rest, wedge
 from tests.recognition.voters.figures import drawing_of
 
@@ -110,7 +112,9 @@ def test_the_outline_lies_anywhere_and_the_descriptor_is_the_same() -> None:
     """There: the DC term keeps the place, and nothing divides by the scale."""
     corner = drawing_of(np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]))
     moved = replace(corner, image=np.roll(corner.image, (9, -7), axis=(0, 1)))
-    here, there = (describe(drawing, PAPER_VOTERS)["fourier"] for drawing in (corner, moved))
+    here, there = (
+        describe_drawing(drawing, PAPER_VOTERS)["fourier"] for drawing in (corner, moved)
+    )
     np.testing.assert_allclose(here, there, atol=1e-6)
 
 
@@ -122,7 +126,8 @@ def test_a_tie_does_not_go_to_whichever_gesture_comes_first() -> None:
     for gestures in (("circle", "wedge"), ("wedge", "circle")):
         language = Language("two", [LANGUAGE.gesture(label) for label in gestures])
         two = Recognizer(language, "paper")
-        assert two._counted(distances).label == gestures[1]
+        assert isinstance(two.vote, MajorityVote)
+        assert two.vote.count_votes(distances).label == gestures[1]
 
 
 def test_recognition_writes_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,9 +5,8 @@ import pytest
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.decision.calibration import REACH
-from app.recognition.decision.fused_vote import VOTERS
 from app.recognition.decision.rejection import (
-    VIEWS,
+    CUE_GROUPS,
     calibrated_confidence,
     is_rejected,
     novelty,
@@ -16,6 +15,7 @@ from app.recognition.decision.rejection import (
 )
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.strategies import SHAPES, circle, line, recording
 
 TAUGHT = ("circle", "wedge", "infinity", "square")
@@ -57,13 +57,13 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
 
 def test_novelty_is_the_largest_of_what_each_view_tells(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(zigzag, jitter=0.01))
-    assert result.novelty_by_view.keys() == VIEWS.keys()
+    assert result.novelty_by_view.keys() == CUE_GROUPS.keys()
     each = [*result.novelty_by_view.values()]
     np.testing.assert_array_equal(result.novelty, np.fmax.reduce(each))
 
 
 def test_a_view_whose_voters_are_off_tells_nothing(recognizer: Recognizer) -> None:
-    off = Tuning(weights=dict.fromkeys(VIEWS["length"], 0.0))
+    off = Tuning(weights=dict.fromkeys(CUE_GROUPS["length"], 0.0))
     query = recording(circle, frames=95, jitter=0.01)
     before = recognizer.recognize(query).novelty_by_view
     after = Recognizer(recognizer.language, tuning=off).recognize(query).novelty_by_view
@@ -83,19 +83,19 @@ def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_th
 
 def test_what_is_held_alike_does_not_make_up_for_what_is_drawn_otherwise() -> None:
     """A voter of another view that sees no difference leaves the novelty as it is."""
-    views = novelty_weights(VOTERS)
+    views = novelty_weights(VOTER_NAMES)
     distances = np.where(views[0] > 0, 2.0, np.inf)[:, None]
     calm = np.where(np.isfinite(distances), distances, 0.0)
-    ones = np.ones((len(VOTERS), 1))
+    ones = np.ones((len(VOTER_NAMES), 1))
     assert novelty(calm, ones, views) == novelty(distances, ones, views) == 2.0
 
 
 def test_a_voter_of_a_view_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
-    thresholds = thresholds_of(recognizer.language.gestures, VOTERS)
-    asked = (novelty_weights(VOTERS) > 0).any(axis=0)
+    thresholds = thresholds_of(recognizer.language.gestures, VOTER_NAMES)
+    asked = (novelty_weights(VOTER_NAMES) > 0).any(axis=0)
     assert np.isfinite(thresholds[asked]).all()
     assert not np.isfinite(thresholds[~asked]).any()
-    assert {voter for view in VIEWS.values() for voter in view} == set(REACH)
+    assert {voter for view in CUE_GROUPS.values() for voter in view} == set(REACH)
 
 
 def test_an_imported_gesture_is_not_rejected() -> None:

@@ -199,7 +199,7 @@ def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
     )
     loudest = explanation.verdicts[0].voter
     assert readable(loudest) in explanation.sentence
-    identifiers = [voter.name for voter in PROFILES[profile] if "_" in voter.name]
+    identifiers = [voter.name for voter in PROFILES[profile].voters if "_" in voter.name]
     assert not any(name in explanation.sentence for name in identifiers)
 
 

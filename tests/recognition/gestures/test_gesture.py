@@ -10,7 +10,7 @@ from app.recognition import Gesture, GestureError, PoseSequence
 from app.recognition.features.trajectory_image import draw
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_LANDMARKS, MAX_MOMENTS, condensed
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 from tests.recognition.strategies import circle, recording, recordings, rest
 
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, RecognitionError, Recognizer
 from app.recognition.gestures.gesture import condensed
-from app.recognition.gestures.profile import voters_of
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 
@@ -129,7 +129,7 @@ def test_a_tuning_is_said_in_words() -> None:
 
 TUNINGS = st.builds(
     Tuning,
-    weights=st.dictionaries(st.sampled_from(voters_of("full")), st.floats(0.1, 100), max_size=4),
+    weights=st.dictionaries(st.sampled_from(VOTER_NAMES), st.floats(0.1, 100), max_size=4),
     simplification=st.floats(0, 50),
     keypoints_repaired=st.sampled_from([None, True, False]),
 )
@@ -155,7 +155,7 @@ def test_a_language_as_any_other_says_nothing_of_it() -> None:
         ("tuning", {"weights": {"hu": -1.0}}, "/tuning/weights/hu"),
         ("tuning", {"weights": {"hu": 1e9}}, "/tuning/weights/hu"),
         ("tuning", {"weights": {"psychic": 1.0}}, "/tuning/weights"),
-        ("tuning", {"weights": dict.fromkeys(voters_of("full"), 0.0)}, "/tuning/weights"),
+        ("tuning", {"weights": dict.fromkeys(VOTER_NAMES, 0.0)}, "/tuning/weights"),
         ("tuning", {"simplification": "fine"}, "/tuning/simplification"),
         ("tuning", {"keypoints_repaired": 1}, "/tuning/keypoints_repaired"),
         ("tuning", {"gain": 3}, "/tuning/gain"),

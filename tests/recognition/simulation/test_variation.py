@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition import Language, PoseSequence
-from app.recognition.decision.fused_vote import CalibratedVote
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.errors import RecognitionError
 from app.recognition.gestures.gesture import condensed
 from app.recognition.poses.sequence import FloatArray
@@ -184,7 +184,7 @@ def test_fewer_than_none_are_refused() -> None:
 @pytest.mark.parametrize(("person", "share"), [("same", 0.95), ("another", 0.85)])
 def test_most_variants_of_the_sample_gestures_are_recognised(person: Person, share: float) -> None:
     language = Language.load(SAMPLE_LANGUAGE)
-    vote = CalibratedVote(language.gestures)
+    vote = FusedVote(language.gestures)
     named = []
     for gesture in language.gestures:
         assert gesture.trajectory is not None

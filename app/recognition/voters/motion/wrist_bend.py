@@ -7,6 +7,8 @@ import numpy.typing as npt
 
 from app.recognition.features.motion import LIMBS, Movement
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.voter import Cue
 
 FOREARM = LIMBS.index(("elbow", "wrist"))
 HAND = [
@@ -24,7 +26,7 @@ LEAST_WEIGHT = 1e-6
 steps count alike."""
 
 
-class WristBend:
+class WristBend(MotionVoter):
     """How the wrist is bent during the stroke, whichever way the body leans.
 
     The sine of the angle from forearm to hand (positive: clockwise in the image), averaged over
@@ -40,6 +42,12 @@ class WristBend:
 
     name = "wrist_bend"
     unit = "differences of the mean bend, in standard deviations of the bend on the way"
+    # Half of hand_attitude's: measured on marshalling alone, and wrists that mean nothing are bent
+    # somehow in every demonstration.
+    prior = 0.5
+    within = 0.45
+    between = 0.58
+    cue = Cue("wrist", weight=1.0, reach=3.5, squared=False, varies_by_gesture=False)
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(3 A,)``: of each arm the mean bend, its standard deviation and its part.

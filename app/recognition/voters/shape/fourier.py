@@ -8,6 +8,7 @@ import numpy.typing as npt
 from app.recognition.features.contour import Contour
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.shape.shape_voter import ShapeVoter
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -34,7 +35,7 @@ _BEGUN = np.concatenate([np.cos(_TURNS), -np.sin(_TURNS)])
 harmonic's product with another outline's."""
 
 
-class FourierDescriptors:
+class FourierDescriptors(ShapeVoter):
     """Low harmonics of the outline as a complex signal (Granlund 1972; paper, Sec. IV-D1).
 
     The outer contours, from left to right, are walked as one closed curve ``z = x + jy`` in 256
@@ -46,6 +47,9 @@ class FourierDescriptors:
 
     name = "fourier"
     unit = "Euclidean distance between outlines of norm 1 at their best common start point"
+    prior = 0.05
+    within = 0.33
+    between = 0.8
 
     def length(self, keypoints: int) -> int:
         """Return the number of descriptors, whatever the number of keypoints."""

@@ -4,7 +4,8 @@ import numpy as np
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.base import euclidean_distances
+from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.voter import euclidean_distances
 
 FLOOR = 1e-2
 """Magnitude below which an invariant counts as zero.
@@ -15,7 +16,7 @@ noise would outweigh the invariants that mean something.
 """
 
 
-class HuMoments:
+class HuMoments(ShapeVoter):
     """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
 
     From the normalised central moments of the stroke's pixels, on a logarithmic scale that keeps
@@ -25,6 +26,9 @@ class HuMoments:
 
     name = "hu"
     unit = "Euclidean distance between the seven invariants, each in decades"
+    prior = 0.05
+    within = 2.9
+    between = 4.7
 
     def length(self, keypoints: int) -> int:
         """Return the number of descriptors, whatever the number of keypoints."""

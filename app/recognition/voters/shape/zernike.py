@@ -7,7 +7,8 @@ import numpy.typing as npt
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.base import euclidean_distances
+from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.voter import euclidean_distances
 
 DEGREE = 8
 """Highest degree n, 25 moments: the customary order for shapes drawn by hand (Khotanzad and Hong
@@ -17,7 +18,7 @@ ORDERS = tuple((n, m) for n in range(DEGREE + 1) for m in range(n % 2, n + 1, 2)
 """Degree n and repetition m of each moment: ``n - m`` is even, negative m mirror positive ones."""
 
 
-class ZernikeMoments:
+class ZernikeMoments(ShapeVoter):
     """Zernike moments up to degree 8 (Zernike 1934, Khotanzad and Hong 1990; paper, Sec. IV-D1).
 
     ``Z = (n + 1) / pi * sum of V*(rho, theta) over the stroke's pixels / their number``, on the
@@ -27,6 +28,9 @@ class ZernikeMoments:
 
     name = "zernike"
     unit = "Euclidean distance between the 25 magnitudes"
+    prior = 0.05
+    within = 0.4
+    between = 0.62
 
     def length(self, keypoints: int) -> int:
         """Return the number of descriptors, whatever the number of keypoints."""

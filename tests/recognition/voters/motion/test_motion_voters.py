@@ -11,18 +11,16 @@ from hypothesis import strategies as st
 from app.recognition.features.motion import Movement, movement
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import (
-    MOTION_VOTERS,
-    Cloud,
-    Direction,
-    HandAttitude,
-    MotionVoter,
-    Path,
-    Posture,
-    StrokeDirection,
-    Tempo,
-    WhichHand,
-)
+from app.recognition.voters.motion.cloud import Cloud
+from app.recognition.voters.motion.direction import Direction
+from app.recognition.voters.motion.hand_attitude import HandAttitude
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
+from app.recognition.voters.motion.stroke_direction import StrokeDirection
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.motion.which_hand import WhichHand
+from app.recognition.voters.registry import MOTION_VOTERS
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, wedge
 
 HANDS = ("left_wrist", "right_wrist")
