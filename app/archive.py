@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 
 _DAMAGE = (
     zipfile.BadZipFile,
@@ -50,7 +50,7 @@ class UnpackedTooLarge(Exception):
 
 
 @contextmanager
-def opened(path: Path, called: str, refusal: type[RecognitionError]) -> Iterator[ZipFile]:
+def opened(path: Path, called: str, refusal: type[OsgError]) -> Iterator[ZipFile]:
     """Open an archive to look at and unpack it.
 
     Parameters
@@ -97,9 +97,9 @@ def visible_files(archive: ZipFile) -> list[ZipInfo]:
 def names_in(path: Path) -> list[str]:
     """Return the plain names of an archive's visible files, none where it cannot be read."""
     try:
-        with opened(path, path.name, RecognitionError) as archive:
+        with opened(path, path.name, OsgError) as archive:
             return [plain_name(entry) for entry in visible_files(archive)]
-    except RecognitionError:
+    except OsgError:
         return []
 
 

@@ -14,10 +14,10 @@ import numpy as np
 from app.recognition import PoseError
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import VOTER_NAMES
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
@@ -54,7 +54,9 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
         for query in random.choice(pool, min(queries, len(pool)), replace=False):
             asked += 1
             try:
-                seen = condensed(Trajectory.from_poses(repaired(recorded.recordings[query]).poses))
+                seen = condense(
+                    Trajectory.from_poses(repair_poses(recorded.recordings[query]).poses)
+                )
             except PoseError:
                 continue
             compared = vote.compare(seen)

@@ -28,7 +28,7 @@ from app.recognition import (
     takes_in,
 )
 from app.recognition.gestures.tuning import Tuning
-from app.recognition.preprocessing.side_swaps import exchanged_back
+from app.recognition.preprocessing.side_swaps import swap_sides
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import recorded_sets
 from benchmarks.shared_sets import demonstrated
@@ -69,7 +69,7 @@ def jitter(sigma: float, poses: PoseSequence, random: np.random.Generator) -> Po
 def exchanged(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
     """Take left for right in a share of the frames, in runs."""
     mistaken = in_runs(share, len(poses), random)
-    return replace(poses, xy=exchanged_back(poses.xy, poses.landmarks, mistaken))
+    return replace(poses, xy=swap_sides(poses.xy, poses.landmarks, mistaken))
 
 
 def jumping(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:

@@ -12,11 +12,11 @@ from functools import partial
 from statistics import median
 
 from app.recognition import Language, PoseSequence, Recognizer
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import variants
+from app.recognition.simulation.variation import draw_variants
 from app.resources import samples_dir
 
 TORSO_PIXELS = 120.0
@@ -31,9 +31,9 @@ def main() -> None:
         without, whole, tried = [], [], []
         for index, gesture in enumerate(language.gestures):
             assert gesture.trajectory is not None
-            poses = _filmed(variants(gesture.trajectory, 1, seed=index, person="another")[0])
+            poses = _filmed(draw_variants(gesture.trajectory, 1, seed=index, person="another")[0])
             meant = language.labels[(index + 1) % len(language.labels)]
-            anew = partial(Situation, recognizer=recognizer, poses=poses, whole=poses)
+            anew = partial(RecognitionContext, recognizer=recognizer, poses=poses, whole=poses)
             alone = min(_seconds(partial(recognizer.recognize, poses)) for _ in range(5))
             short, full = (
                 partial(explain, anew(), meant, with_counterfactuals=c) for c in (False, True)

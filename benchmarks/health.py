@@ -19,10 +19,10 @@ import numpy.typing as npt
 
 from app.recognition import Language, Recognizer
 from app.recognition.decision.rejection import is_rejected
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import PoseError
 from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
-from app.recognition.health.simulated_trials import rehearse
+from app.recognition.health.simulated_trials import simulate_trials
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.variation import Person
 from benchmarks.arguments import set_arguments
@@ -135,7 +135,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
         alone = own.all() or person == "same"
         pool = np.setdiff1d(np.flatnonzero(own if alone else ~own), templates)
         recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)))
-        rehearsal = rehearse(recognizer, study.variants, person=person)
+        rehearsal = simulate_trials(recognizer, study.variants, person=person)
         for performer, label in enumerate(labels):
             mine = pool[recorded.labels[pool] == label]
             chosen = generator.choice(mine, min(study.takes, len(mine)), replace=False)
@@ -162,7 +162,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
 
 def _compared(
     recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
-) -> Iterator[Comparison]:
+) -> Iterator[ScoreTable]:
     for query in queries:
         try:
             yield recognizer.compare(recognizer.query(recorded.recordings[query]))

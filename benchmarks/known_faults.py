@@ -18,14 +18,14 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation.differences import differences
+from app.recognition.explanation.differences import find_differences
 from app.recognition.explanation.pairing import Pairing
-from app.recognition.features.motion import part_of
+from app.recognition.features.motion import parse_body_part
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import ARM_PARTS, variants
+from app.recognition.simulation.variation import ARM_PARTS, draw_variants
 from app.resources import samples_dir
 
 Fault = Callable[[Trajectory], Trajectory]
@@ -123,7 +123,7 @@ def main() -> None:
         first, named, told = Share(0, 0), Share(0, 0), Counter[str]()
         for gesture in language.gestures:
             for take in drawn(gesture, arguments.takes, arguments.seed):
-                found = told_of(recognizer, gesture, condensed(spoil(take)))
+                found = told_of(recognizer, gesture, condense(spoil(take)))
                 told[found[0] if found else "none"] += 1
                 first += Share(int(found[:1] == kinds), 1)
                 named += Share(int({*kinds} <= {*found} if kinds else not found), 1)
@@ -133,7 +133,7 @@ def main() -> None:
 def drawn(gesture: Gesture, count: int, seed: int) -> tuple[Trajectory, ...]:
     """Draw takes of a gesture by another person."""
     assert gesture.trajectory is not None
-    return variants(gesture.trajectory, count, seed=seed, person="another")
+    return draw_variants(gesture.trajectory, count, seed=seed, person="another")
 
 
 def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list[str]:
@@ -144,12 +144,14 @@ def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list
     pairing = Pairing.of(query, gesture, reading, mirrored=bool(compared.mirrored[at]))
     if pairing is None:
         return []
-    return [each.kind for each in differences(pairing, sees_direction=True)]
+    return [each.kind for each in find_differences(pairing, sees_direction=True)]
 
 
 def _of_arms(take: Trajectory) -> npt.NDArray[np.bool_]:
     """Tell ``(K,)`` which landmarks an arm moves."""
-    return np.array([part_of(name).split("_", 1)[-1] in ARM_PARTS for name in take.landmarks])
+    return np.array(
+        [parse_body_part(name).split("_", 1)[-1] in ARM_PARTS for name in take.landmarks]
+    )
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.extraction import record
-from app.recognition.recording.salute import ENTER_SCORE, published_rule, salute_score
+from app.recognition.recording.salute import ENTER_SCORE, check_published_rule, salute_score
 from app.recognition.recording.video import ALPHA_BACKGROUND, over_background
 from app.resources import samples_dir
 from tests.recognition.parametric_hand import labelled_hands
@@ -156,7 +156,7 @@ def report(title: str, pictures: Sequence[Picture]) -> None:
     """Print both rules' rates on some pictures."""
     saluting = sum(picture.salutes for picture in pictures)
     print(f"{title}: {saluting} salutes, {len(pictures) - saluting} others")
-    rules: dict[str, Rule] = {"published rule": published_rule, "salute_score": salutes}
+    rules: dict[str, Rule] = {"published rule": check_published_rule, "salute_score": salutes}
     for name, rule in rules.items():
         rates = Rates.of(rule, pictures)
         print(f"  {name:15} recall {rates.recall:.3f}  false positives {rates.false_positives:.4f}")

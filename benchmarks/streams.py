@@ -16,7 +16,7 @@ import numpy.typing as npt
 from app.recognition import PoseSequence
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.accidental_motion import accidental_movements
+from app.recognition.simulation.accidental_motion import simulate_background_motion
 from benchmarks.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0
@@ -111,7 +111,7 @@ def composed(
     names = recorded.recordings[0].landmarks[len(BODY) :]
     resting = np.array([RESTING[name.split("_")[0]] for name in names]) * TORSO
     is_known = np.isin(recorded.labels, known)
-    accidents = accidental_movements(seed=int(random.integers(2**31)))
+    accidents = simulate_background_motion(seed=int(random.integers(2**31)))
     parts: list[FloatArray] = [_still(resting, random.uniform(*REST))]
     truth: list[Event] = []
     for _ in range(events):

@@ -8,8 +8,8 @@ from app.recognition import Gesture, PoseSequence
 from app.recognition.decision.fusion import fuse, weigh_voters
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
 from app.recognition.decision.shape_references import ShapeReferences
-from app.recognition.features.motion import movement
-from app.recognition.gestures.gesture import condensed
+from app.recognition.features.motion import build_movement
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
@@ -57,7 +57,7 @@ class TakeComparison:
 
     def of_recording(self, poses: PoseSequence) -> FloatArray:
         """Return the features of a recorded take."""
-        take = condensed(Trajectory.from_poses(poses))
+        take = condense(Trajectory.from_poses(poses))
         return self.features(take.select(self.demonstration.landmarks))
 
 
@@ -74,7 +74,7 @@ def looks(take: Trajectory, salient: tuple[str, ...]) -> FloatArray:
     its speed over the mean); how sharply it turns (mean squared angle from step to step); the gap
     between start and end in sizes; and what smoothing takes away, in sizes.
     """
-    seen = movement(take, salient)
+    seen = build_movement(take, salient)
     steps = np.diff(seen.paths, axis=0)
     size = np.sqrt((seen.paths**2).sum(axis=(1, 2)).mean())
     lengths = np.sqrt((steps**2).sum(axis=(1, 2)))

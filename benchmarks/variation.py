@@ -33,10 +33,10 @@ import numpy as np
 import numpy.typing as npt
 
 from app.evaluation.proportion import Share
-from app.recognition.decision.calibration import calibrated
+from app.recognition.decision.calibration import calibrate
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person
@@ -149,7 +149,7 @@ def compared(
             others = [comparison.of_recording(recordings[take]) for take in takes[1:]]
         else:
             drawn = model(comparison.demonstration, count, seed + number, relation.person)
-            others = [comparison.features(condensed(take)) for take in drawn]
+            others = [comparison.features(condense(take)) for take in drawn]
         varied.append(others)
     return Comparison(np.array(real), np.array(varied))
 
@@ -199,11 +199,11 @@ def confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str
         vote = FusedVote(gestures)
         queries = draw.others if relation.kind == "another" else draw.own
         for number, query in enumerate(queries):
-            take = condensed(Trajectory.from_poses(recorded.recordings[query]))
+            take = condense(Trajectory.from_poses(recorded.recordings[query]))
             real += _named(vote, take, str(recorded.labels[query]))
             gesture = gestures[number % len(gestures)]
             drawn = ours(demonstration_of(gesture), 1, int(query), relation.person)
-            variants += _named(vote, condensed(drawn[0]), gesture.label)
+            variants += _named(vote, condense(drawn[0]), gesture.label)
     yield f"{relation} | real {real} | variants {variants} | n = {real.asked}"
 
 
@@ -220,7 +220,7 @@ def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[s
     for number in range(pairs):
         first = int(random.integers(len(recordings)))
         takes = random.permutation(relation.others(first))[:count]
-        gestures = calibrated(demonstrated(relation.recorded, [first]))
+        gestures = calibrate(demonstrated(relation.recorded, [first]))
         vote = FusedVote(gestures)
         for take in takes:
             real += _refused(vote, Trajectory.from_poses(recordings[take]))
@@ -232,7 +232,7 @@ def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[s
 
 
 def _refused(vote: FusedVote, take: Trajectory) -> Share:
-    compared = vote.compare(condensed(take), drawn=False)
+    compared = vote.compare(condense(take), drawn=False)
     return Share(int(is_rejected(float(compared.novelty[0]))), 1)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import SPREADS, Person, variants, varied
+from app.recognition.simulation.variation import SPREADS, Person, draw_variants, vary
 
 Model = Callable[[Trajectory, int, int, Person], tuple[Trajectory, ...]]
 """Draws variants: of a demonstration, so many, with a seed, by whom."""
@@ -36,7 +36,7 @@ STROKE_WAVES, RISING_WAVES = 16, 4.0
 
 def ours(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Trajectory, ...]:
     """Draw what the recogniser is calibrated with."""
-    return variants(shown, count, seed=seed, person=person)
+    return draw_variants(shown, count, seed=seed, person=person)
 
 
 def stochastically_resampled(
@@ -125,7 +125,7 @@ def scaled(factor: float) -> Model:
         spread = SPREADS[person]
         shape = ("slant", "stretch", "shear", "waver", "sway")
         larger = replace(spread, **{name: factor * getattr(spread, name) for name in shape})
-        return varied(shown, count, larger, seed=seed)
+        return vary(shown, count, larger, seed=seed)
 
     return model
 
@@ -133,7 +133,7 @@ def scaled(factor: float) -> Model:
 def _without_waver(
     shown: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
-    return varied(shown, count, replace(SPREADS[person], waver=0.0), seed=seed)
+    return vary(shown, count, replace(SPREADS[person], waver=0.0), seed=seed)
 
 
 def _flat(shown: Trajectory) -> FloatArray:

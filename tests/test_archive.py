@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.archive import UnpackedTooLarge, names_in, opened, unpack, visible_files
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 
 METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
 
 
-class Refused(RecognitionError):
+class Refused(OsgError):
     """What the tests want raised."""
 
 

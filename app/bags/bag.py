@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from app.bags.message_definitions import DEFINITIONS
 from app.bags.staging import placed
-from app.recognition.errors import BagError, RecognitionError, TopicError
+from app.recognition.errors import BagError, OsgError, TopicError
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection, TopicInfo
@@ -259,7 +259,7 @@ def _told(place: Path, name: str) -> Iterator[None]:
     """
     try:
         yield
-    except (RecognitionError, MemoryError, OSError):
+    except (OsgError, MemoryError, OSError):
         raise
     # rosbags checks little of what it reads: struct.error, IndexError, KeyError, AssertionError
     # and those of three compression libraries and SQLite all mean the same here.

@@ -14,7 +14,7 @@ from app.recognition.errors import BagError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.poses.skeletons import SKELETON_2D, landmark_named, missing_from
+from app.recognition.poses.skeletons import SKELETON_2D, find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.timestamps import FrameClock
 from app.recognition.recording.video_limits import VideoLimits
@@ -171,7 +171,7 @@ def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[st
     if nobody := sum(not posed.told for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
     told = frozenset[str]().union(*(posed.told for posed in gathered.posed))
-    if missing := missing_from(tuple(told)):
+    if missing := find_missing_landmarks(tuple(told)):
         found.append(f"{topic.name} has no {', '.join(missing)}")
     if salute.topic is None:
         found.append(
@@ -207,7 +207,7 @@ def _posed(points: list[tuple[str, float, float, float]], size: tuple[int, int] 
     told = set()
     farthest = LARGEST_FRACTION * (1 if size is None else max(size))
     for said, x, y, belief in points:
-        if (name := landmark_named(said)) is None:
+        if (name := translate_landmark(said)) is None:
             continue
         told.add(name)
         # NaN is not nearer than anything.

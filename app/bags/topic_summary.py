@@ -8,7 +8,7 @@ from pathlib import Path
 from app.bags.bag import Bag, Topic, Use, opened_bag
 from app.bags.keypoints import keypoint_frame_size
 from app.bags.picture_frames import BagFrames
-from app.recognition.errors import BagError, RecognitionError
+from app.recognition.errors import BagError, OsgError
 from app.recognition.recording.video_limits import VideoLimits
 
 LONGEST_NAME = 255
@@ -56,7 +56,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     """
     limits = limits or VideoLimits()
     found: list[TopicSummary] = []
-    refused: RecognitionError | None = None
+    refused: OsgError | None = None
     with opened_bag(path) as bag:
         candidates = [topic for topic in bag.topics if _choosable(topic)]
         if not candidates:
@@ -68,7 +68,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
                 duration = durations.get(topic.name, 0.0)
                 limits.require_seconds(duration)
                 found.append(_summary(bag, topic, duration, limits))
-            except RecognitionError as error:
+            except OsgError as error:
                 refused = refused or error
     if not found:
         raise refused or BagError(f"{Path(path).name} has no topic whose name can be used")

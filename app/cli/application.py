@@ -39,9 +39,9 @@ from app.cli.robot import robot
 from app.cli.ros_arguments import apart
 from app.cli.terminal import describe, people, progress_bar, show_explanation, show_recognition
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
@@ -109,7 +109,7 @@ def serve(
         from app.server import run
         from app.settings import Settings
     except ModuleNotFoundError as error:
-        raise RecognitionError(
+        raise OsgError(
             f"the studio's packages are not installed ({error.name} is missing); "
             'install them, on Python 3.11 or newer, with: pip install "osg-studio[studio]"'
         ) from error
@@ -117,7 +117,7 @@ def serve(
     try:
         settings = Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
-        raise RecognitionError(error.errors()[0]["msg"].removeprefix("Value error, ")) from error
+        raise OsgError(error.errors()[0]["msg"].removeprefix("Value error, ")) from error
     run(settings, open_browser=not no_browser)
 
 
@@ -214,7 +214,7 @@ def recognize(
         save_session(mcap, path, topic, recording, told)
     takes = [take for take, _ in results]
     explanations = [
-        explain(Situation.of_take(recognizer, take), expected)
+        explain(RecognitionContext.of_take(recognizer, take), expected)
         for take in takes
         if expected is not None
     ]
@@ -350,7 +350,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         # Every other command refuses ROS arguments as it does all that it does not know.
         own, ros = apart(given) if given[:1] == ["robot"] else (given, [])
         command_line(args=own, prog_name="osg-studio", obj=ros)
-    except (RecognitionError, OSError) as error:
+    except (OsgError, OSError) as error:
         sys.stderr.write(f"osg-studio: {describe(error)}\n")
         sys.exit(BAD_INPUT)
     sys.exit(0)

@@ -11,7 +11,7 @@ from app.recognition.health.report import (
     GestureHealth,
     HealthReport,
 )
-from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.rate_estimate import RateEstimate
 
 MOST_PAIRS = 10
 """Pairs listed, the most confused first: the rest is in the JSON."""
@@ -87,7 +87,7 @@ def _warning(finding: Finding) -> Iterator[str]:
         yield f"  - {remedy.text}: {remedy.before.rate:.1%} becomes {percentage(remedy.after)}"
 
 
-def percentage(forecast: Forecast | None) -> str:
+def percentage(forecast: RateEstimate | None) -> str:
     """Return a rate with its interval; a dash where nothing is known."""
     if forecast is None:
         return "-"

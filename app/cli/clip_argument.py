@@ -16,7 +16,7 @@ from app.cli.terminal import people, progress_bar
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Language, PoseSequence, Recognition, Recording, Take, record, takes_in
 from app.recognition.errors import GestureError, KeypointFileError, VideoError
-from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
+from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
@@ -310,7 +310,7 @@ def _read_pictures(
 ) -> ReadClip:
     with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
         if language is not None:
-            require_landmarks(language, landmarks_of(estimator), f"estimator {how.estimator}")
+            require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
         with progress_bar(path.name) as advance:
             if as_bag:
                 recording = record_bag(

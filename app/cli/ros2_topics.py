@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SpokenLanguage
 
@@ -43,7 +43,7 @@ def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
     try:
         from osg_ros.nodes.robot_node import published
     except ModuleNotFoundError as error:
-        raise RecognitionError(
+        raise OsgError(
             f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "
             "build them with colcon and source the workspace in this shell"
         ) from error

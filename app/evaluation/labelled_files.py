@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from app.keypoint_files import is_keypoint_file
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
 """Layouts assumed for files that lie one, two or three levels deep, when none is given."""
@@ -72,7 +72,7 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
 
     """
     if layout is not None and "{label}" not in layout:
-        raise RecognitionError(
+        raise OsgError(
             f"layout {layout!r} does not say where the label stands: put {{label}} into it, as in "
             "{person}/{label}_#"
         )
@@ -83,7 +83,7 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
         if fields := _read(name, layout):
             found.append(LabelledFile(path, fields["label"], fields.get("person") or ""))
     if not found:
-        raise RecognitionError(
+        raise OsgError(
             f"{folder} holds no clip that fits {layout or ' or '.join(LAYOUTS)}; name its files "
             "so, or say how they are named with --layout"
         )

@@ -15,10 +15,10 @@ from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions, is_keypoint_file, read_keypoints
 from app.recognition import Recording, record, takes_in
-from app.recognition.errors import ModelError, RecognitionError
+from app.recognition.errors import ModelError, OsgError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.recording.recording import FILE_VERSION
-from app.recognition.text.hashing import sha256_of
+from app.recognition.text.hashing import hash_file
 
 Progress = Callable[[int, int, str], None]
 """``progress(done, total, name)``: frames of the file of that name."""
@@ -82,7 +82,7 @@ def collected(
                 takes += _takes(file, extractor.recording(file.path))
             except ModelError:
                 raise
-            except (RecognitionError, OSError) as error:
+            except (OsgError, OSError) as error:
                 problems[str(file.path)] = str(error)
     return Collection(tuple(takes), problems)
 
@@ -127,7 +127,7 @@ class _Extractor:
 
 def _content_key(path: Path) -> str:
     """Name a clip by its content, and by the program whose models saw it."""
-    return f"{sha256_of(path)}-{__version__}-{FILE_VERSION}"
+    return f"{hash_file(path)}-{__version__}-{FILE_VERSION}"
 
 
 def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:

@@ -11,8 +11,8 @@ from app.recognition import (
     Gesture,
     GestureError,
     Language,
+    OsgError,
     PoseSequence,
-    RecognitionError,
     Recognizer,
 )
 
@@ -95,7 +95,7 @@ def one_shot(
     chosen = [pick for pick in _choices(takes, gestures) if len(pick) > 1]
     labels = sorted({take.label for take in takes})
     if not chosen:
-        raise RecognitionError(
+        raise OsgError(
             f"{len(takes)} usable takes of {len(labels)} gestures, and no person shows two of "
             "them: record at least two gestures by the same person"
         )
@@ -112,7 +112,7 @@ def one_shot(
         if progress is not None:
             progress(done, len(chosen))
     if not same and not others:
-        raise RecognitionError(
+        raise OsgError(
             f"{len(takes)} takes of {len(labels)} gestures make languages and leave none to ask "
             "for: record at least two takes of a gesture"
         )

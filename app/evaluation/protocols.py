@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.evaluation.confusion import ConfusionMatrix
-from app.recognition import Language, PoseError, PoseSequence, RecognitionError, Recognizer
-from app.recognition.gestures.gesture import condensed
+from app.recognition import Language, OsgError, PoseError, PoseSequence, Recognizer
+from app.recognition.gestures.gesture import condense
 from app.recognition.language.schema import MAX_GESTURES
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import Person, variants
+from app.recognition.simulation.variation import Person, draw_variants
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)``, after every query."""
@@ -57,12 +57,12 @@ def recognised_variants(
     read: list[str | None] = []
     for number, gesture in enumerate(language.gestures):
         if gesture.trajectory is None:
-            raise RecognitionError(
+            raise OsgError(
                 f"{gesture.label!r} was imported without its demonstration, so it has no "
                 "variants: define it again from a clip"
             )
         # Gestures drawn with one seed would all waver alike.
-        drawn = variants(
+        drawn = draw_variants(
             gesture.trajectory, count, seed=seed * MAX_GESTURES + number, person=person
         )
         for variant in drawn:
@@ -77,7 +77,7 @@ def label_read(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> str 
     """Return the label of a recognition, None also where nothing can be compared."""
     try:
         if isinstance(shown, Trajectory):
-            return recognizer.recognize_trajectory(condensed(shown)).label
+            return recognizer.recognize_trajectory(condense(shown)).label
         return recognizer.recognize(shown).label
     except PoseError:
         return None

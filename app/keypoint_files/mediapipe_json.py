@@ -24,7 +24,7 @@ from app.keypoint_files.column_names import (
 )
 from app.keypoint_files.mediapipe_table import table_of, times_of
 from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times
-from app.recognition.errors import KeypointFileError, RecognitionError
+from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
@@ -49,7 +49,7 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         limits.require_frames(len(frames))
         rows = [_landmarks(frame) for frame in frames]
         about, times = _about(content), _times(frames)
-    except RecognitionError:
+    except OsgError:
         raise
     except MALFORMED as error:
         raise KeypointFileError(

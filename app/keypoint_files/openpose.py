@@ -17,7 +17,7 @@ import numpy as np
 
 from app.keypoint_files.table import MALFORMED, KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
+from app.recognition.estimation.person_tracker import PersonTracker, find_boxes
 from app.recognition.poses.frame import SIDES, Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -153,12 +153,12 @@ def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
 
 
 def _followed(everybody: list[list[_Person]], times: FloatArray) -> list[_Person | None]:
-    choice = SubjectChoice()
+    choice = PersonTracker()
     followed: list[_Person | None] = []
     for people, time in zip(everybody, times.tolist(), strict=True):
         chosen = None
         if people:
-            boxes = boxes_around(np.stack([person.xy for person in people]))
+            boxes = find_boxes(np.stack([person.xy for person in people]))
             scores = np.array([np.nanmean(person.body[:, 2]) for person in people])
             chosen = choice.choose(boxes, scores, time)
         followed.append(None if chosen is None else people[chosen])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.estimation.person_tracker import boxes_around, prominence
+from app.recognition.estimation.person_tracker import find_boxes, measure_prominence
 from app.recognition.poses.sequence import FloatArray
 
 
@@ -27,4 +27,4 @@ def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> flo
     if not frames.any():
         return 0.0
     belief = np.where(seen, 1.0 if confidence is None else confidence, 0.0).mean(axis=1)
-    return float(prominence(boxes_around(xy[frames]), belief[frames]).sum())
+    return float(measure_prominence(find_boxes(xy[frames]), belief[frames]).sum())

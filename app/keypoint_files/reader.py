@@ -18,7 +18,7 @@ from app.keypoint_files.table import KeypointOptions, KeypointTable
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.poses.skeletons import landmark_named, missing_from
+from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.video_limits import VideoLimits
@@ -64,7 +64,7 @@ def read_keypoints(
 ) -> ReadKeypoints:
     """Read one person's keypoints.
 
-    Names are mapped by `landmark_named` and by the user's own `options.landmarks`; what has no
+    Names are mapped by `translate_landmark` and by the user's own `options.landmarks`; what has no
     counterpart is left out and told. Of several people the largest is followed.
 
     Parameters
@@ -169,7 +169,7 @@ def _mapped(
     found: dict[str, int] = {}
     dropped = []
     for column, name in enumerate(names):
-        landmark = given.get(name) or landmark_named(name)
+        landmark = given.get(name) or translate_landmark(name)
         if landmark is None:
             dropped.append(name)
         elif landmark in found:
@@ -190,7 +190,7 @@ def _mapped(
             f"left out, for they mean no landmark here: {', '.join(dropped)}; keep one by "
             f"--landmark {dropped[0]}=NAME"
         )
-    if missing := missing_from(found):
+    if missing := find_missing_landmarks(found):
         source = "the folder" if path.is_dir() else "the file"
         notes.append(f"{source} gives no {', '.join(missing)}")
     return tuple(found), list(found.values()), tuple(notes)

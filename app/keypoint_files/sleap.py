@@ -12,7 +12,7 @@ import numpy as np
 from app.keypoint_files.person_choice import prominence_over
 from app.keypoint_files.table import KeypointOptions, KeypointTable, Times, seen_only
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.person_tracker import SubjectChoice, boxes_around
+from app.recognition.estimation.person_tracker import PersonTracker, find_boxes
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -116,7 +116,7 @@ def _of_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
 def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
     """``(T, K, 3)`` of whoever is followed, and the most people in a frame."""
     followed = np.full((len(labelled), nodes, 3), np.nan)
-    choice, most = SubjectChoice(), 0
+    choice, most = PersonTracker(), 0
     for row, (frame, time) in enumerate(zip(labelled, times.tolist(), strict=True)):
         people = [_points(instance) for instance in frame.instances]
         people = [one for one in people if np.isfinite(one[:, :2]).any()]
@@ -124,7 +124,7 @@ def _by_place(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[Float
         if people:
             stacked = np.stack(people)
             scores = np.nan_to_num(np.nanmean(stacked[..., 2], axis=1))
-            chosen = choice.choose(boxes_around(stacked[..., :2]), scores, time)
+            chosen = choice.choose(find_boxes(stacked[..., :2]), scores, time)
             if chosen is not None:
                 followed[row] = stacked[chosen]
     return followed, most

@@ -11,20 +11,20 @@ import numpy as np
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.majority_vote import MajorityVote
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
-from app.recognition.decision.trace import Examination
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.trace import Trace
 from app.recognition.decision.vote import Vote
 from app.recognition.errors import LanguageError, PoseError
-from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.gestures.gesture import Gesture, condense
 from app.recognition.gestures.profile import ProfileName, find_profile
-from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.quality import fault
-from app.recognition.preprocessing.repair import Repair, repaired
+from app.recognition.preprocessing.quality import find_fault
+from app.recognition.preprocessing.repair import Repair, repair_poses
 
 _VOTES: Final[dict[ProfileName, Callable[[Sequence[Gesture], Tuning], Vote]]] = {
     "paper": MajorityVote,
@@ -89,7 +89,7 @@ class Recognizer:
         """
         return self.examine(poses).result
 
-    def examine(self, poses: PoseSequence) -> Examination:
+    def examine(self, poses: PoseSequence) -> Trace:
         """Recognise as `recognize` does, and keep what led to the answer.
 
         Raises
@@ -98,24 +98,24 @@ class Recognizer:
             As `recognize`.
 
         """
-        repair = repaired(poses) if self.repairs else None
-        query = condensed(repair.trajectory if repair else Trajectory.from_poses(poses))
+        repair = repair_poses(poses) if self.repairs else None
+        query = condense(repair.trajectory if repair else Trajectory.from_poses(poses))
         comparison = self.compare(query)
-        result = self.decided(comparison)
+        result = self.decide(comparison)
         if repair:
             poor, findings = self._fault(repair, result.nearest), repair.findings
             if poor or findings:
                 label = None if poor else result.label
                 result = replace(result, label=label, findings=findings, fault=poor)
-        return Examination(query=query, comparison=comparison, result=result)
+        return Trace(query=query, comparison=comparison, result=result)
 
     def _fault(self, repair: Repair, nearest: str) -> str | None:
         """Tell why a recording is too poor to be the nearest gesture, whichever hand shows it."""
         gesture = self.language.gesture(nearest)
-        poor = fault(repair.poses, gesture.salient, repair.trajectory)
+        poor = find_fault(repair.poses, gesture.salient, repair.trajectory)
         if poor and gesture.switches.mirror == "on":
             others = [other_side(name) for name in gesture.salient]
-            poor = fault(repair.poses, others, repair.trajectory)
+            poor = find_fault(repair.poses, others, repair.trajectory)
         return poor
 
     def query(self, poses: PoseSequence) -> Trajectory:
@@ -127,8 +127,8 @@ class Recognizer:
             When the recording shows nothing.
 
         """
-        seen = repaired(poses).poses if self.repairs else poses
-        return condensed(Trajectory.from_poses(seen))
+        seen = repair_poses(poses).poses if self.repairs else poses
+        return condense(Trajectory.from_poses(seen))
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
         """Recognise the gesture in a `query`.
@@ -139,9 +139,9 @@ class Recognizer:
             As `recognize`.
 
         """
-        return self.decided(self.compare(trajectory))
+        return self.decide(self.compare(trajectory))
 
-    def decided(self, compared: Comparison) -> Recognition:
+    def decide(self, compared: ScoreTable) -> Recognition:
         """Decide what a comparison of this recogniser's means.
 
         Raises
@@ -163,14 +163,14 @@ class Recognizer:
         """The landmarks that any gesture of the language follows, in alphabetical order."""
         return self.vote.landmarks
 
-    def counting(self, label: str) -> Counting | None:
+    def sensitivity(self, label: str) -> Sensitivity | None:
         """Tell what about a gesture counts in this language.
 
         None in profile ``paper``, and where the gesture was imported without its demonstration:
         then only drawings are compared, whatever the switches say.
         """
-        return self.vote.counting(self.language.labels.index(label))
+        return self.vote.sensitivity(self.language.labels.index(label))
 
-    def compare(self, trajectory: Trajectory) -> Comparison:
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a `query` with every gesture, voter by voter."""
         return self.vote.compare(trajectory)

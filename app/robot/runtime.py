@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from app.recognition.errors import RecognitionError
-from app.recognition.estimation import landmarks_of
+from app.recognition.errors import OsgError
+from app.recognition.estimation import list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, corrected
+from app.recognition.estimation.water import WaterCorrection, correct_colours
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.robot.active_language import SpokenLanguage
 from app.robot.events import (
@@ -35,7 +35,7 @@ must stay readable."""
 THE_ESTIMATOR: Final = "the pose estimator"
 """What lacks a landmark, in messages."""
 
-LanguageChanges = Callable[[], SpokenLanguage | RecognitionError | None]
+LanguageChanges = Callable[[], SpokenLanguage | OsgError | None]
 """Tells, without waiting, which language is to be spoken from now on, why a new one cannot be, or
 None: nothing new."""
 
@@ -93,7 +93,7 @@ class Runtime:
         observer: Observer | None = None,
     ) -> None:
         require_landmarks(
-            listener.language.recognizer.language, landmarks_of(estimator), THE_ESTIMATOR
+            listener.language.recognizer.language, list_landmarks(estimator), THE_ESTIMATOR
         )
         self._source = source
         self._estimator = estimator
@@ -135,11 +135,13 @@ class Runtime:
         return SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
 
     def _look(self, frame: Frame) -> Iterator[Event]:
-        found = self._estimator.estimate(corrected(frame.image, self._water), frame.time)
+        found = self._estimator.estimate(correct_colours(frame.image, self._water), frame.time)
         if self._observer is not None:
             self._observer(frame, found)
         height, width = frame.image.shape[:2]
-        moment = moment_of(found, frame.time, (width, height), landmarks_of(self._estimator))
+        moment = build_frame_sequence(
+            found, frame.time, (width, height), list_landmarks(self._estimator)
+        )
         yield from self._listener.feed(moment, best_salute(found.hands))
         yield from self._drops.count(frame)
 
@@ -162,13 +164,13 @@ class Runtime:
         if isinstance(change, SpokenLanguage):
             try:
                 language = change.recognizer.language
-                require_landmarks(language, landmarks_of(self._estimator), THE_ESTIMATOR)
+                require_landmarks(language, list_landmarks(self._estimator), THE_ESTIMATOR)
                 self._listener.speak(change)
-            except RecognitionError as error:
+            except OsgError as error:
                 change = error
             else:
                 yield language_changed(self._time, change)
-        if isinstance(change, RecognitionError):
+        if isinstance(change, OsgError):
             kept = self._listener.language
             yield LanguageRefused(self._time, str(change), kept.sha256, kept.revision)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal, get_args
 
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, corrected
-from app.recognition.recording.extraction import moment_of
+from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.robot.energy import EnergyMeter
 from app.robot.events import TakeRecognized, TakeRejected
@@ -187,7 +187,7 @@ class StageProfiler:
 
     def _look(self, frame: Frame) -> dict[Stage, Cost]:
         """Do all that a robot does with a frame, and return what each stage added."""
-        image = corrected(frame.image, self._water)
+        image = correct_colours(frame.image, self._water)
         correction = self._lap()
         self._body.estimate(image, frame.time)
         body = self._lap()
@@ -196,7 +196,7 @@ class StageProfiler:
         score = best_salute(found.hands)
         salute = self._lap()
         height, width = frame.image.shape[:2]
-        told = self._listener.feed(moment_of(found, frame.time, (width, height)), score)
+        told = self._listener.feed(build_frame_sequence(found, frame.time, (width, height)), score)
         recognition = self._lap()
         self._takes = sum(isinstance(event, TakeRecognized | TakeRejected) for event in told)
         return {

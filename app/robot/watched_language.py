@@ -9,7 +9,7 @@ from typing import Final
 
 from typing_extensions import Self
 
-from app.recognition import RecognitionError
+from app.recognition import OsgError
 from app.robot.active_language import SpokenLanguage
 
 LOOK_EVERY: Final = 0.5
@@ -56,13 +56,13 @@ class WatchedLanguage:
         self._read_state = self._state()
         self.first = SpokenLanguage.load(path, profile)
         self._spoken = self.first.sha256
-        self._news: deque[SpokenLanguage | RecognitionError] = deque(maxlen=MOST_NEWS)
+        self._news: deque[SpokenLanguage | OsgError] = deque(maxlen=MOST_NEWS)
         self._asked = False
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="language", daemon=True)
         self._thread.start()
 
-    def changes(self) -> SpokenLanguage | RecognitionError | None:
+    def changes(self) -> SpokenLanguage | OsgError | None:
         """Return the language to speak from now on, or why the new file cannot be; once each."""
         return self._news.popleft() if self._news else None
 
@@ -95,7 +95,7 @@ class WatchedLanguage:
         """Read the file; what says the same as before is told only to who asked."""
         try:
             language = SpokenLanguage.load(self._path, self._profile)
-        except RecognitionError as error:
+        except OsgError as error:
             self._news.append(error)
             return
         if asked or language.sha256 != self._spoken:

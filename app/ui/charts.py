@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from app.recognition import Recognition
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.text.wording import readable
+from app.recognition.text.wording import humanize
 
 MAX_COLUMNS = 40
 """Gestures shown in the vote table; the farthest of a larger language say nothing about why."""
@@ -60,7 +60,7 @@ def vote_sentence(votes: Mapping[str, str | None]) -> str:
     """Say which voters chose which gesture, the largest party first."""
     parties: dict[str, list[str]] = {}
     for voter, label in votes.items():
-        parties.setdefault(label or "no one", []).append(readable(voter))
+        parties.setdefault(label or "no one", []).append(humanize(voter))
     ordered = sorted(parties.items(), key=lambda party: -len(party[1]))
     sentences = [
         f"<b>{escape(label)}</b>: {escape(', '.join(voters))}." for label, voters in ordered
@@ -143,7 +143,7 @@ def _vote_row(
     )
     mute = "" if weight > 0 else " class='mute'"
     return (
-        f"<tr{mute}><th scope='row'>{escape(readable(voter))}</th>"
+        f"<tr{mute}><th scope='row'>{escape(humanize(voter))}</th>"
         f"<td class='share'>{escape(share)}</td>{cells}</tr>"
     )
 

@@ -9,7 +9,7 @@ import viser
 from app.recognition import Recognition
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.text.wording import readable
+from app.recognition.text.wording import humanize
 from app.ui import charts
 from app.ui.style import PANEL_STYLE
 
@@ -113,7 +113,7 @@ def _path_chart(trajectory: Trajectory, landmark: str, start: float) -> str:
     path = trajectory.select([landmark]).xy[:, 0]
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the longest extent"
     return charts.line_chart(
-        f"{readable(landmark).capitalize()}, {unit}",
+        f"{humanize(landmark).capitalize()}, {unit}",
         trajectory.time + start,
         [
             charts.Curve("x, to the right", path[:, 0], "var(--osg-x)"),

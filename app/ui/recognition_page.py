@@ -16,7 +16,7 @@ from app.recognition import PoseError, PoseSequence, Recognition
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import salient_landmarks
+from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.video import read_frames
 from app.resources import static_dir
 from app.ui import charts
@@ -158,6 +158,6 @@ def _shares(xy: npt.NDArray[np.float64], frame_size: tuple[int, int]) -> list[li
 
 def _salient(poses: PoseSequence) -> tuple[str, ...]:
     try:
-        return salient_landmarks(Trajectory.from_poses(poses))
+        return find_salient_landmarks(Trajectory.from_poses(poses))
     except PoseError:
         return ()

@@ -17,8 +17,8 @@ from app.recognition.errors import PoseError
 from app.recognition.features.trajectory_image import draw
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import salient_landmarks
-from app.recognition.text.wording import all_readable
+from app.recognition.preprocessing.salience import find_salient_landmarks
+from app.recognition.text.wording import humanize_all
 from app.ui.back_wall import Wall
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
@@ -279,7 +279,7 @@ def _salient_motion(
         trajectory = Trajectory.from_poses(poses)
     except PoseError:
         return None, ()
-    names = salient_landmarks(trajectory) if view.salient is None else view.salient
+    names = find_salient_landmarks(trajectory) if view.salient is None else view.salient
     return (trajectory.select(names), names) if names else (None, ())
 
 
@@ -306,7 +306,7 @@ def compared_images(
 
 
 def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
-    return "this take" if len(sets) == 1 else f"this take, {', '.join(all_readable(names))}"
+    return "this take" if len(sets) == 1 else f"this take, {', '.join(humanize_all(names))}"
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:

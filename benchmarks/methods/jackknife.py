@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.matching.dtw import elastic_distances
+from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.methods.base import Method
@@ -39,7 +39,7 @@ class Jackknife(Method):
         """Return the label of the nearest reference."""
         directions, corrections = _described(query)
         # Of unit vectors, the squared distance is twice one less the inner product.
-        warped = elastic_distances(directions, np.array(self._directions), BAND) / 2
+        warped = dtw_distances(directions, np.array(self._directions), BAND) / 2
         alike = np.einsum("gcd,cd->gc", np.array(self._corrections), corrections)
         factors = 1 / np.maximum(alike, 1e-9)
         return self._labels[int((warped * factors.prod(axis=1)).argmin())]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.matching.dtw import elastic_distances
+from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.methods.base import Method
@@ -41,7 +41,7 @@ class PlainWarping(Method):
     def _distances(self, query: list[FloatArray]) -> FloatArray:
         """Return ``(G, 2)``."""
         views = zip(query, zip(*self._references, strict=True), strict=True)
-        return np.stack([elastic_distances(q, np.array(r), BAND) for q, r in views], axis=1)
+        return np.stack([dtw_distances(q, np.array(r), BAND) for q, r in views], axis=1)
 
 
 def _described(poses: PoseSequence) -> list[FloatArray]:

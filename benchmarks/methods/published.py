@@ -30,7 +30,7 @@ import numpy.typing as npt
 from skimage.measure import moments, moments_hu
 
 from app.recognition import PoseSequence
-from app.recognition.features.motion import part_of
+from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.base import Method
@@ -104,7 +104,7 @@ def salient_keypoints(poses: PoseSequence) -> tuple[str, ...]:
     movement = np.nansum(_range(poses.xy / poses.frame_size), axis=1)
     best: dict[str, tuple[float, str]] = {}
     for name, moved in zip(poses.landmarks, movement.tolist(), strict=True):
-        part = part_of(name)
+        part = parse_body_part(name)
         if part.endswith(NOT_HANDS) or part in (*SHOULDERS, *HIPS):
             continue
         group = next((side for side in ("right", "left") if part.startswith(side)), "face")

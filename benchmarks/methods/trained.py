@@ -9,7 +9,7 @@ import numpy as np
 from app.recognition import PoseSequence
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import variants
+from app.recognition.simulation.variation import draw_variants
 from benchmarks.methods.base import Method
 from benchmarks.methods.steps import features
 
@@ -28,7 +28,7 @@ class TrainedOnVariants(Method):
     def add(self, label: str, demonstration: PoseSequence) -> None:
         """Draw variants as other people's takes would differ, and describe them."""
         shown = Trajectory.from_poses(demonstration).filled(np.inf)
-        drawn = variants(shown, VARIANTS, seed=len(self._labels), person="another")
+        drawn = draw_variants(shown, VARIANTS, seed=len(self._labels), person="another")
         self._labels.append(label)
         self._sequences.append(np.array([features(each) for each in (shown, *drawn)]))
 

@@ -4,7 +4,7 @@ import pytest
 
 from app.cli.terminal import show_explanation
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from tests.recognition.strategies import SHAPES, recording
 
@@ -19,7 +19,9 @@ def test_an_explanation_is_a_sentence_and_what_would_help(
     recognizer = Recognizer(Language("pool", gestures), "paper")
     taken = recognizer.recognize(query).nearest
     (expected,) = {"circle", "line"} - {taken}
-    explanation = explain(Situation(recognizer=recognizer, poses=query, whole=query), expected)
+    explanation = explain(
+        RecognitionContext(recognizer=recognizer, poses=query, whole=query), expected
+    )
     show_explanation(explanation)
     shown = capsys.readouterr()
     assert shown.out == ""

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.evaluation.labelled_files import labelled_files
-from app.recognition import RecognitionError
+from app.recognition import OsgError
 
 
 def found(folder: Path, names: list[str], layout: str | None = None) -> dict[str, tuple[str, str]]:
@@ -60,10 +60,10 @@ def test_a_folder_of_openpose_is_one_take(tmp_path: Path) -> None:
 
 
 def test_a_folder_in_which_nothing_fits_says_what_would(tmp_path: Path) -> None:
-    with pytest.raises(RecognitionError, match=r"\{person\}/\{label\}.*--layout"):
+    with pytest.raises(OsgError, match=r"\{person\}/\{label\}.*--layout"):
         labelled_files(tmp_path)
 
 
 def test_a_layout_without_a_label_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(RecognitionError, match="does not say where the label stands"):
+    with pytest.raises(OsgError, match="does not say where the label stands"):
         labelled_files(tmp_path, "{person}/*")

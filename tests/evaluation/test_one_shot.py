@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.evaluation.one_shot import LabelledTake, OneShot, one_shot, read_by
-from app.recognition import Gesture, Language, RecognitionError
+from app.recognition import Gesture, Language, OsgError
 from tests.evaluation.takes import drawn_takes
 
 
@@ -63,13 +63,13 @@ def test_a_take_that_cannot_be_a_demonstration_is_named_and_still_asked_for(
 
 
 def test_one_gesture_alone_cannot_be_confused_with_anything(swipes: list[LabelledTake]) -> None:
-    with pytest.raises(RecognitionError, match="at least two gestures"):
+    with pytest.raises(OsgError, match="at least two gestures"):
         one_shot([take for take in swipes if take.label == "up"], profile="paper")
 
 
 def test_single_takes_leave_nothing_to_ask_for(swipes: list[LabelledTake]) -> None:
     firsts = {take.label: take for take in reversed(swipes) if take.person == "person 0"}
-    with pytest.raises(RecognitionError, match="at least two takes"):
+    with pytest.raises(OsgError, match="at least two takes"):
         one_shot([*firsts.values()], profile="paper")
 
 

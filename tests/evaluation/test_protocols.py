@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.evaluation.protocols import recognised_variants
-from app.recognition import Language, RecognitionError
+from app.recognition import Language, OsgError
 from app.recognition.language.osg_reference import from_reference, to_reference
 from tests.conftest import ROOT
 
@@ -35,5 +35,5 @@ def test_the_same_seed_gives_the_same_matrix_and_progress_counts_every_query(
 
 def test_a_gesture_without_demonstration_is_told_by_name(table_1: Language) -> None:
     images_only = from_reference(to_reference(table_1), "images")
-    with pytest.raises(RecognitionError, match=r"circle.*define it again"):
+    with pytest.raises(OsgError, match=r"circle.*define it again"):
         recognised_variants(images_only, 1, profile="paper")

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.keypoint_files import KeypointOptions, read_keypoints
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.poses.skeletons import BODY_25
 from tests.keypoint_files.files import (
     write_deeplabcut,
@@ -64,6 +64,6 @@ def test_a_damaged_file_is_read_or_refused(
     file.write_bytes(damaged(file.read_bytes(), seed, share))
     try:
         poses = read_keypoints(path, OPTIONS).recording.poses
-    except RecognitionError:
+    except OsgError:
         return
     assert poses.seen.any()

@@ -12,13 +12,13 @@ from app.recognition import (
     Gesture,
     Language,
     LanguageError,
+    OsgError,
     PoseError,
     PoseSequence,
     Recognition,
-    RecognitionError,
     Recognizer,
 )
-from app.recognition.decision.majority_vote import MajorityVote, relative_contributions
+from app.recognition.decision.majority_vote import MajorityVote, weigh_relative_distances
 from app.recognition.features.trajectory_image import Drawing, draw
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -169,7 +169,7 @@ def test_an_empty_language_cannot_recognise() -> None:
 
 
 def test_an_unknown_profile_is_named_with_the_known_ones(language: Language) -> None:
-    with pytest.raises(RecognitionError, match=r"no profile 'best'; .* paper and full"):
+    with pytest.raises(OsgError, match=r"no profile 'best'; .* paper and full"):
         Recognizer(language, profile="best")
 
 
@@ -225,7 +225,7 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
 def test_relative_distances_put_voters_on_one_scale() -> None:
     never = [np.inf] * 3  # a voter that abstains has no weight
     distances = np.array([[1.0, 3.0, np.inf], [100.0, 300.0, np.inf], [0.0, 0.0, np.inf], never])
-    contributions = relative_contributions(distances, np.ones(4))
+    contributions = weigh_relative_distances(distances, np.ones(4))
     np.testing.assert_allclose(contributions.sum(axis=0), [1 / 3, 1.0, np.inf])
     assert contributions[3].tolist() == [0.0, 0.0, 0.0]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recognition import Gesture, Language, PoseSequence, RecognitionError, record
+from app.recognition import Gesture, Language, OsgError, PoseSequence, record
 from app.recognition.errors import LandmarkError, LanguageError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.recording.segmentation import TakeState
@@ -104,7 +104,7 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
 def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_refused(
     estimator: PoseEstimator,
 ) -> None:
-    changes: list[SpokenLanguage | RecognitionError | None] = [
+    changes: list[SpokenLanguage | OsgError | None] = [
         spoken("circle", "line", revision=2),
         None,
         LanguageError("not a language file", "/format"),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.recognition import LanguageError, RecognitionError
+from app.recognition import LanguageError, OsgError
 from app.recognition.gestures.tuning import Tuning
 from app.robot import SpokenLanguage
 from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
@@ -24,7 +24,7 @@ def save(path: Path, *labels: str, revision: int = 1) -> SpokenLanguage:
     return spoken(*labels, revision=revision)
 
 
-def news(language: WatchedLanguage) -> SpokenLanguage | RecognitionError:
+def news(language: WatchedLanguage) -> SpokenLanguage | OsgError:
     end = clock.monotonic() + PATIENCE
     while clock.monotonic() < end:
         if change := language.changes():

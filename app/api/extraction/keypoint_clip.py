@@ -12,7 +12,7 @@ from app.recognition.errors import (
     FrameRateError,
     FrameSizeError,
     KeypointFileError,
-    RecognitionError,
+    OsgError,
 )
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video_limits import VideoLimits
@@ -32,14 +32,14 @@ def read_recording(file: Path, source: KeypointSource) -> Recording | Failed:
             read = read_keypoints(place, source.options)
         # The skeleton is drawn in pictures of this size.
         VideoLimits().require_pixels(*read.recording.poses.frame_size)
-    except RecognitionError as error:
+    except OsgError as error:
         return Failed(code=_code(error), detail=_detail(error, place))
     notes = [_in_senders_words(note, place) for note in read.recording.warnings]
     said = [DRAWN] if read.has_hands else [DRAWN, NO_HANDS]
     return replace(read.recording, warnings=(*said, *notes))
 
 
-def _code(error: RecognitionError) -> str:
+def _code(error: OsgError) -> str:
     match error:
         case FrameRateError():
             return "frame_rate_needed"
@@ -50,7 +50,7 @@ def _code(error: RecognitionError) -> str:
     return "video_unreadable"
 
 
-def _detail(error: RecognitionError, place: Path) -> str:
+def _detail(error: OsgError, place: Path) -> str:
     match error:
         case FrameRateError():
             return (

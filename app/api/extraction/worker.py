@@ -262,7 +262,7 @@ def main() -> None:
     from app.recognition.errors import (
         BagError,
         ModelError,
-        RecognitionError,
+        OsgError,
         TopicError,
     )
 
@@ -272,7 +272,7 @@ def main() -> None:
         report(Failed(code="decoder", detail="the clip needs more memory than a job may use"))
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
-    except RecognitionError as error:
+    except OsgError as error:
         codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
         # Our own name of the file means nothing to whoever sent it.
         name = _received(chosen).name

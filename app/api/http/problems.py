@@ -20,13 +20,13 @@ from app.recognition.errors import (
     LandmarkError,
     LanguageError,
     ModelError,
+    OsgError,
     PoseError,
-    RecognitionError,
     TopicError,
     VideoError,
 )
-from app.recognition.language.file import document_steps
-from app.recognition.text.strict_json import pointer_to
+from app.recognition.language.file import list_document_steps
+from app.recognition.text.strict_json import build_pointer
 from app.store import Conflict, NotFound, StoreError
 
 MEDIA_TYPE = "application/problem+json"
@@ -136,7 +136,7 @@ def install(app: FastAPI) -> None:
     """Make `app` answer every error with a problem document."""
     app.add_exception_handler(RequestValidationError, _on_invalid_request)
     app.add_exception_handler(HTTPException, _on_http_error)
-    for kind in (RecognitionError, StoreError, OSError, Exception):
+    for kind in (OsgError, StoreError, OSError, Exception):
         app.add_exception_handler(kind, _on_error)
 
 
@@ -158,7 +158,7 @@ def problem_of(error: Exception) -> ProblemError:
         case StoreError():
             headers = {"Retry-After": RETRY_SECONDS}
             return ProblemError(503, "store_unavailable", str(error), headers=headers)
-        case RecognitionError():
+        case OsgError():
             return _of_recognition(error)
         case OSError():
             return _of_storage(error)
@@ -170,7 +170,7 @@ def problem_of(error: Exception) -> ProblemError:
     )
 
 
-def _of_recognition(error: RecognitionError) -> ProblemError:
+def _of_recognition(error: OsgError) -> ProblemError:
     if isinstance(error, ModelError):
         return ProblemError(503, "model_missing", str(error))
     if isinstance(error, LanguageError):
@@ -230,4 +230,4 @@ def _fault(item: Mapping[str, Any]) -> Fault:
         return Fault(pointer="", detail=item["msg"], parameter=name)
     if item["type"] == "json_invalid":
         return Fault(pointer="", detail=f"not JSON: {item['ctx']['error']}")
-    return Fault(pointer=pointer_to(*document_steps(tuple(steps))), detail=item["msg"])
+    return Fault(pointer=build_pointer(*list_document_steps(tuple(steps))), detail=item["msg"])

@@ -21,7 +21,7 @@ from starlette.websockets import WebSocketDisconnect
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
 from app.api.live.watcher import Frame, Watcher
 from app.api.services.context import CurrentStudio, Studio
-from app.recognition import RecognitionError, Recognizer
+from app.recognition import OsgError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
@@ -206,7 +206,7 @@ class _View:
             if recognizer := await run_in_threadpool(self._recognizer):
                 language = recognizer.language
                 answer = Listening(language=language.name, gestures=len(language.gestures))
-        except RecognitionError as error:
+        except OsgError as error:
             answer = Listening(problem=str(error))
         await self._browser.send_text(answer.model_dump_json())
 
@@ -224,7 +224,7 @@ class _View:
             assert frame is not None
             try:
                 answers = await loop.run_in_executor(self._thread, self._watcher.look, frame)
-            except RecognitionError as error:
+            except OsgError as error:
                 raise _End(UNSUPPORTED_DATA, str(error)) from error
             for answer in answers:
                 await self._browser.send_text(answer.model_dump_json())
@@ -237,5 +237,5 @@ class _View:
         try:
             state = self._studio.languages.get(wanted.language_id)
         except NotFound as error:
-            raise RecognitionError(f"{error}; choose another language") from error
+            raise OsgError(f"{error}; choose another language") from error
         return self._studio.recognizer(state, wanted.profile)

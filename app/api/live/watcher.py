@@ -14,10 +14,10 @@ import numpy as np
 from pydantic import BaseModel
 
 from app.api.extraction.messages import Pose, pose_in
-from app.recognition import Recognition, RecognitionError, Recognizer, Take
+from app.recognition import OsgError, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, corrected
+from app.recognition.estimation.water import WaterCorrection, correct_colours
 from app.recognition.poses.frame import Image
 from app.recognition.recording.live_segmentation import LiveTakes, Sight
 from app.recognition.recording.segmentation import TakeState
@@ -190,7 +190,7 @@ class Watcher:
             self._estimator.reset()
             takes = self._takes = LiveTakes((width, height))
         self._time = frame.time
-        found = self._estimator.estimate(corrected(image, self._water), frame.time)
+        found = self._estimator.estimate(correct_colours(image, self._water), frame.time)
         sight = takes.feed(frame.time, found)
         seen = Seen(
             time=frame.time,
@@ -223,7 +223,7 @@ class Watcher:
             return ()
         try:
             return (answer_of(sight.take, self._recognizer()),)
-        except RecognitionError as error:
+        except OsgError as error:
             return (_taken(sight.take, problem=str(error)),)
 
 

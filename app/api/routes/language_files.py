@@ -19,7 +19,7 @@ from app.recognition import Language
 from app.recognition.language.osg_reference import from_reference, is_reference, to_reference
 from app.recognition.language.proteus import SUFFIX as PROTEUS_SUFFIX
 from app.recognition.language.proteus import to_proteus
-from app.recognition.language.requirements import requirements_of
+from app.recognition.language.requirements import find_requirements
 from app.recognition.language.schema import FORMAT, VERSION
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -133,7 +133,7 @@ def describe_export(
     """Tell what the export holds, before it is taken to the robot."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
-    needed = requirements_of(language)
+    needed = find_requirements(language)
     documents = {
         FileFormat.OSG_STUDIO: state.revision.document,
         FileFormat.OSG_REFERENCE: to_reference(language),

@@ -27,8 +27,8 @@ from app.api.services.demonstration_sources import sources_in
 from app.api.services.language_documents import draft_of, editing, name_of_copy
 from app.recognition import Language
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.language.grammar_entry import grammar_entry_of, grammar_of
-from app.recognition.language.tuning_entry import tuning_entry_of, tuning_of
+from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
+from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.store import LanguageState, LanguageStore
 
 _REVISION_TAG = re.compile(r'(?:W/)?"(\d{1,9})"', re.ASCII)
@@ -90,9 +90,9 @@ def change_language(
     """Rename a language or its author, change its phrases, or how it is recognised."""
     fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
     if "grammar" in change.model_fields_set:
-        fields["grammar"] = None if change.grammar is None else grammar_of(change.grammar)
+        fields["grammar"] = None if change.grammar is None else entry_to_grammar(change.grammar)
     if "tuning" in change.model_fields_set:
-        fields["tuning"] = tuning_of(change.tuning)
+        fields["tuning"] = entry_to_tuning(change.tuning)
     if not fields:
         return answered(studio, studio.languages.get(language_id), response)
     edit = editing(_change_words(fields), lambda language: replace(language, **fields))
@@ -164,9 +164,9 @@ def answered(studio: Studio, state: LanguageState, response: Response) -> Langua
             gesture_view(state, gesture, sources.get(gesture.label))
             for gesture in language.gestures
         ],
-        grammar=None if language.grammar is None else grammar_entry_of(language.grammar),
+        grammar=None if language.grammar is None else grammar_to_entry(language.grammar),
         profile=language.profile,
-        tuning=tuning_entry_of(language.tuning),
+        tuning=tuning_to_entry(language.tuning),
         tuning_words=language.tuning.words,
     )
 

@@ -12,7 +12,7 @@ from app.api.http.problems import ProblemError, documented
 from app.api.http.schemas import Label
 from app.api.routes.languages import Revision
 from app.api.services.context import CurrentStudio
-from app.recognition.explanation.pair_difference import Contrast, contrast
+from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
 
 DIGITS = 3
@@ -66,7 +66,7 @@ def contrast_gestures(
             detail = f"there is no gesture {label[:80]!r} in this language"
             raise ProblemError(404, "not_found", detail)
     first, second = labels.index(one), labels.index(other)
-    forth, back = contrast(recognizer, first, second), contrast(recognizer, second, first)
+    forth, back = compare_pair(recognizer, first, second), compare_pair(recognizer, second, first)
     gestures = recognizer.language.gestures
     return ContrastView(
         gestures=(_paths(gestures[first]), _paths(gestures[second])),
@@ -75,7 +75,7 @@ def contrast_gestures(
     )
 
 
-def _words(found: Contrast | None) -> str | None:
+def _words(found: PairDifference | None) -> str | None:
     return None if found is None else found.words
 
 

@@ -17,19 +17,19 @@ from app.api.services.clip_ranges import Demonstration
 from app.api.services.context import CurrentStudio, Studio
 from app.api.services.gesture_edits import demonstration_at, gesture_in, switched, with_change
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
-from app.recognition.features.motion import hands_in
+from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
-from app.recognition.gestures.switches import Counting, Switches
-from app.recognition.health.finding import visible_share
-from app.recognition.health.gesture_forecast import outlook
+from app.recognition.gestures.switches import Sensitivity, Switches
+from app.recognition.health.finding import measure_visible_share
+from app.recognition.health.gesture_forecast import estimate_gesture
 from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
-    displacements,
-    least_displacement,
-    representatives,
-    salient_landmarks,
+    choose_representatives,
+    find_least_displacement,
+    find_salient_landmarks,
+    measure_displacements,
 )
 from app.recognition.voters.registry import PAPER_VOTERS
 
@@ -133,9 +133,9 @@ def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStu
     draft = _draft(language, request, studio)
     gesture = draft.gesture()
     recognizer = Recognizer(draft.language(), "full")
-    found = outlook(recognizer, gesture.label)
+    found = estimate_gesture(recognizer, gesture.label)
     return OutlookView(
-        switches=_switch_views(gesture, recognizer.counting(gesture.label)),
+        switches=_switch_views(gesture, recognizer.sensitivity(gesture.label)),
         pairs=[] if found is None else [pair.to_dict() for pair in found.pairs],
         missed=None if found is None else found.missed.to_dict(),
         refused=None if found is None else found.refused.to_dict(),
@@ -195,7 +195,7 @@ class _Draft:
         if self.demonstration is None:
             return gesture_in(self.of, self.label).trajectory
         try:
-            return Trajectory.from_poses(repaired(self.demonstration.poses).poses)
+            return Trajectory.from_poses(repair_poses(self.demonstration.poses).poses)
         except PoseError:
             return None
 
@@ -220,7 +220,7 @@ def _view(gesture: Gesture | None, draft: _Draft, problem: str | None) -> Previe
         image=image and f"data:image/png;base64,{image}",
         salient=[] if gesture is None else list(gesture.salient),
         keypoints=_keypoints(trajectory) if known and trajectory else [],
-        threshold=least_displacement(trajectory) if known and trajectory else None,
+        threshold=find_least_displacement(trajectory) if known and trajectory else None,
         unit="torso_length" if trajectory is None else trajectory.unit,
         descriptors=[] if gesture is None else _descriptors(gesture),
         start=None if shown is None else shown.start,
@@ -230,13 +230,13 @@ def _view(gesture: Gesture | None, draft: _Draft, problem: str | None) -> Previe
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:
-    moved, usual = displacements(trajectory), representatives(trajectory)
-    proposed = salient_landmarks(trajectory)
+    moved, usual = measure_displacements(trajectory), choose_representatives(trajectory)
+    proposed = find_salient_landmarks(trajectory)
     views = [
         KeypointView(
             landmark=name,
             displacement=round(moved[name], DISPLACEMENT_DIGITS),
-            seen=visible_share(trajectory, name),
+            seen=measure_visible_share(trajectory, name),
             usual=name in usual,
             proposed=name in proposed,
         )
@@ -255,7 +255,7 @@ def _descriptors(gesture: Gesture) -> list[DescriptorView]:
     ]
 
 
-def _switch_views(gesture: Gesture, counting: Counting | None) -> dict[str, SwitchView]:
+def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, SwitchView]:
     words = _switch_words(gesture, counting)
     counts: dict[str, bool | None] = dict.fromkeys(SWITCHES)
     if counting is not None:
@@ -273,7 +273,7 @@ def _switch_views(gesture: Gesture, counting: Counting | None) -> dict[str, Swit
     }
 
 
-def _switch_words(gesture: Gesture, counting: Counting | None) -> dict[str, str]:
+def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, str]:
     """Say what each switch comes to in this language."""
     if counting is None:
         only = "only its drawing is known, which looks the same either way"
@@ -285,8 +285,8 @@ def _switch_words(gesture: Gesture, counting: Counting | None) -> dict[str, str]
     }
 
 
-def _direction_words(gesture: Gesture, counting: Counting) -> str:
-    if hands_in(gesture.salient) != 1:
+def _direction_words(gesture: Gesture, counting: Sensitivity) -> str:
+    if find_hands(gesture.salient) != 1:
         return "it is read as shown: of two hands, opening is the reverse of closing"
     if not counting.direction:
         return "it is read either way round"
@@ -295,7 +295,7 @@ def _direction_words(gesture: Gesture, counting: Counting) -> str:
     return "it counts, for another gesture is the same figure the other way round"
 
 
-def _tempo_words(gesture: Gesture, counting: Counting) -> str:
+def _tempo_words(gesture: Gesture, counting: Sensitivity) -> str:
     if not counting.tempo:
         return "it is read however fast it is shown"
     if gesture.switches.tempo == "on":
@@ -303,7 +303,7 @@ def _tempo_words(gesture: Gesture, counting: Counting) -> str:
     return "it counts, for another gesture is the same movement, clearly slower or quicker"
 
 
-def _mirror_words(gesture: Gesture, counting: Counting) -> str:
+def _mirror_words(gesture: Gesture, counting: Sensitivity) -> str:
     if gesture.switches.mirror == "on":
         return "its mirror image, with the other hand, is read as it too"
     if not counting.sides:

@@ -9,17 +9,17 @@ from app.api.http.schemas import RecognitionView
 from app.api.services.clip_ranges import demonstration_in, surroundings_in
 from app.api.services.context import Studio
 from app.recognition import Recognition, Recognizer
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.language.schema import TuningEntry
-from app.recognition.language.tuning_entry import tuning_of
+from app.recognition.language.tuning_entry import entry_to_tuning
 from app.store import RecognitionRecord
 
 
-def load_situation(record: RecognitionRecord, studio: Studio) -> Situation:
+def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
     """Return the situation in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id)
-    return Situation(
+    return RecognitionContext(
         recognizer=tune_recognizer(
             studio.recognizer(state, record.profile), view_recognition(record).tuning
         ),
@@ -32,7 +32,7 @@ def tune_recognizer(recognizer: Recognizer, asked: TuningEntry | None) -> Recogn
     """Return the recogniser with the tuning asked for; the same one where none is."""
     if asked is None:
         return recognizer
-    return Recognizer(recognizer.language, recognizer.profile, tuning=tuning_of(asked))
+    return Recognizer(recognizer.language, recognizer.profile, tuning=entry_to_tuning(asked))
 
 
 def load_recognition(record: RecognitionRecord) -> Recognition:

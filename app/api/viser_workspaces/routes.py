@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, HTTPException, Path, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.ui.workspace import Workspace, WorkspaceView
 from app.ui.workspace_registry import TooManyWorkspacesError, WorkspaceRegistry
 
@@ -87,7 +87,7 @@ def router(
         view = view_of(request)
         try:
             workspace.show(view)
-        except RecognitionError as error:
+        except OsgError as error:
             raise HTTPException(422, str(error)) from error
         return Response(status_code=204)
 

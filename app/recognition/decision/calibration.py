@@ -18,17 +18,17 @@ import numpy as np
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.motion_references import (
-    MAX_GESTURES_READ_OTHERWISE,
+    MAX_GESTURES_TRAVERSED,
     describe_movement,
 )
-from app.recognition.decision.rejection import novelty, novelty_weights
+from app.recognition.decision.rejection import build_novelty_weights, measure_novelty
 from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.model_error import UNFORESEEN
-from app.recognition.simulation.negatives import foreign_movements
-from app.recognition.simulation.rate_estimate import Forecast
-from app.recognition.simulation.variation import SPREADS, variants
+from app.recognition.simulation.model_error import VARIANT_BIASES
+from app.recognition.simulation.negatives import draw_negatives
+from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variation import SPREADS, draw_variants
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
@@ -90,11 +90,11 @@ class _Reach:
     takes: FloatArray
 
 
-def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
+def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     """Give every gesture thresholds, and the rates of errors to expect with them.
 
     Gestures without a demonstration get none: they are never rejected. Of more than
-    `MAX_GESTURES_READ_OTHERWISE`, all get those of a typical gesture and no rates.
+    `MAX_GESTURES_TRAVERSED`, all get those of a typical gesture and no rates.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _with_thresholds(
         return replace(gesture, thresholds=thresholds, rates=None)
     margins = np.log(limit) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
-        miss=round(Forecast.of_margins(margins, UNFORESEEN["another"]).rate, DIGITS),
+        miss=round(RateEstimate.of_margins(margins, VARIANT_BIASES["another"]).rate, DIGITS),
         false_alarm=round(float((foreign < limit).mean()), DIGITS),
     )
     return replace(gesture, thresholds=thresholds, rates=rates)
@@ -151,9 +151,10 @@ def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     multiples = np.array([cue.reach if cue else np.inf for cue in cues])
     own = np.array([0.0 if cue and not cue.varies_by_gesture else OWN for cue in cues])
     farther = np.array([OTHERS**0.5 if cue and not cue.squared else OTHERS for cue in cues])
+    weights = build_novelty_weights(VOTER_NAMES)
     thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
-    if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+    if len(gestures) > MAX_GESTURES_TRAVERSED:
         return _Reach(thresholds, takes)
     for row in vote.references.as_shown:
         index = int(vote.references.gestures[row])
@@ -165,12 +166,12 @@ def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
         thresholds[known, index] *= (mean / typical[known]) ** own[known]
         others = farther[:, None] * distances
-        takes[index] = novelty(others, thresholds[:, [index]], novelty_weights(VOTER_NAMES))
+        takes[index] = measure_novelty(others, thresholds[:, [index]], weights)
     return _Reach(thresholds, takes)
 
 
 def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
-    return demonstration.once("takes to calibrate by", lambda: variants(demonstration, TAKES))
+    return demonstration.once("takes to calibrate by", lambda: draw_variants(demonstration, TAKES))
 
 
 def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArray:
@@ -196,14 +197,14 @@ def _foreign(gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArra
     -------
     ``(N, G)`` novelties, infinite for the gestures they are not nearest to. Where the
     landmarks of the gestures are of another body than the accidental movements', or there are
-    more than `MAX_GESTURES_READ_OTHERWISE` gestures, NaN: nothing is known.
+    more than `MAX_GESTURES_TRAVERSED` gestures, NaN: nothing is known.
 
     """
-    if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+    if len(gestures) > MAX_GESTURES_TRAVERSED:
         return np.full((1, len(gestures)), np.nan)
     measuring = vote.with_thresholds(thresholds)
     found = []
-    for movement in foreign_movements(gestures):
+    for movement in draw_negatives(gestures):
         compared = measuring.compare(movement, drawn=False)
         if np.isfinite(compared.scores).any():
             nearest = int(compared.scores.argmin())

@@ -12,25 +12,25 @@ import numpy.typing as npt
 
 from app.recognition.decision.fusion import weigh_distances, weigh_voters
 from app.recognition.decision.motion_references import (
-    MAX_GESTURES_READ_OTHERWISE,
+    MAX_GESTURES_TRAVERSED,
     MotionReferences,
     describe_movement,
-    tempo_counts,
-    unambiguous,
+    drop_ambiguous_traversals,
+    find_tempo_dependent,
 )
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
-    calibrated_confidence,
+    build_novelty_weights,
+    estimate_confidence,
+    gather_thresholds,
     is_rejected,
-    novelty_by_view,
-    novelty_weights,
-    thresholds_of,
+    measure_group_novelties,
 )
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -39,7 +39,7 @@ from app.recognition.voters.registry import PAPER_VOTERS, VOTER_NAMES, VOTERS
 
 _SHAPES = len(PAPER_VOTERS)
 _TEMPO = VOTER_NAMES.index(Tempo.name)
-_NOVELTY_WEIGHTS = novelty_weights(VOTER_NAMES)
+_NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
 
 
 CLOSE_SCORES = 0.05
@@ -47,7 +47,7 @@ CLOSE_SCORES = 0.05
 another reading of a gesture, which the new weight may bring about, is usually nearer."""
 
 
-def with_mirror_images(
+def add_mirror_images(
     gestures: Sequence[Gesture],
 ) -> tuple[tuple[Gesture, ...], npt.NDArray[np.intp]]:
     """Add the mirror images of gestures that either hand may show.
@@ -85,7 +85,7 @@ class FusedVote:
 
     def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
-        sides, self._owners = with_mirror_images(gestures)
+        sides, self._owners = add_mirror_images(gestures)
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
@@ -93,15 +93,15 @@ class FusedVote:
         # Last, for what a language needs does not change with what its author makes of it.
         self._factors = tuning.weights_of(VOTER_NAMES)
         self._weights: FloatArray = self._weights * self._factors
-        self._thresholds = thresholds_of(sides, VOTER_NAMES)
+        self._thresholds = gather_thresholds(sides, VOTER_NAMES)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Compute the weights, and which directions and tempos the language needs."""
-        asked = self._motions.as_shown[:MAX_GESTURES_READ_OTHERWISE]
+        asked = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
         own = self._motions.own_distances
         one, other = np.triu_indices(len(asked), 1)
         pairs = own[:, :, asked][:, one, other]
-        shapes = self._shapes.own_distances(MAX_GESTURES_READ_OTHERWISE)
+        shapes = self._shapes.own_distances(MAX_GESTURES_TRAVERSED)
         self._weights, self._between = weigh_voters(
             VOTERS,
             [*shapes, *(row[np.isfinite(row)] for row in pairs)],
@@ -109,17 +109,17 @@ class FusedVote:
         )
         if len(asked) < len(self._motions.as_shown):
             return
-        self._tempo = tempo_counts(self._motions, own, *self._of_motion, sides)
+        self._tempo = find_tempo_dependent(self._motions, own, *self._of_motion, sides)
         free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
-        self._motions = unambiguous(self._motions, own, *self._of_motion, free)
+        self._motions = drop_ambiguous_traversals(self._motions, own, *self._of_motion, free)
 
-    def counting(self, gesture: int) -> Counting | None:
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Tell what about a gesture counts here; None where its movement is not compared."""
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
         readings = [self._motions.readings[row] for row in rows]
-        return Counting(
+        return Sensitivity(
             direction=not any(reading.backward for reading in readings),
             tempo=bool(self._tempo[gesture]),
             sides=not any(reading.exchanged for reading in readings),
@@ -170,7 +170,7 @@ class FusedVote:
         other._thresholds = thresholds[:, self._owners]
         return other
 
-    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> Comparison:
+    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
         """Compare a condensed query with every gesture, from its better side.
 
         `drawn`: also as a drawing, which takes most of the time and rarely decides.
@@ -188,7 +188,7 @@ class FusedVote:
             shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
             scores = shares.sum(axis=0)
         chosen = self._sides_nearest(scores + turned)
-        return Comparison(
+        return ScoreTable(
             voters=VOTER_NAMES,
             distances=distances.take(chosen, axis=1),
             contributions=shares.take(chosen, axis=1),
@@ -201,7 +201,9 @@ class FusedVote:
         )
 
     def _novelty_by_view(self, distances: FloatArray) -> FloatArray:
-        return novelty_by_view(distances, self._thresholds, self._factors * _NOVELTY_WEIGHTS)
+        return measure_group_novelties(
+            distances, self._thresholds, self._factors * _NOVELTY_WEIGHTS
+        )
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
@@ -209,7 +211,7 @@ class FusedVote:
         return self.decide(compared) if np.isfinite(compared.scores).any() else None
 
     def may_win(
-        self, table: Comparison, result: Recognition, gesture: int, voter: str, factor: float
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
         """Tell whether a gesture comes close to the smallest score when a voter is reweighted."""
         comparable = np.isfinite(table.scores)
@@ -218,7 +220,7 @@ class FusedVote:
         scores[comparable] += (factor - 1) * added[comparable]
         return bool(comparable[gesture] and scores[gesture] < scores.min() + CLOSE_SCORES)
 
-    def decide(self, compared: Comparison) -> Recognition:
+    def decide(self, compared: ScoreTable) -> Recognition:
         """Decide for the gesture with the smallest score, or for none where that is too novel.
 
         One of the scores must be finite.
@@ -231,7 +233,7 @@ class FusedVote:
         return Recognition(
             label=None if is_rejected(float(novelty[winner])) else nearest,
             nearest=nearest,
-            confidence=calibrated_confidence(
+            confidence=estimate_confidence(
                 float(novelty[winner]),
                 float(scores[winner]),
                 float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,

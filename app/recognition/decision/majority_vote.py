@@ -9,10 +9,10 @@ import numpy as np
 
 from app.recognition.decision.rejection import CUE_GROUPS
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -51,18 +51,18 @@ class MajorityVote:
         """The same."""
         return self._shapes.needed
 
-    def counting(self, gesture: int) -> Counting | None:
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return None: drawings alone are compared, whatever the switches say."""
         return None
 
-    def compare(self, trajectory: Trajectory) -> Comparison:
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with every gesture, voter by voter."""
         distances = self._shapes.distances(trajectory)
         count = len(self._labels)
-        return Comparison(
+        return ScoreTable(
             voters=tuple(voter.name for voter in PAPER_VOTERS),
             distances=distances,
-            contributions=relative_contributions(distances, self._factors),
+            contributions=weigh_relative_distances(distances, self._factors),
             turned=np.zeros(count),
             readings=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
@@ -70,7 +70,7 @@ class MajorityVote:
         )
 
     def may_win(
-        self, table: Comparison, result: Recognition, gesture: int, voter: str, factor: float
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
         """Tell whether no gesture has more votes when a voter's vote is reweighted."""
         count: dict[str, float] = defaultdict(float)
@@ -79,7 +79,7 @@ class MajorityVote:
             count[vote] += weight * factor if name == voter else weight
         return count[self._labels[gesture]] >= max(count.values())
 
-    def decide(self, compared: Comparison) -> Recognition:
+    def decide(self, compared: ScoreTable) -> Recognition:
         """Decide for the gesture with most votes; see `count_votes`."""
         return self.count_votes(compared.distances)
 
@@ -100,7 +100,7 @@ class MajorityVote:
         count: dict[int, float] = defaultdict(float)
         for voter, index in votes.items():
             count[index] += weights[voter]
-        relative = relative_contributions(distances, self._factors).sum(axis=0)
+        relative = weigh_relative_distances(distances, self._factors).sum(axis=0)
         winner = min(count, key=lambda index: (-count[index], relative[index], index))
         return Recognition(
             label=gestures[winner],
@@ -117,7 +117,7 @@ class MajorityVote:
         )
 
 
-def relative_contributions(distances: FloatArray, weights: FloatArray) -> FloatArray:
+def weigh_relative_distances(distances: FloatArray, weights: FloatArray) -> FloatArray:
     """Bring voters with different units to one number per gesture, their sum.
 
     Parameters

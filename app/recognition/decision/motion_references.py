@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from app.recognition.decision.fusion import fuse
 from app.recognition.decision.shown_gesture import ShownGesture
-from app.recognition.features.motion import followed_landmarks, movement
-from app.recognition.features.traversals import Reading
+from app.recognition.features.motion import build_movement, find_followed_landmarks
+from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import ElasticReferences, ElasticViews
-from app.recognition.matching.dtw_kernel import alignment_costs
+from app.recognition.matching.dtw import DtwBatch, DtwReferences
+from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -42,7 +42,7 @@ CLEARLY_SLOWER = 0.8
 """Doublings of the duration between two gestures from which their tempo is told apart: 1.75 times
 as long. One person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
 
-MAX_GESTURES_READ_OTHERWISE = 64
+MAX_GESTURES_TRAVERSED = 64
 """Gestures beyond which a language takes every gesture as shown. Among so many, figures that
 differ by nothing but direction are to be expected, and the comparison of all with all in all
 readings would take seconds."""
@@ -77,7 +77,7 @@ _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
 
 @dataclass(frozen=True, eq=False)
-class NearestReadings:
+class NearestTraversals:
     """The readings of G gestures that fit a query best.
 
     Attributes
@@ -112,7 +112,7 @@ class MotionReferences:
 
     landmarks: tuple[str, ...]
     gestures: npt.NDArray[np.intp]
-    readings: tuple[Reading, ...]
+    readings: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
     @classmethod
@@ -127,8 +127,8 @@ class MotionReferences:
     @classmethod
     def of_shown(cls, gestures: Sequence[ShownGesture]) -> MotionReferences:
         """Describe them anew."""
-        landmarks = followed_landmarks([gesture.salient for gesture in gestures])
-        every = len(gestures) <= MAX_GESTURES_READ_OTHERWISE
+        landmarks = find_followed_landmarks([gesture.salient for gesture in gestures])
+        every = len(gestures) <= MAX_GESTURES_TRAVERSED
         described = {
             index: gesture.read(landmarks, every=every)
             for index, gesture in enumerate(gestures)
@@ -227,11 +227,9 @@ class MotionReferences:
         return rows
 
     @cached_property
-    def _elastic(self) -> ElasticViews:
+    def _elastic(self) -> DtwBatch:
         """What the elastic voters compare with."""
-        return ElasticViews(
-            tuple(ElasticReferences(self.descriptors[name], BAND) for name in _ELASTIC)
-        )
+        return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _ELASTIC))
 
     @cached_property
     def _unordered(self) -> dict[str, StepReferences]:
@@ -259,7 +257,7 @@ class MotionReferences:
     @cached_property
     def own_distances(self) -> FloatArray:
         """``(V, S, R)``: of the rows as shown, the first so many that are read otherwise."""
-        rows = self.as_shown[:MAX_GESTURES_READ_OTHERWISE]
+        rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
             block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
@@ -278,7 +276,7 @@ class MotionReferences:
         chosen = np.arange(len(self)) if rows is None else rows
         costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
         found = np.empty((len(MOTION_VOTERS), len(chosen)))
-        found[[*_ELASTIC.values()]] = alignment_costs(costs, len(query[Path.name]), BAND)
+        found[[*_ELASTIC.values()]] = compute_alignment_costs(costs, len(query[Path.name]), BAND)
         which = self._distinct[1].take(chosen)
         for place, voter in _UNORDERED.items():
             references = self._unordered[voter.name]
@@ -290,7 +288,7 @@ class MotionReferences:
 
     def nearest(
         self, query: dict[str, FloatArray], weights: FloatArray, between: FloatArray, count: int
-    ) -> NearestReadings:
+    ) -> NearestTraversals:
         """Choose for each gesture the reading that fits a query best.
 
         Parameters
@@ -312,10 +310,10 @@ class MotionReferences:
         chosen[self.gestures[compared[order]]] = order
         found = chosen >= 0
         if found.all():
-            return NearestReadings(compared.take(chosen), measured.take(chosen, axis=1))
+            return NearestTraversals(compared.take(chosen), measured.take(chosen, axis=1))
         distances = np.full((len(MOTION_VOTERS), count), np.inf)
         distances[:, found] = measured[:, chosen[found]]
-        return NearestReadings(np.where(found, compared[chosen], -1), distances)
+        return NearestTraversals(np.where(found, compared[chosen], -1), distances)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -323,7 +321,7 @@ def _remembered(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
     return MotionReferences.of_shown(gestures)
 
 
-def tempo_counts(
+def find_tempo_dependent(
     references: MotionReferences,
     own: FloatArray,
     weights: FloatArray,
@@ -351,13 +349,13 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
     """Describe a query once for each voter."""
 
     def work_out() -> dict[str, FloatArray]:
-        seen = movement(trajectory, landmarks)
+        seen = build_movement(trajectory, landmarks)
         return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
 
     return trajectory.once(("movement", tuple(landmarks)), work_out)
 
 
-def unambiguous(
+def drop_ambiguous_traversals(
     references: MotionReferences,
     own: FloatArray,
     weights: FloatArray,

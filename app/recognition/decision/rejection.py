@@ -46,42 +46,44 @@ person."""
 CONFIDENCE_AT_ONE = -0.3
 CONFIDENCE_PER_NOVELTY = -3.3
 CONFIDENCE_PER_SHARE = -0.25
-"""Coefficients of `calibrated_confidence`, fitted on five sets, each set and people's relation
+"""Coefficients of `estimate_confidence`, fitted on five sets, each set and people's relation
 weighing the same. The share's is held below what fits best (-0.85), for hardly a worse fit:
 foreign movements are told by novelty. Fitted on four sets, the confidences hold on the fifth."""
 
 
-def thresholds_of(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatArray:
+def gather_thresholds(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatArray:
     """Gather the thresholds of gestures: ``(V, G)``, infinite where a gesture has none."""
     return np.array(
         [[gesture.thresholds.get(voter, np.inf) for gesture in gestures] for voter in voters]
     )
 
 
-def novelty_weights(voters: Sequence[str]) -> FloatArray:
+def build_novelty_weights(voters: Sequence[str]) -> FloatArray:
     """Return the weight of each voter in each of the `CUE_GROUPS`, ``(K, V)``."""
     return np.array([[view.get(voter, 0.0) for voter in voters] for view in CUE_GROUPS.values()])
 
 
-def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) -> FloatArray:
+def measure_novelty(
+    distances: FloatArray, thresholds: FloatArray, weights: FloatArray
+) -> FloatArray:
     """Measure how far a query lies from each gesture, where 1 is the farthest that is accepted.
 
-    Parameters as for `novelty_by_view`.
+    Parameters as for `measure_group_novelties`.
 
     Returns
     -------
     ``(G,)``: the largest of the views' novelties; NaN where no view has one.
 
     """
-    return largest_novelty(novelty_by_view(distances, thresholds, weights))
+    return take_largest_novelty(measure_group_novelties(distances, thresholds, weights))
 
 
-def largest_novelty(by_view: FloatArray) -> FloatArray:
+def take_largest_novelty(by_view: FloatArray) -> FloatArray:
     """Return the largest of novelties ``(K, G)`` by view: ``(G,)``; NaN where no view has one."""
     return np.asarray(np.fmax.reduce(by_view, axis=0))
 
 
-def novelty_by_view(
+def measure_group_novelties(
     distances: FloatArray, thresholds: FloatArray, weights: FloatArray
 ) -> FloatArray:
     """Measure how far a query lies from each gesture in each view alone.
@@ -122,7 +124,7 @@ fit to 800 queries by other people of digits, letters and both two-handed sets. 
 times as far leaves it at 0.65 (measured 0.5), twice as far at 0.92 (0.9)."""
 
 
-def calibrated_confidence(novelty: float, nearest: float, second: float) -> float:
+def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     """Estimate the probability that the nearest gesture is the one meant.
 
     ``1 / (1 + exp(-(b0 + b1 ln n + b2 ln(s / t))))`` for the novelty n and the scores s of the

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.features.motion import hands_in, movement, on_both_sides
-from app.recognition.features.traversals import Reading, readings
+from app.recognition.features.motion import build_movement, find_hands, uses_both_sides
+from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
 from app.recognition.poses.sequence import FloatArray
@@ -16,10 +16,10 @@ from app.recognition.voters.registry import MOTION_VOTERS
 
 
 @dataclass(frozen=True, eq=False)
-class ReadGesture:
+class DescribedGesture:
     """One gesture in its readings, and per voter's name their descriptors."""
 
-    readings: tuple[Reading, ...]
+    readings: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
 
@@ -47,7 +47,7 @@ class ShownGesture:
         switches = gesture.switches
         return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
 
-    def read(self, landmarks: tuple[str, ...], *, every: bool) -> ReadGesture:
+    def read(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
         """Describe a gesture with a demonstration in `every` thinkable reading, or just as shown.
 
         Once for each set of landmarks that a language follows.
@@ -55,15 +55,17 @@ class ShownGesture:
         trajectory = self.trajectory
         assert trajectory is not None
         both_ways = self.direction != "on"
-        either_side = self.mirror == "auto" and on_both_sides(self.salient)
-        hands = hands_in(self.salient)
+        either_side = self.mirror == "auto" and uses_both_sides(self.salient)
+        hands = find_hands(self.salient)
 
-        def work_out() -> ReadGesture:
-            shown = movement(trajectory, landmarks)
-            found = readings(shown, hands=hands, both_ways=both_ways, either_side=either_side)
+        def work_out() -> DescribedGesture:
+            shown = build_movement(trajectory, landmarks)
+            found = list_traversals(
+                shown, hands=hands, both_ways=both_ways, either_side=either_side
+            )
             found = found if every else found[:1]
             movements = [each.of(shown, landmarks) for each in found]
-            return ReadGesture(
+            return DescribedGesture(
                 found,
                 {
                     voter.name: np.array([voter.describe(each) for each in movements])

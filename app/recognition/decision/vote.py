@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
-from app.recognition.gestures.switches import Counting
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.gestures.switches import Sensitivity
 from app.recognition.poses.trajectory import Trajectory
 
 
@@ -23,20 +23,20 @@ class Vote(Protocol):
         """The salient landmarks of which a query must move at least one."""
         ...
 
-    def compare(self, trajectory: Trajectory) -> Comparison:
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with every gesture, voter by voter."""
         ...
 
-    def decide(self, compared: Comparison) -> Recognition:
+    def decide(self, compared: ScoreTable) -> Recognition:
         """Decide for a gesture or none; one of the scores must be finite."""
         ...
 
-    def counting(self, gesture: int) -> Counting | None:
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return what about a gesture counts; None where its movement is not compared."""
         ...
 
     def may_win(
-        self, table: Comparison, result: Recognition, gesture: int, voter: str, factor: float
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
         """Estimate whether a gesture may win when a voter's weight is multiplied by a factor."""
         ...

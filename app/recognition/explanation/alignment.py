@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.motion import Movement, hands_in, limbs_of, movement
-from app.recognition.features.traversals import AS_SHOWN, Reading, readings
+from app.recognition.features.motion import Movement, build_movement, find_hands, list_limbs
+from app.recognition.features.traversals import AS_SHOWN, Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import elastic_pairs
+from app.recognition.matching.dtw import dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.direction import Direction
@@ -48,20 +48,25 @@ class Example:
     """
 
     label: str
-    reading: Reading
+    reading: Traversal
     mirrored: bool
     movement: Movement
     time: FloatArray
 
     @classmethod
     def of(
-        cls, gesture: Gesture, landmarks: Sequence[str], reading: Reading, *, mirrored: bool = False
+        cls,
+        gesture: Gesture,
+        landmarks: Sequence[str],
+        reading: Traversal,
+        *,
+        mirrored: bool = False,
     ) -> Example | None:
         """Return a gesture's example; None where the gesture has no demonstration."""
         trajectory = (gesture.mirrored() if mirrored else gesture).trajectory
         if trajectory is None or len(trajectory) < 2:
             return None
-        shown = movement(trajectory, landmarks)
+        shown = build_movement(trajectory, landmarks)
         return cls(
             label=gesture.label,
             reading=reading,
@@ -181,10 +186,10 @@ def align(
     shape = (len(left), len(parts), 2)
     shown, gesture_shown = left.reshape(shape), right.reshape(shape)
     left, right = left[:, known], right[:, known]
-    pairs = elastic_pairs(left, right, BAND)
+    pairs = dtw_pairs(left, right, BAND)
     squares = (left[pairs[:, 0]] - right[pairs[:, 1]]) ** 2
     compared = np.isfinite(squares).sum(axis=1, keepdims=True)
-    # What is known of two vectors stands for the whole, as in `elastic_distances`.
+    # What is known of two vectors stands for the whole, as in `dtw_distances`.
     costs = np.zeros((len(pairs), len(known)))
     costs[:, known] = np.nan_to_num(squares) * known.sum() / np.maximum(compared, 1)
     return Alignment(
@@ -202,7 +207,7 @@ def align(
     )
 
 
-def nearest_example(
+def find_nearest_example(
     query: Trajectory, gesture: Gesture, landmarks: Sequence[str]
 ) -> Example | None:
     """Return a gesture's example in the reading whose path is nearest to the query's.
@@ -213,8 +218,8 @@ def nearest_example(
     shown = Example.of(gesture, landmarks, AS_SHOWN)
     if shown is None or len(query) < 2:
         return None
-    open_to = readings(shown.movement, hands=hands_in(gesture.salient), both_ways=True)
-    voter, moved = Path(), movement(query, landmarks)
+    open_to = list_traversals(shown.movement, hands=find_hands(gesture.salient), both_ways=True)
+    voter, moved = Path(), build_movement(query, landmarks)
     read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
@@ -231,7 +236,7 @@ def _places(shown: FloatArray) -> list[list[list[float] | None]]:
 def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
     if isinstance(voter, Path | Direction):
         return tuple(landmarks)
-    bones = limbs_of(landmarks)
+    bones = list_limbs(landmarks)
     if isinstance(voter, HandAttitude):
         bones = tuple(bone for bone in bones if bone[0].endswith("wrist"))
     return tuple(outer for _, outer in bones)

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from app.recognition.explanation.alignment import Example
-from app.recognition.features.motion import Movement, hands_in, movement
-from app.recognition.features.traversals import Reading, readings
+from app.recognition.features.motion import Movement, build_movement, find_hands
+from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
@@ -49,7 +49,7 @@ class Pairing:
     query: Movement
     example: Example
     gesture: Trajectory
-    starts: tuple[Reading, ...]
+    starts: tuple[Traversal, ...]
     start: float
 
     @classmethod
@@ -57,7 +57,7 @@ class Pairing:
         cls,
         trajectory: Trajectory,
         gesture: Gesture,
-        reading: Reading,
+        reading: Traversal,
         *,
         mirrored: bool = False,
         start: float = 0.0,
@@ -71,14 +71,14 @@ class Pairing:
         example = Example.of(gesture, landmarks, reading, mirrored=mirrored)
         if not landmarks or example is None:
             return None
-        shown = movement(side.trajectory, landmarks)
+        shown = build_movement(side.trajectory, landmarks)
         return cls(
             landmarks=landmarks,
             trajectory=trajectory,
-            query=movement(trajectory, landmarks),
+            query=build_movement(trajectory, landmarks),
             example=example,
             gesture=side.trajectory,
-            starts=readings(shown, hands=hands_in(side.salient), both_ways=False),
+            starts=list_traversals(shown, hands=find_hands(side.salient), both_ways=False),
             start=start,
         )
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.recognition.decision.motion_references import CLEARLY_SLOWER
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.interventions import (
-    Change,
+    Intervention,
     KeypointRepair,
     NewDemonstration,
     OtherProfile,
@@ -23,8 +23,8 @@ from app.recognition.explanation.interventions import (
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
-from app.recognition.preprocessing.repair import repaired
-from app.recognition.preprocessing.salience import salient_landmarks
+from app.recognition.preprocessing.repair import repair_poses
+from app.recognition.preprocessing.salience import find_salient_landmarks
 
 TRIM_STEP = 0.1
 """Share of the stroke by which it is trimmed earlier or later, step by step."""
@@ -38,10 +38,10 @@ WEIGHTS = (0.5, 0.0, 2.0, 4.0)
 TOLERANCES = (0.5, 2.0, 4.0)
 """Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
 
-Series = list[Change]
+Series = list[Intervention]
 
 
-def candidates(situation: Situation, expected: str) -> Iterator[Series]:
+def list_interventions(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Give all changes worth trying.
 
     Parameters
@@ -66,7 +66,7 @@ def candidates(situation: Situation, expected: str) -> Iterator[Series]:
     ]
 
 
-def _trims(situation: Situation) -> Iterator[Series]:
+def _trims(situation: RecognitionContext) -> Iterator[Series]:
     """Move the start, the end, or both, within what the stroke was cut out of."""
     time, whole = situation.poses.time, situation.whole.time
     start, end = float(time[0]), float(time[-1])
@@ -90,7 +90,7 @@ def _trims(situation: Situation) -> Iterator[Series]:
         ]
 
 
-def _weights(situation: Situation, expected: str) -> Iterator[Series]:
+def _weights(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Weigh each voter that has a say less, and more, where that promises to help."""
     gesture = situation.language.labels.index(expected)
     vote = situation.recognizer.vote
@@ -109,7 +109,7 @@ def _moved(share: float, factor: float) -> float:
     return abs(share * factor / (1 - share + share * factor) - share)
 
 
-def _drawings(situation: Situation) -> Iterator[Series]:
+def _drawings(situation: RecognitionContext) -> Iterator[Series]:
     now = situation.tuning.simplification
     if now > 0:
         for factors in (TOLERANCES[:1], TOLERANCES[1:]):
@@ -119,16 +119,16 @@ def _drawings(situation: Situation) -> Iterator[Series]:
             ]
 
 
-def _repairs(situation: Situation) -> Iterator[Series]:
+def _repairs(situation: RecognitionContext) -> Iterator[Series]:
     """Repair bad keypoints, or leave them, where there are any."""
-    share = float(repaired(situation.poses).touched.mean())
+    share = float(repair_poses(situation.poses).touched.mean())
     if share > 0:
         yield [KeypointRepair(size=share, on=not situation.recognizer.repairs)]
 
 
-def _gestures(situation: Situation, expected: str) -> Iterator[Series]:
+def _gestures(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Change the expected gesture, or the one it was taken for."""
-    moved = salient_landmarks(situation.trajectory)
+    moved = find_salient_landmarks(situation.trajectory)
     for label in dict.fromkeys((expected, situation.result.nearest)):
         gesture = situation.language.gesture(label)
         if gesture.trajectory is None:
@@ -154,7 +154,7 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
     ]
 
 
-def _switches(situation: Situation, label: str, *, expected: bool) -> Iterator[Series]:
+def _switches(situation: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
     """Let less count of the expected gesture, and more of the one it was taken for.
 
     Only where it can matter: which way round, from which side or how fast the other one was read.

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 
-def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]:
+def close_image(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]:
     """Dilate by a disc, then erode by it: gaps that the disc does not fit into are filled.
 
     Parameters

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from app.recognition.errors import RecognitionError
-from app.recognition.text.wording import listed
+from app.recognition.errors import OsgError
+from app.recognition.text.wording import join_words
 from app.recognition.voters.registry import PAPER_VOTERS, VOTERS
 from app.recognition.voters.voter import Voter
 
@@ -61,5 +61,5 @@ def find_profile(name: str) -> Profile:
 
     """
     if name not in PROFILES:
-        raise RecognitionError(f"no profile {name!r}; this version has {listed([*PROFILES])}")
+        raise OsgError(f"no profile {name!r}; this version has {join_words([*PROFILES])}")
     return PROFILES[name]

@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 from app.recognition.health.finding import Finding
 from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.text.wording import listed
+from app.recognition.text.wording import join_words
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
 
@@ -247,8 +247,8 @@ def _prefix(
         _names(automaton, over, goes_on),
         gestures,
         f"after {', '.join(gestures)} the message is over, and it might go on with "
-        f"{listed(next_labels, last='or')}: the robot waits {automaton.grammar.timeout:g} s, and "
-        "what it does depends on how fast the diver is; choose an end gesture that no phrase uses",
+        f"{join_words(next_labels, last='or')}: the robot waits "
+        f"{automaton.grammar.timeout:g} s, and what it does depends on how fast the diver is; choose an end gesture that no phrase uses",
     )
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.gestures.gesture import condensed
-from app.recognition.health.check import TAKES, pair_health
+from app.recognition.gestures.gesture import condense
+from app.recognition.health.check import TAKES, check_pairs
 from app.recognition.health.report import PairHealth
-from app.recognition.health.simulated_trials import rehearse
+from app.recognition.health.simulated_trials import simulate_trials
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.rate_estimate import RateEstimate
 
 MOST_NEIGHBOURS = 3
 """Gestures rehearsed beside the one in question, the nearest: farther ones are hardly ever confused
@@ -19,7 +19,7 @@ with it, and all of a language would take as long as its whole health report."""
 
 
 @dataclass(frozen=True)
-class Outlook:
+class GestureEstimate:
     """What is to be expected of one gesture.
 
     Attributes
@@ -34,11 +34,11 @@ class Outlook:
     """
 
     pairs: tuple[PairHealth, ...]
-    missed: Forecast
-    refused: Forecast
+    missed: RateEstimate
+    refused: RateEstimate
 
 
-def outlook(recognizer: Recognizer, label: str) -> Outlook | None:
+def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | None:
     """Rehearse one gesture and its nearest ones, as `check_health` rehearses all by default.
 
     Parameters
@@ -67,13 +67,15 @@ def outlook(recognizer: Recognizer, label: str) -> Outlook | None:
     def measure(index: int) -> None:
         shown = language.gestures[index].trajectory
         if shown is not None:
-            distances[index] = recognizer.compare(condensed(shown)).scores
+            distances[index] = recognizer.compare(condense(shown)).scores
 
     measure(own)
     others = [index for index in range(len(language.gestures)) if index != own]
     nearest = sorted(others, key=lambda index: distances[own, index])[:MOST_NEIGHBOURS]
     for index in nearest:
         measure(index)
-    rehearsal = rehearse(recognizer, TAKES, gestures=(own, *nearest))
-    pairs = (pair_health(language, (own, index), rehearsal, distances) for index in nearest)
-    return Outlook(pairs=tuple(pairs), missed=rehearsal.missed(0), refused=rehearsal.refused(0))
+    rehearsal = simulate_trials(recognizer, TAKES, gestures=(own, *nearest))
+    pairs = (check_pairs(language, (own, index), rehearsal, distances) for index in nearest)
+    return GestureEstimate(
+        pairs=tuple(pairs), missed=rehearsal.missed(0), refused=rehearsal.refused(0)
+    )

@@ -20,7 +20,7 @@ BEFORE = -1
 """The position before the first gesture."""
 
 
-class Said(NamedTuple):
+class Contribution(NamedTuple):
     """What one gesture adds to a reading.
 
     A phrase that begins has only its index; a value has its slot, too.
@@ -31,7 +31,7 @@ class Said(NamedTuple):
     value: Value | None = None
 
 
-Reading = tuple[Said, ...]
+Reading = tuple[Contribution, ...]
 """What a walk says, in order: for each phrase that it begins, and each value in a slot."""
 
 
@@ -127,9 +127,9 @@ class PhraseAutomaton:
             return ()
         here = None if position == BEFORE else self.positions[position]
         begins = here is None or not here.inside or here.turn != there.turn
-        said: Reading = (Said(there.phrase),) if begins else ()
+        said: Reading = (Contribution(there.phrase),) if begins else ()
         if there.slot is not None:
-            said += (Said(there.phrase, there.slot, there.values[label]),)
+            said += (Contribution(there.phrase, there.slot, there.values[label]),)
         return said
 
     def _add_turn(self, turn: int, before: set[int] | None) -> tuple[set[int], set[int]]:

@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.interpretation import Mission, mission_of
-from app.recognition.text.wording import listed
+from app.recognition.phrases.interpretation import Mission, interpret_message
+from app.recognition.text.wording import join_words
 
 PhraseEventKind = Literal[
     "continues",
@@ -66,7 +66,7 @@ class PhraseEvent:
     @property
     def text(self) -> str:
         """The event in words, for the diver."""
-        so_far, following = ", ".join(self.gestures), listed(self.expected, last="or")
+        so_far, following = ", ".join(self.gestures), join_words(self.expected, last="or")
         if self.mission is not None:
             return self.mission.spoken
         return {
@@ -230,7 +230,7 @@ class PhraseParser:
     def _over(self, label: str | None, readings: tuple[Reading, ...]) -> PhraseEvent:
         if len(readings) > 1:
             return self._dropped("ambiguous", label)
-        return self._dropped("complete", label, mission_of(self.grammar, readings[0]))
+        return self._dropped("complete", label, interpret_message(self.grammar, readings[0]))
 
     def _dropped(
         self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None

@@ -122,7 +122,7 @@ wide enough that their exact values matter little."""
 
 
 @dataclass(frozen=True, eq=False)
-class AccidentalMovement:
+class BackgroundMovement:
     """One example.
 
     Attributes
@@ -139,7 +139,7 @@ class AccidentalMovement:
     trajectory: Trajectory
 
 
-def accidental_movements(count: int = 3, *, seed: int = 0) -> tuple[AccidentalMovement, ...]:
+def simulate_background_motion(count: int = 3, *, seed: int = 0) -> tuple[BackgroundMovement, ...]:
     """Synthesise accidental movements.
 
     Parameters
@@ -151,7 +151,7 @@ def accidental_movements(count: int = 3, *, seed: int = 0) -> tuple[AccidentalMo
 
     """
     return tuple(
-        AccidentalMovement(manner.kind, _example(manner, np.random.default_rng([seed, *which])))
+        BackgroundMovement(manner.kind, _example(manner, np.random.default_rng([seed, *which])))
         for which in np.ndindex(len(MANNERS), count)
         for manner in [MANNERS[which[0]]]
     )

@@ -14,14 +14,14 @@ from app.recognition.simulation.variation import Person
 
 
 @dataclass(frozen=True)
-class Unforeseen:
+class VariantBias:
     """What no variant of one demonstration can tell.
 
     Attributes
     ----------
     scatter
         Scale > 0 of the logistic distribution of real takes' margins about the mean of the
-        variants', see `Forecast.of_margins`.
+        variants', see `RateEstimate.of_margins`.
     otherwise
         Share in [0, 1] of takes that are not what was shown: a letter drawn with other strokes,
         another sign.
@@ -32,10 +32,10 @@ class Unforeseen:
     otherwise: float
 
 
-UNFORESEEN: Final[Mapping[Person, Unforeseen]] = MappingProxyType(
+VARIANT_BIASES: Final[Mapping[Person, VariantBias]] = MappingProxyType(
     {
-        "same": Unforeseen(scatter=0.25, otherwise=0.003),
-        "another": Unforeseen(scatter=0.25, otherwise=0.04),
+        "same": VariantBias(scatter=0.25, otherwise=0.003),
+        "another": VariantBias(scatter=0.25, otherwise=0.04),
     }
 )
 """By whose takes they are: the likeliest on recorded takes of five sets, where the scatter is from

@@ -25,7 +25,7 @@ class SourceKind:
     accepts
         Tells whether a text names a source of this kind.
     open
-        Opens it; raises a `RecognitionError` that says what to do when that fails.
+        Opens it; raises a `OsgError` that says what to do when that fails.
 
     """
 

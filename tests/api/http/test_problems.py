@@ -13,8 +13,8 @@ from app.recognition.errors import (
     GestureError,
     LanguageError,
     ModelError,
+    OsgError,
     PoseError,
-    RecognitionError,
     VideoError,
 )
 from app.server import create_app
@@ -42,7 +42,7 @@ def operations(app: FastAPI) -> list[tuple[str, str]]:
         (PoseError("x"), 422, "poses_unusable"),
         (VideoError("x"), 422, "video_unreadable"),
         (LanguageError("x", "/name"), 422, "language_invalid"),
-        (RecognitionError("x"), 422, "recognition"),
+        (OsgError("x"), 422, "recognition"),
         (ModelError("x"), 503, "model_missing"),
         (OSError(errno.ENOSPC, "No space left on device", "/secret"), 507, "disk_full"),
         (OSError(errno.EROFS, "Read-only file system", "/secret"), 503, "storage_unavailable"),

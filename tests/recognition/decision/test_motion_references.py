@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import MOTION_VOTERS
@@ -27,7 +27,7 @@ def begun_at(share: float, shape: Shape, *, backward: bool) -> Shape:
 
 def described(shape: Shape) -> dict[str, FloatArray]:
     poses = recording(shape, frames=50, jitter=0.01, seed=3, landmarks=ARMS)
-    return describe_movement(condensed(Trajectory.from_poses(poses)), REFERENCES.landmarks)
+    return describe_movement(condense(Trajectory.from_poses(poses)), REFERENCES.landmarks)
 
 
 @given(

@@ -13,9 +13,9 @@ import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
 from app.recognition.decision.majority_vote import MajorityVote
-from app.recognition.features.contour import Outline
+from app.recognition.features.contour import Contour
 from app.recognition.features.trajectory_image import draw
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.shape_voter import describe_drawing
@@ -64,7 +64,7 @@ def test_drift_distance_and_the_cameras_aspect_do_not_change_the_shape(
     """There: no centring, no scale, and x and y divided by the frame's width and height."""
     query = recording(circle, jitter=0.004)
     before, after = (
-        draw(condensed(Trajectory.from_poses(poses)).select(["right_wrist"])).image
+        draw(condense(Trajectory.from_poses(poses)).select(["right_wrist"])).image
         for poses in (query, change(query))
     )
     np.testing.assert_array_equal(after, before)
@@ -89,11 +89,11 @@ def test_every_contour_counts_in_a_defined_order() -> None:
     """There: the first contour found is taken, which may be a speck."""
     image = LANGUAGE.gesture("line").image.copy()
     image[2:5, 2:5] = 255
-    contours = Outline.of(image).contours
+    contours = Contour.of(image).contours
     assert len(contours) == 2
     assert contours[0][:, 0].mean() < contours[1][:, 0].mean()
-    line_alone = Outline.of(LANGUAGE.gesture("line").image)
-    assert Outline.of(image).area == pytest.approx(line_alone.area, rel=0.01)
+    line_alone = Contour.of(LANGUAGE.gesture("line").image)
+    assert Contour.of(image).area == pytest.approx(line_alone.area, rel=0.01)
 
 
 def test_fourier_descriptors_are_real_numbers_of_one_length_for_any_contour() -> None:

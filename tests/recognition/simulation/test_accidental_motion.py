@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from app.recognition.preprocessing.salience import displacements
+from app.recognition.preprocessing.salience import measure_displacements
 from app.recognition.simulation.accidental_motion import (
     MANNERS,
     TREMOR,
     UPPER_ARM,
-    AccidentalMovement,
-    accidental_movements,
+    BackgroundMovement,
+    simulate_background_motion,
 )
 
-MOVEMENTS = accidental_movements(4, seed=3)
+MOVEMENTS = simulate_background_motion(4, seed=3)
 BY_KIND = {movement.kind: movement for movement in MOVEMENTS}
 
 
-def length(movement: AccidentalMovement, inner: str, outer: str) -> float:
+def length(movement: BackgroundMovement, inner: str, outer: str) -> float:
     """Return the greatest distance between two landmarks."""
     ends = movement.trajectory.select([inner, outer]).xy
     return float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max())
@@ -29,7 +29,7 @@ def test_every_kind_is_there_as_often_as_asked() -> None:
 
 
 def test_the_same_seed_gives_the_same_movements_and_another_others() -> None:
-    again, others = accidental_movements(4, seed=3), accidental_movements(4, seed=4)
+    again, others = simulate_background_motion(4, seed=3), simulate_background_motion(4, seed=4)
     for movement, same, other in zip(MOVEMENTS, again, others, strict=True):
         np.testing.assert_array_equal(movement.trajectory.xy, same.trajectory.xy)
         assert movement.trajectory.xy.shape != other.trajectory.xy.shape or not np.array_equal(
@@ -38,7 +38,7 @@ def test_the_same_seed_gives_the_same_movements_and_another_others() -> None:
 
 
 def test_more_examples_begin_with_the_same_ones() -> None:
-    few = accidental_movements(2, seed=3)
+    few = simulate_background_motion(2, seed=3)
     np.testing.assert_array_equal(few[2].trajectory.xy, MOVEMENTS[4].trajectory.xy)
 
 
@@ -51,7 +51,7 @@ def test_no_bone_is_longer_than_a_diver_has_it(side: str) -> None:
 
 
 def test_either_hand_does_it() -> None:
-    moved = [displacements(movement.trajectory) for movement in MOVEMENTS]
+    moved = [measure_displacements(movement.trajectory) for movement in MOVEMENTS]
     right = sum(each["right_wrist"] > 2 * each["left_wrist"] for each in moved)
     left = sum(each["left_wrist"] > 2 * each["right_wrist"] for each in moved)
     assert right >= 5
@@ -59,9 +59,9 @@ def test_either_hand_does_it() -> None:
 
 
 def test_a_swimmer_moves_both_hands_and_a_mask_is_adjusted_with_one() -> None:
-    swimming = displacements(BY_KIND["swimming breaststroke"].trajectory)
+    swimming = measure_displacements(BY_KIND["swimming breaststroke"].trajectory)
     assert min(swimming["left_wrist"], swimming["right_wrist"]) > 0.5
-    adjusting = displacements(BY_KIND["adjusting the mask"].trajectory)
+    adjusting = measure_displacements(BY_KIND["adjusting the mask"].trajectory)
     assert min(adjusting["left_wrist"], adjusting["right_wrist"]) < 0.1
 
 

@@ -13,7 +13,7 @@ from lifecycle_msgs.srv import ChangeState, GetState
 from osg_interfaces.msg import RecognizerState
 from rclpy.lifecycle import TransitionCallbackReturn
 
-from app.recognition import RecognitionError
+from app.recognition import OsgError
 from osg_ros.nodes.command_node import CommandNode
 from osg_ros.nodes.gesture_node import GestureNode
 from osg_ros.nodes.hand_node import HandNode
@@ -117,7 +117,7 @@ def test_a_node_that_is_stopped_is_told_to_be_inactive(bench: Bench, language_fi
 @pytest.mark.usefixtures("domain")
 def test_arguments_that_ros_does_not_understand_are_told() -> None:
     arguments = ["--ros-args", "-r", "recognition"]
-    with pytest.raises(RecognitionError, match="does not understand --ros-args -r recognition"):
+    with pytest.raises(OsgError, match="does not understand --ros-args -r recognition"):
         published(arguments).__enter__()
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import CompressedImage, Image
 
-from app.recognition import RecognitionError
+from app.recognition import OsgError
 from app.recognition.estimation import Image as RGBImage
 from osg_ros.topics.image_messages import PictureDecoder, picture_message
 
@@ -71,5 +71,5 @@ def test_compressed_pictures_are_decoded_one_after_the_other(ending: str) -> Non
 def test_what_is_no_picture_is_refused_in_words(
     message: Image | CompressedImage, said: str
 ) -> None:
-    with pytest.raises(RecognitionError, match=said):
+    with pytest.raises(OsgError, match=said):
         PictureDecoder().decode(message)

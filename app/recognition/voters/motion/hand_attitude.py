@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.recognition.features.motion import LIMBS, Movement, sized
+from app.recognition.features.motion import LIMBS, Movement, normalize_size
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
 from app.recognition.voters.voter import Cue
@@ -30,4 +30,4 @@ class HandAttitude(DtwVoter):
         steps = len(movement.limbs)
         arms = movement.limbs.reshape(steps, -1, len(LIMBS), 2)
         hands = arms.take(HAND_BONES, axis=2).reshape(steps, -1, 2)
-        return (sized(hands) * movement.under_way[:, None, None]).reshape(steps, -1)
+        return (normalize_size(hands) * movement.under_way[:, None, None]).reshape(steps, -1)

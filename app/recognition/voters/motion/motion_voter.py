@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 
 from app.recognition.features.motion import Movement
-from app.recognition.matching.dtw import ElasticReferences
+from app.recognition.matching.dtw import DtwReferences
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
@@ -31,7 +31,7 @@ class DtwVoter(MotionVoter):
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the DTW distances, ``(M,)``; infinite where nothing can be compared."""
-        return ElasticReferences(references, BAND).distances(query)
+        return DtwReferences(references, BAND).distances(query)
 
 
 class UnorderedVoter(MotionVoter):

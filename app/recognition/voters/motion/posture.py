@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.recognition.features.motion import Movement, sized
+from app.recognition.features.motion import Movement, normalize_size
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
 from app.recognition.voters.voter import Cue
@@ -31,4 +31,4 @@ class Posture(DtwVoter):
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 B)`` vectors in sizes, NaN where not seen; ``(N, 0)`` without limbs."""
         weight = RESTING_WEIGHT + movement.under_way
-        return (sized(movement.limbs) * weight[:, None, None]).reshape(len(weight), -1)
+        return (normalize_size(movement.limbs) * weight[:, None, None]).reshape(len(weight), -1)

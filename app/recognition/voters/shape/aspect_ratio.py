@@ -20,5 +20,5 @@ class AspectRatio(Proportion):
 
     def measure(self, drawing: Drawing) -> float:
         """Return 0 for a square box, > 0 for a wide one, < 0 for a high one."""
-        width, height = drawing.outline.box
+        width, height = drawing.contour.box
         return log2(width / height)

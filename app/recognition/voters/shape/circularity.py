@@ -17,4 +17,4 @@ class Circularity(Proportion):
 
     def measure(self, drawing: Drawing) -> float:
         """Return the circularity, in (0, 1]."""
-        return 4 * pi * drawing.outline.area / drawing.outline.perimeter**2
+        return 4 * pi * drawing.contour.area / drawing.contour.perimeter**2

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.contour import Contour
+from app.recognition.features.contour import Polygon
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.shape.shape_voter import ShapeVoter
@@ -57,7 +57,7 @@ class FourierDescriptors(ShapeVoter):
 
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return real, then imaginary parts of harmonics 1...10, -10...-1: ``(40,)``."""
-        spectrum = np.fft.fft(_equal_steps(drawing.outline.points))[_KEPT]
+        spectrum = np.fft.fft(_equal_steps(drawing.contour.points))[_KEPT]
         parts = np.concatenate([spectrum.real, spectrum.imag])
         return np.asarray(parts / max(math.sqrt(parts @ parts), 1e-12))  # a single pixel has none
 
@@ -78,7 +78,7 @@ class FourierDescriptors(ShapeVoter):
         return np.asarray(np.sqrt(squares), dtype=np.float64)
 
 
-def _equal_steps(points: Contour) -> ComplexArray:
+def _equal_steps(points: Polygon) -> ComplexArray:
     """Resample a closed polygon ``(N, 2)`` to `SAMPLES` complex numbers x + jy."""
     closed = np.empty(len(points) + 1, dtype=np.complex128)
     closed.real[:-1], closed.imag[:-1] = points.T

@@ -15,4 +15,4 @@ class PathComplexity(Proportion):
 
     def measure(self, drawing: Drawing) -> float:
         """Return the complexity, about 0.8 for a circle, 1 for a square and more for a zigzag."""
-        return drawing.outline.perimeter / (2 * sum(drawing.outline.box))
+        return drawing.contour.perimeter / (2 * sum(drawing.contour.box))

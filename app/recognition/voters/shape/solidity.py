@@ -15,4 +15,4 @@ class Solidity(Proportion):
 
     def measure(self, drawing: Drawing) -> float:
         """Return the share, in (0, 1]."""
-        return drawing.outline.area / drawing.outline.hull_area
+        return drawing.contour.area / drawing.contour.hull_area

@@ -17,7 +17,7 @@ from app.recognition.estimation import (
     PoseEstimator,
     create_estimator,
     finds_hands,
-    landmarks_of,
+    list_landmarks,
 )
 from app.recognition.language.requirements import require_landmarks
 from app.robot import Event, Frame, PhraseListener, SpokenLanguage, hearing_of
@@ -114,7 +114,7 @@ class GestureNode(ManagedNode):
 
     def _hearing(self, language: SpokenLanguage) -> PhraseListener:
         assert self._estimator is not None
-        landmarks = landmarks_of(self._estimator)
+        landmarks = list_landmarks(self._estimator)
         require_landmarks(language.recognizer.language, landmarks, "the pose estimator")
         return hearing_of(language, without_salutes=self._without_salutes)
 

@@ -6,7 +6,7 @@ import threading
 from contextlib import closing
 from typing import Protocol
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.robot import Event, Frame, PhraseListener, Runtime, SpokenLanguage
@@ -88,7 +88,7 @@ class GestureWorker:
             with closing(self._source):
                 for event in self._runtime:
                     self._watching.hear(self._source, event, self._listener.language)
-        except RecognitionError as error:
+        except OsgError as error:
             self._watching.complain(str(error))
 
     def _new_language(self) -> SpokenLanguage | None:

@@ -6,10 +6,10 @@ from typing import Any
 
 from osg_interfaces.msg import BodyKeypoints
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation.landmark_models.hands import HandTracker
 from app.recognition.estimation.onnx_estimator import hand_tracker
-from app.recognition.estimation.water import corrected
+from app.recognition.estimation.water import correct_colours
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin
@@ -67,10 +67,10 @@ class HandNode(ManagedNode):
         assert self._tracker
         self.count_input()
         try:
-            image = corrected(self._decoder.decode(picture), self._water)
+            image = correct_colours(self._decoder.decode(picture), self._water)
             followed = self._tracker.follow(image)
             hands = self._tracker.complete(image, followed, body_in(body))
-        except RecognitionError as error:
+        except OsgError as error:
             self.complain(f"a picture is left out: {error}")
             return
         height, width = image.shape[:2]

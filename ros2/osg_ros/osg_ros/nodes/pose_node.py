@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.onnx_estimator import body_tracker
-from app.recognition.estimation.water import corrected
+from app.recognition.estimation.water import correct_colours
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import NEWEST, ManagedNode
 from osg_ros.nodes.process import spin
@@ -53,9 +53,9 @@ class PoseNode(ManagedNode):
         if self._stopwatch is None:
             self._stopwatch = Stopwatch(stamp)
         try:
-            image = corrected(self._decoder.decode(message), self._water)
+            image = correct_colours(self._decoder.decode(message), self._water)
             body = self._tracker.track(image, self._stopwatch.seconds(stamp))
-        except RecognitionError as error:
+        except OsgError as error:
             self.complain(f"a picture is left out: {error}")
             return
         height, width = image.shape[:2]

@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 
 from app.recognition import PoseSequence
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import moment_of
+from app.recognition.recording.extraction import build_frame_sequence
 from app.robot import (
     PhraseHeard,
     PhraseListener,
@@ -128,7 +128,7 @@ class RecognitionNode(ManagedNode):
         found = FrameLandmarks(body_in(body), ())
         size = (body.image_width, body.image_height)
         try:
-            moment = moment_of(found, self._stopwatch_from(stamp).seconds(stamp), size)
+            moment = build_frame_sequence(found, self._stopwatch_from(stamp).seconds(stamp), size)
         except ValueError as error:
             self.complain(f"keypoints are left out: {error}")
             return

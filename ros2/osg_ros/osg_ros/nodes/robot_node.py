@@ -11,7 +11,7 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Header
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import Event, Frame, SourceOpened, SpokenLanguage
 from osg_ros.nodes.managed_node import ManagedNode
@@ -88,14 +88,12 @@ def published(arguments: Sequence[str]) -> Iterator[RobotNode]:
     try:
         rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
-        raise RecognitionError(
-            f"ROS 2 does not understand {' '.join(arguments)}: {error}"
-        ) from error
+        raise OsgError(f"ROS 2 does not understand {' '.join(arguments)}: {error}") from error
     try:
         node = RobotNode()
         with running([node]) as executor:
             if not start(node):
-                raise RecognitionError("the ROS 2 node did not start; its log says why")
+                raise OsgError("the ROS 2 node did not start; its log says why")
             threading.Thread(target=executor.spin, name="ros", daemon=True).start()
             yield node
     finally:

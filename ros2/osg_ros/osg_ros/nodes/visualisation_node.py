@@ -9,7 +9,7 @@ import numpy as np
 from osg_interfaces.msg import BodyKeypoints, GestureRecognition, Hands, Keypoint, RecognizerState
 from sensor_msgs.msg import Image
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.estimation import Image as RGBImage
 from app.recognition.poses.landmarks import SKELETON
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
@@ -84,7 +84,7 @@ class VisualisationNode(ManagedNode):
         self.count_input()
         try:
             image = np.array(self._decoder.decode(picture))
-        except RecognitionError as error:
+        except OsgError as error:
             self.complain(f"a picture is left out: {error}")
             return
         drawn_body(image, body)

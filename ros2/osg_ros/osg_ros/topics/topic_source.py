@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any, Final
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.robot import Frame, Notice, Quiet
 from osg_ros.topics.image_messages import PictureDecoder
 from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
@@ -95,7 +95,7 @@ class TopicSource:
             return None
         try:
             image = self._decoder.decode(message)
-        except RecognitionError as error:
+        except OsgError as error:
             self._refused(f"a picture on {self.name} is left out: {error}")
             return None
         stamp = nanoseconds_of(message.header.stamp)

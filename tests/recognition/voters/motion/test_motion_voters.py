@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.features.motion import Movement, movement
+from app.recognition.features.motion import Movement, build_movement
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.cloud import Cloud
@@ -27,7 +27,7 @@ HANDS = ("left_wrist", "right_wrist")
 
 
 def moved(poses: PoseSequence) -> Movement:
-    return movement(Trajectory.from_poses(poses), HANDS)
+    return build_movement(Trajectory.from_poses(poses), HANDS)
 
 
 def distance(voter: MotionVoter, one: Movement, other: Movement) -> float:
@@ -121,7 +121,8 @@ def thumb(height: float) -> PoseSequence:
 
 def test_a_thumb_up_is_no_thumb_down() -> None:
     up, down = (
-        movement(Trajectory.from_poses(thumb(height)), ("right_wrist",)) for height in (-12, 12)
+        build_movement(Trajectory.from_poses(thumb(height)), ("right_wrist",))
+        for height in (-12, 12)
     )
     assert distance(Path(), up, down) == 0.0
     assert distance(HandAttitude(), up, down) > 3 * distance(Posture(), up, down)

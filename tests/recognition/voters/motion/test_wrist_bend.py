@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.features.motion import movement
+from app.recognition.features.motion import build_movement
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.hand_attitude import HandAttitude
@@ -67,7 +67,8 @@ def leaning(poses: PoseSequence, angle: float) -> PoseSequence:
 def distance(one: PoseSequence, other: PoseSequence, voter: MotionVoter | None = None) -> float:
     voter = voter or WristBend()
     query, reference = (
-        voter.describe(movement(Trajectory.from_poses(poses), HANDS)) for poses in (one, other)
+        voter.describe(build_movement(Trajectory.from_poses(poses), HANDS))
+        for poses in (one, other)
     )
     return float(voter.distances(query, reference[None])[0])
 
