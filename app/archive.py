@@ -64,7 +64,7 @@ def opened(path: Path, called: str, refusal: type[OsgError]) -> Iterator[ZipFile
 
     Raises
     ------
-    RecognitionError
+    OsgError
         Of the kind `refusal`, when it turns out to be damaged, encrypted or of an unusual kind.
 
     """

@@ -1,7 +1,7 @@
 """What each voter of profile ``full`` contributes: alone, and left out.
 
 One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
-distances are measured once and fused anew for every choice of voters, in the readings that all of
+distances are measured once and fused anew for every choice of voters, in the traversals that all of
 them together chose.
 
     python -m benchmarks.ablation ../shared/data
@@ -60,7 +60,7 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
             except PoseError:
                 continue
             compared = vote.compare(seen)
-            penalties = np.array([each.penalty if each else 1.0 for each in compared.readings])
+            penalties = np.array([each.penalty if each else 1.0 for each in compared.traversals])
             for name, factor in choices().items():
                 scores = fuse(compared.distances, weights * factor, between) * penalties
                 nearest = recorded.labels[templates[int(scores.argmin())]]

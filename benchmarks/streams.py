@@ -16,7 +16,7 @@ import numpy.typing as npt
 from app.recognition import PoseSequence
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.accidental_motion import simulate_background_motion
+from app.recognition.simulation.background_motion import simulate_background_motion
 from benchmarks.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0

@@ -47,7 +47,7 @@ class TakeComparison:
     def features(self, take: Trajectory) -> FloatArray:
         """Return ``(F,)`` numbers, named by `FEATURES`.
 
-        Distances in the reading with the nearest path; of the looks, what they differ by.
+        Distances in the traversal with the nearest path; of the looks, what they differ by.
         """
         motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
         nearest = motion[:, motion[_PATH].argmin()]

@@ -36,7 +36,7 @@ def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When ROS 2 or our packages are not in this environment.
 
     """

@@ -67,7 +67,7 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the layout has no label, or no file fits.
 
     """

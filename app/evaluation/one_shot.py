@@ -87,7 +87,7 @@ def one_shot(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When no person shows two gestures, or nothing is left to ask for.
 
     """

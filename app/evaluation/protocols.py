@@ -48,7 +48,7 @@ def recognised_variants(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When a gesture was imported without its demonstration, or there is no such profile.
 
     """

@@ -50,7 +50,7 @@ class Recognizer:
     ------
     LanguageError
         When the language has no gestures.
-    RecognitionError
+    OsgError
         When there is no such profile, or the tuning does not fit it.
 
     """

@@ -114,7 +114,7 @@ class Spotter:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the profile is another one, whose confidence tells nothing about movements that mean
         nothing, or when no gesture of the language has a demonstration.
 
@@ -212,7 +212,7 @@ class Spotter:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             As for a new one.
 
         """

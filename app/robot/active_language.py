@@ -47,7 +47,7 @@ class SpokenLanguage:
         ------
         LanguageError
             When the file cannot be read or is invalid, or the language has no gestures.
-        RecognitionError
+        OsgError
             When there is no such profile.
 
         """
@@ -61,7 +61,7 @@ class SpokenLanguage:
         ------
         LanguageError
             When the text is invalid, or the language has no gestures.
-        RecognitionError
+        OsgError
             When there is no such profile.
 
         """

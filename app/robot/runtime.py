@@ -114,7 +114,7 @@ class Runtime:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When a recording turns out to be unreadable, or an image is none.
 
         """

@@ -45,7 +45,7 @@ class WatchedLanguage:
     ------
     LanguageError
         When the file cannot be read or is invalid.
-    RecognitionError
+    OsgError
         When there is no such profile.
 
     """

@@ -16,7 +16,7 @@ class Method(ABC):
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When the method cannot use it.
 
         """

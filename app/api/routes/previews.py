@@ -21,7 +21,7 @@ from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
 from app.recognition.gestures.switches import Sensitivity, Switches
 from app.recognition.health.finding import measure_visible_share
-from app.recognition.health.gesture_forecast import estimate_gesture
+from app.recognition.health.gesture_estimate import estimate_gesture
 from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses

@@ -115,7 +115,7 @@ class Studio:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When there is no such profile.
 
         """

@@ -25,9 +25,9 @@ from app.recognition.decision.rejection import build_novelty_weights, measure_no
 from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.model_error import VARIANT_BIASES
 from app.recognition.simulation.negatives import draw_negatives
 from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variant_bias import VARIANT_BIASES
 from app.recognition.simulation.variation import SPREADS, draw_variants
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 

@@ -44,7 +44,7 @@ _NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
 
 CLOSE_SCORES = 0.05
 """Score by which the expected gesture may still miss when a voter's weight is tried: as much as
-another reading of a gesture, which the new weight may bring about, is usually nearer."""
+another traversal of a gesture, which the new weight may bring about, is usually nearer."""
 
 
 def add_mirror_images(
@@ -78,7 +78,7 @@ class FusedVote:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the weights do not fit the voters.
 
     """
@@ -118,11 +118,11 @@ class FusedVote:
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
-        readings = [self._motions.readings[row] for row in rows]
+        traversals = [self._motions.traversals[row] for row in rows]
         return Sensitivity(
-            direction=not any(reading.backward for reading in readings),
+            direction=not any(traversal.backward for traversal in traversals),
             tempo=bool(self._tempo[gesture]),
-            sides=not any(reading.exchanged for reading in readings),
+            sides=not any(traversal.exchanged for traversal in traversals),
         )
 
     @property
@@ -161,7 +161,7 @@ class FusedVote:
 
     @property
     def references(self) -> MotionReferences:
-        """The gestures as movements, in the readings that the language leaves open."""
+        """The gestures as movements, in the traversals that the language leaves open."""
         return self._motions
 
     def with_thresholds(self, thresholds: FloatArray) -> FusedVote:
@@ -193,8 +193,8 @@ class FusedVote:
             distances=distances.take(chosen, axis=1),
             contributions=shares.take(chosen, axis=1),
             turned=turned[chosen],
-            readings=tuple(
-                self._motions.readings[row] if row >= 0 else None for row in rows[chosen].tolist()
+            traversals=tuple(
+                self._motions.traversals[row] if row >= 0 else None for row in rows[chosen].tolist()
             ),
             mirrored=chosen >= len(self._labels),
             novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
@@ -252,7 +252,7 @@ class FusedVote:
     def _compared(
         self, trajectory: Trajectory, drawn: bool
     ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the readings, -1: none."""
+        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the traversals, -1: none."""
         distances = np.full((len(VOTERS), len(self._owners)), np.inf)
         if drawn:
             distances[:_SHAPES] = self._shapes.distances(trajectory)

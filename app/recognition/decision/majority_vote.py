@@ -31,7 +31,7 @@ class MajorityVote:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the weights do not fit the voters.
 
     """
@@ -64,7 +64,7 @@ class MajorityVote:
             distances=distances,
             contributions=weigh_relative_distances(distances, self._factors),
             turned=np.zeros(count),
-            readings=(None,) * count,
+            traversals=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
             novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
         )

@@ -1,4 +1,4 @@
-"""The gestures of a language as movements, in every reading that the language leaves open."""
+"""The gestures of a language as movements, in every traversal that the language leaves open."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from app.recognition.voters.registry import MOTION_VOTERS
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as
 far as two people's takes of one gesture lie apart. On air-drawn digits and commands the accuracy
-is the same from 0.05 to 0.1 and falls beyond 0.2, when useful readings are lost."""
+is the same from 0.05 to 0.1 and falls beyond 0.2, when useful traversals are lost."""
 
 TURNED = 0.1
 """Share of the forward distance that a figure turned round lies within, however far: two swipes to
@@ -45,7 +45,7 @@ as long. One person's takes of a gesture differ by a quarter of a doubling, two 
 MAX_GESTURES_TRAVERSED = 64
 """Gestures beyond which a language takes every gesture as shown. Among so many, figures that
 differ by nothing but direction are to be expected, and the comparison of all with all in all
-readings would take seconds."""
+traversals would take seconds."""
 
 MOST_COMPARED = 1
 """Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
@@ -78,14 +78,14 @@ _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
 @dataclass(frozen=True, eq=False)
 class NearestTraversals:
-    """The readings of G gestures that fit a query best.
+    """The traversals of G gestures that fit a query best.
 
     Attributes
     ----------
     rows
         ``(G,)``: which row of the references; -1 for a gesture without demonstration.
     distances
-        ``(V, G)`` to these readings, infinite for a gesture without demonstration.
+        ``(V, G)`` to these traversals, infinite for a gesture without demonstration.
 
     """
 
@@ -95,7 +95,7 @@ class NearestTraversals:
 
 @dataclass(frozen=True, eq=False)
 class MotionReferences:
-    """What a query's movement is compared with: R rows, each a gesture in one reading.
+    """What a query's movement is compared with: R rows, each a gesture in one traversal.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ class MotionReferences:
         The landmarks to follow in a query.
     gestures
         ``(R,)`` index of each row's gesture in the language.
-    readings
+    traversals
         Of each row.
     descriptors
         Per voter's name ``(R, ...)``.
@@ -112,12 +112,12 @@ class MotionReferences:
 
     landmarks: tuple[str, ...]
     gestures: npt.NDArray[np.intp]
-    readings: tuple[Traversal, ...]
+    traversals: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
     @classmethod
     def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
-        """Describe all gestures that have a demonstration, in all thinkable readings.
+        """Describe all gestures that have a demonstration, in all thinkable traversals.
 
         The references of the last few languages are remembered: the same gestures are asked for
         again with their thresholds, and whenever only the drawings or the voters' weights change.
@@ -134,11 +134,11 @@ class MotionReferences:
             for index, gesture in enumerate(gestures)
             if gesture.trajectory is not None and len(gesture.trajectory) > 1 and gesture.salient
         }
-        sizes = np.array([len(each.readings) for each in described.values()], dtype=np.intp)
+        sizes = np.array([len(each.traversals) for each in described.values()], dtype=np.intp)
         return cls(
             landmarks,
             np.repeat(np.array([*described], dtype=np.intp), sizes),
-            tuple(reading for each in described.values() for reading in each.readings),
+            tuple(traversal for each in described.values() for traversal in each.traversals),
             {
                 voter.name: np.concatenate(
                     [each.descriptors[voter.name] for each in described.values()] or [np.empty(0)]
@@ -161,7 +161,7 @@ class MotionReferences:
         return MotionReferences(
             self.landmarks,
             self.gestures[rows],
-            tuple(self.readings[row] for row in rows),
+            tuple(self.traversals[row] for row in rows),
             {name: values[rows] for name, values in self.descriptors.items()},
         )
 
@@ -179,9 +179,9 @@ class MotionReferences:
         return distances
 
     def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
-        """Choose the readings that are worth an elastic comparison with a query.
+        """Choose the traversals that are worth an elastic comparison with a query.
 
-        Of each gesture the one as shown, and of each kind of reading (forwards, backwards, with
+        Of each gesture the one as shown, and of each kind of traversal (forwards, backwards, with
         exchanged sides) the `MOST_COMPARED` whose paths lie nearest, step by step.
 
         Parameters
@@ -216,10 +216,12 @@ class MotionReferences:
 
     @cached_property
     def _rows_by_kind(self) -> npt.NDArray[np.intp]:
-        """The rows of each gesture's readings of a kind; R where there are no more of them."""
+        """The rows of each gesture's traversals of a kind; R where there are no more of them."""
         kinds: dict[tuple[int, bool, bool], list[int]] = {}
-        for row, (gesture, reading) in enumerate(zip(self.gestures, self.readings, strict=True)):
-            kind = (int(gesture), reading.backward, reading.exchanged)
+        for row, (gesture, traversal) in enumerate(
+            zip(self.gestures, self.traversals, strict=True)
+        ):
+            kind = (int(gesture), traversal.backward, traversal.exchanged)
             kinds.setdefault(kind, []).append(row)
         rows = np.full((len(kinds), max(map(len, kinds.values()), default=1)), len(self))
         for index, of_kind in enumerate(kinds.values()):
@@ -243,7 +245,7 @@ class MotionReferences:
     @cached_property
     def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
         """Rows that differ by more than the order of their steps; and of each row which it is."""
-        exchanged = np.array([reading.exchanged for reading in self.readings], dtype=np.intp)
+        exchanged = np.array([traversal.exchanged for traversal in self.traversals], dtype=np.intp)
         _, rows, which = np.unique(
             2 * self.gestures + exchanged, return_index=True, return_inverse=True
         )
@@ -252,7 +254,7 @@ class MotionReferences:
     @cached_property
     def penalties(self) -> FloatArray:
         """``(R,)``: the factor on each row's distances."""
-        return np.array([reading.penalty for reading in self.readings])
+        return np.array([traversal.penalty for traversal in self.traversals])
 
     @cached_property
     def own_distances(self) -> FloatArray:
@@ -289,7 +291,7 @@ class MotionReferences:
     def nearest(
         self, query: dict[str, FloatArray], weights: FloatArray, between: FloatArray, count: int
     ) -> NearestTraversals:
-        """Choose for each gesture the reading that fits a query best.
+        """Choose for each gesture the traversal that fits a query best.
 
         Parameters
         ----------
@@ -362,7 +364,7 @@ def drop_ambiguous_traversals(
     between: FloatArray,
     free: Collection[int] = (),
 ) -> MotionReferences:
-    """Drop the readings by which a gesture would be taken for another one of the language.
+    """Drop the traversals by which a gesture would be taken for another one of the language.
 
     The language needs the direction of a gesture when another one is the same figure the other way
     round: wherever both begin, they lie within `SAME_FIGURE` of each other when one of them is
@@ -372,7 +374,7 @@ def drop_ambiguous_traversals(
     Parameters
     ----------
     references
-        In all thinkable readings.
+        In all thinkable traversals.
     own
         `own_distances` of the rows as shown.
     weights, between
@@ -385,8 +387,8 @@ def drop_ambiguous_traversals(
     shown = references.as_shown
     same = labels[shown][:, None] == labels[None]
     scores = np.where(same, np.inf, fuse(own, weights, between))
-    backward = np.array([reading.backward for reading in references.readings], dtype=bool)
-    exchanged = np.array([reading.exchanged for reading in references.readings], dtype=bool)
+    backward = np.array([traversal.backward for traversal in references.traversals], dtype=bool)
+    exchanged = np.array([traversal.exchanged for traversal in references.traversals], dtype=bool)
     keep = np.ones(len(references), dtype=bool)
     for gesture in np.unique(labels):
         rows = labels == gesture

@@ -28,7 +28,7 @@ class ScoreTable:
     turned
         ``(G,)``: what is added since the gesture fits only when read backwards, or with its sides
         exchanged.
-    readings
+    traversals
         The order in which each gesture's steps fit best; None where only its image is compared.
     mirrored
         ``(G,)``: whether it is the gesture's mirror image that fits best.
@@ -43,7 +43,7 @@ class ScoreTable:
     distances: FloatArray
     contributions: FloatArray
     turned: FloatArray
-    readings: tuple[Traversal | None, ...]
+    traversals: tuple[Traversal | None, ...]
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
 

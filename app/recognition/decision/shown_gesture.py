@@ -1,4 +1,4 @@
-"""A gesture as it was shown, in the readings that it leaves open, described for all voters."""
+"""A gesture as it was shown, in the traversals that it leaves open, described for all voters."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from app.recognition.voters.registry import MOTION_VOTERS
 
 @dataclass(frozen=True, eq=False)
 class DescribedGesture:
-    """One gesture in its readings, and per voter's name their descriptors."""
+    """One gesture in its traversals, and per voter's name their descriptors."""
 
-    readings: tuple[Traversal, ...]
+    traversals: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
 
 @dataclass(frozen=True)
 class ShownGesture:
-    """All of a gesture that its readings depend on.
+    """All of a gesture that its traversals depend on.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class ShownGesture:
         return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
 
     def read(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
-        """Describe a gesture with a demonstration in `every` thinkable reading, or just as shown.
+        """Describe a gesture with a demonstration in `every` thinkable traversal, or just as shown.
 
         Once for each set of landmarks that a language follows.
         """
@@ -74,5 +74,5 @@ class ShownGesture:
             )
 
         return trajectory.once(
-            ("readings", landmarks, hands, both_ways, either_side, every), work_out
+            ("traversals", landmarks, hands, both_ways, either_side, every), work_out
         )

@@ -30,25 +30,25 @@ ElasticVoter = Path | Direction | Posture | HandAttitude
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Example:
-    """A gesture as a query was compared with it: from one side, in one reading.
+    """A gesture as a query was compared with it: from one side, in one traversal.
 
     Attributes
     ----------
     label
         The gesture's.
-    reading
+    traversal
         The order of its steps.
     mirrored
         Whether it is its mirror image.
     movement
-        In that reading.
+        In that traversal.
     time
         ``(N,)`` seconds of the demonstration at which each step was shown.
 
     """
 
     label: str
-    reading: Traversal
+    traversal: Traversal
     mirrored: bool
     movement: Movement
     time: FloatArray
@@ -58,7 +58,7 @@ class Example:
         cls,
         gesture: Gesture,
         landmarks: Sequence[str],
-        reading: Traversal,
+        traversal: Traversal,
         *,
         mirrored: bool = False,
     ) -> Example | None:
@@ -69,10 +69,10 @@ class Example:
         shown = build_movement(trajectory, landmarks)
         return cls(
             label=gesture.label,
-            reading=reading,
+            traversal=traversal,
             mirrored=mirrored,
-            movement=shown.reordered(reading.order),
-            time=shown.reached[reading.order],
+            movement=shown.reordered(traversal.order),
+            time=shown.reached[traversal.order],
         )
 
 
@@ -202,7 +202,7 @@ def align(
         query=shown,
         gesture=gesture_shown,
         costs=costs.reshape(len(pairs), len(parts), 2).sum(axis=2) / len(left),
-        backward=example.reading.backward,
+        backward=example.traversal.backward,
         mirrored=example.mirrored,
     )
 
@@ -210,9 +210,9 @@ def align(
 def find_nearest_example(
     query: Trajectory, gesture: Gesture, landmarks: Sequence[str]
 ) -> Example | None:
-    """Return a gesture's example in the reading whose path is nearest to the query's.
+    """Return a gesture's example in the traversal whose path is nearest to the query's.
 
-    For voters that see drawings, to which all readings are the same. None where one of the two
+    For voters that see drawings, to which all traversals are the same. None where one of the two
     has no movement.
     """
     shown = Example.of(gesture, landmarks, AS_SHOWN)

@@ -148,14 +148,14 @@ def _exchanged(pairing: Pairing) -> Iterator[Difference]:
 
 def _turned(pairing: Pairing) -> Iterator[Difference]:
     """Turn the query round."""
-    backward = not pairing.example.reading.backward
+    backward = not pairing.example.traversal.backward
     left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
     yield _throughout(pairing, "direction", left, "it goes the other way round")
 
 
 def _read_backwards(pairing: Pairing) -> Iterator[Difference]:
     """Tell that the gesture fits only when read backwards."""
-    if pairing.example.reading.backward:
+    if pairing.example.traversal.backward:
         words = "it goes the other way round, which costs half as much again"
         yield _beside("direction", _busiest(pairing), None, None, words)
 

@@ -58,7 +58,7 @@ class Explanation:
     verdicts
         What every voter said, those that spoke most against the expected gesture first.
     turned
-        What is added to `score` minus `other_score` for reading one of the two backwards.
+        What is added to `score` minus `other_score` for traversal one of the two backwards.
     alignments
         Of the query with the expected gesture and with the other: of the paths, and in profile
         ``full`` of the postures.
@@ -144,7 +144,7 @@ def explain(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When `expected` is no gesture of the language.
     PoseError
         When the recording shows nothing that a gesture needs.
@@ -233,18 +233,18 @@ class _Pairings:
         pairing = Pairing.of(
             self._query,
             self._gestures[index],
-            example.reading,
+            example.traversal,
             mirrored=example.mirrored,
             start=self._start,
         )
         return () if pairing is None else find_differences(pairing, sees_direction=self._full)
 
     def _example(self, index: int) -> Example | None:
-        gesture, reading = self._gestures[index], self._comparison.readings[index]
-        if reading is None:
+        gesture, traversal = self._gestures[index], self._comparison.traversals[index]
+        if traversal is None:
             return find_nearest_example(self._query, gesture, self._landmarks)
         mirrored = bool(self._comparison.mirrored[index])
-        return Example.of(gesture, self._landmarks, reading, mirrored=mirrored)
+        return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
 
 
 def _finite(value: float) -> float | None:

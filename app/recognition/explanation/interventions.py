@@ -52,7 +52,7 @@ class Intervention(ABC):
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When it cannot be made here.
 
         """

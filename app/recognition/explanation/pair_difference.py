@@ -53,10 +53,10 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
         return None
     query = condense(shown.trajectory)
     compared = recognizer.compare(query)
-    reading = compared.readings[other]
-    if reading is None:
+    traversal = compared.traversals[other]
+    if traversal is None:
         return None
-    pairing = Pairing.of(query, against, reading, mirrored=bool(compared.mirrored[other]))
+    pairing = Pairing.of(query, against, traversal, mirrored=bool(compared.mirrored[other]))
     if pairing is None:
         return None
     alignment = align(pairing.query, pairing.example, pairing.landmarks)

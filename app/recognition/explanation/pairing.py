@@ -57,7 +57,7 @@ class Pairing:
         cls,
         trajectory: Trajectory,
         gesture: Gesture,
-        reading: Traversal,
+        traversal: Traversal,
         *,
         mirrored: bool = False,
         start: float = 0.0,
@@ -68,7 +68,7 @@ class Pairing:
             return None
         both = {*side.salient, *(other_side(name) for name in side.salient)}
         landmarks = tuple(sorted(both & {*side.trajectory.landmarks} & {*trajectory.landmarks}))
-        example = Example.of(gesture, landmarks, reading, mirrored=mirrored)
+        example = Example.of(gesture, landmarks, traversal, mirrored=mirrored)
         if not landmarks or example is None:
             return None
         shown = build_movement(side.trajectory, landmarks)
@@ -109,9 +109,9 @@ class Pairing:
     def paths_begun_anywhere(self, *, backward: bool = False) -> list[FloatArray]:
         """Return the gesture's paths from each of its starts, as shown or the other way round."""
         shown = np.empty_like(self.example.movement.paths)
-        shown[self.example.reading.order] = self.example.movement.paths
+        shown[self.example.traversal.order] = self.example.movement.paths
         step = -1 if backward else 1
-        return [shown[reading.order[::step]] for reading in self.starts]
+        return [shown[traversal.order[::step]] for traversal in self.starts]
 
     def seconds(self, step: int) -> float:
         """Return the second of the query's clock at which it reached a step."""

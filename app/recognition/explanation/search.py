@@ -160,11 +160,11 @@ def _switches(situation: RecognitionContext, label: str, *, expected: bool) -> I
     Only where it can matter: which way round, from which side or how fast the other one was read.
     """
     comparison, at = situation.comparison, situation.language.labels.index(label)
-    reading = comparison.readings[at]
+    traversal = comparison.traversals[at]
     slower = comparison.distances[comparison.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
     positions: dict[SwitchName, tuple[Switch, bool]] = {
-        "direction": (strict, reading is not None and reading.backward != expected),
+        "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
         "mirror": ("on" if expected else "off", bool(comparison.mirrored[at]) != expected),
     }

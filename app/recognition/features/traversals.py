@@ -66,7 +66,7 @@ class Traversal:
 
     @property
     def penalty(self) -> float:
-        """Factor on the distances of this reading."""
+        """Factor on the distances of this traversal."""
         return (BACKWARD_PENALTY if self.backward else 1.0) * (
             EXCHANGED_PENALTY if self.exchanged else 1.0
         )
@@ -84,7 +84,7 @@ SIDES_EXCHANGED = Traversal(AS_SHOWN.order, exchanged=True)
 def list_traversals(
     movement: Movement, *, hands: int, both_ways: bool, either_side: bool = False
 ) -> tuple[Traversal, ...]:
-    """Return the readings of a gesture: as shown first.
+    """Return the traversals of a gesture: as shown first.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ def find_profile(name: str) -> Profile:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When there is no such profile.
 
     """

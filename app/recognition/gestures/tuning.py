@@ -38,7 +38,7 @@ class Tuning:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When a weight or the tolerance is no number, negative, or beyond `MAX_FACTOR` or
         `MAX_SIMPLIFICATION`.
 
@@ -77,7 +77,7 @@ class Tuning:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When a weight is for none of them, or all of them are off.
 
         """

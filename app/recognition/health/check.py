@@ -96,24 +96,24 @@ def check_health(
     recognizer = Recognizer(language, "full")
     shown = sum(gesture.trajectory is not None for gesture in language.gestures)
     advance = _counted(progress, "rehearsing", shown * takes)
-    rehearsing = TrialRunner(takes=takes, seed=seed, person=person, advance=advance)
-    rehearsal = rehearsing(recognizer)
+    run_trials = TrialRunner(takes=takes, seed=seed, person=person, advance=advance)
+    trials = run_trials(recognizer)
     read = find_false_alarms(
         recognizer, EXAMPLES, seed=seed, advance=_counted(progress, "accidental movements", 0)
     )
     distances = _demonstrated_distances(recognizer)
     gestures = tuple(
-        _gesture_health(gesture, index, rehearsal, read)
+        _gesture_health(gesture, index, trials, read)
         for index, gesture in enumerate(language.gestures)
     )
     pairs = [
-        check_pairs(language, pair, rehearsal, distances)
+        check_pairs(language, pair, trials, distances)
         for pair in combinations(range(len(gestures)), 2)
     ]
     pairs.sort(key=_confusion_rate, reverse=True)
-    searching = replace(rehearsing, advance=_counted(progress, "remedies", 0))
+    searching = replace(run_trials, advance=_counted(progress, "remedies", 0))
     findings = [
-        *_pair_findings(recognizer, pairs, rehearsal, searching),
+        *_pair_findings(recognizer, pairs, trials, searching),
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
@@ -154,15 +154,15 @@ def _demonstrated_distances(recognizer: Recognizer) -> FloatArray:
     return distances
 
 
-def _performer(rehearsal: SimulatedTrials, gesture: int) -> int | None:
-    rows = np.flatnonzero(rehearsal.gestures == gesture)
+def _performer(trials: SimulatedTrials, gesture: int) -> int | None:
+    rows = np.flatnonzero(trials.gestures == gesture)
     return int(rows[0]) if len(rows) else None
 
 
 def _gesture_health(
-    gesture: Gesture, index: int, rehearsal: SimulatedTrials, read: Sequence[FalseAlarm]
+    gesture: Gesture, index: int, trials: SimulatedTrials, read: Sequence[FalseAlarm]
 ) -> GestureHealth:
-    shown, performer = gesture.trajectory, _performer(rehearsal, index)
+    shown, performer = gesture.trajectory, _performer(trials, index)
     moved = {} if shown is None else measure_displacements(shown)
     taken = [alarm for alarm in read if alarm.taken and alarm.nearest == index]
     comparable = any(alarm.nearest is not None for alarm in read)
@@ -174,15 +174,15 @@ def _gesture_health(
             for name in gesture.salient
             if shown is not None
         ),
-        missed=None if performer is None else rehearsal.missed(performer),
-        refused=None if performer is None else rehearsal.refused(performer),
+        missed=None if performer is None else trials.missed(performer),
+        refused=None if performer is None else trials.refused(performer),
         false_alarms=RateEstimate.of_count(len(taken), len(read)) if comparable else None,
         set_off_by=tuple(dict.fromkeys(alarm.kind for alarm in taken)),
     )
 
 
 def check_pairs(
-    language: Language, pair: tuple[int, int], rehearsal: SimulatedTrials, distances: FloatArray
+    language: Language, pair: tuple[int, int], trials: SimulatedTrials, distances: FloatArray
 ) -> PairHealth:
     """Say how well two gestures are told apart.
 
@@ -192,7 +192,7 @@ def check_pairs(
         Of G gestures.
     pair
         Indices of the two.
-    rehearsal
+    trials
         Of both; what was not rehearsed is not forecast.
     distances
         ``(G, G)``: fused distance of each demonstration, a row, to every gesture; infinite where
@@ -201,8 +201,8 @@ def check_pairs(
     """
 
     def forecast(one: int, other: int) -> RateEstimate | None:
-        performer = _performer(rehearsal, one)
-        return None if performer is None else rehearsal.confusion(performer, other)
+        performer = _performer(trials, one)
+        return None if performer is None else trials.confusion(performer, other)
 
     first, second = pair
     between = [each for each in (distances[pair], distances[second, first]) if np.isfinite(each)]
@@ -222,8 +222,8 @@ def _confusion_rate(pair: PairHealth) -> tuple[float, float]:
 def _pair_findings(
     recognizer: Recognizer,
     pairs: Sequence[PairHealth],
-    rehearsal: SimulatedTrials,
-    rehearsing: TrialRunner,
+    trials: SimulatedTrials,
+    run_trials: TrialRunner,
 ) -> list[Finding]:
     """Warn of pairs that will be confused; `pairs` are sorted, the worst first."""
     language = recognizer.language
@@ -238,7 +238,7 @@ def _pair_findings(
         both_shown = pair.first_as_second is not None and pair.second_as_first is not None
         if len(findings) < MOST_REMEDIED and both_shown:
             strokes = tuple(None if each is None else each.stroke for each in contrasts)
-            remedies = find_pair_remedies(language, (first, second), rehearsal, rehearsing, strokes)
+            remedies = find_pair_remedies(language, (first, second), trials, run_trials, strokes)
         findings.append(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.recognition.errors import PoseError
 from app.recognition.gestures.gesture import condense
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.accidental_motion import simulate_background_motion
+from app.recognition.simulation.background_motion import simulate_background_motion
 
 
 @dataclass(frozen=True)

@@ -74,8 +74,6 @@ def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | No
     nearest = sorted(others, key=lambda index: distances[own, index])[:MOST_NEIGHBOURS]
     for index in nearest:
         measure(index)
-    rehearsal = simulate_trials(recognizer, TAKES, gestures=(own, *nearest))
-    pairs = (check_pairs(language, (own, index), rehearsal, distances) for index in nearest)
-    return GestureEstimate(
-        pairs=tuple(pairs), missed=rehearsal.missed(0), refused=rehearsal.refused(0)
-    )
+    trials = simulate_trials(recognizer, TAKES, gestures=(own, *nearest))
+    pairs = (check_pairs(language, (own, index), trials, distances) for index in nearest)
+    return GestureEstimate(pairs=tuple(pairs), missed=trials.missed(0), refused=trials.refused(0))

@@ -105,7 +105,7 @@ def find_pair_remedies(
     language: Language,
     pair: tuple[int, int],
     before: SimulatedTrials,
-    rehearsing: TrialRunner,
+    run_trials: TrialRunner,
     strokes: Sequence[tuple[float, float] | None] = (None, None),
 ) -> tuple[Remedy, ...]:
     """Find what keeps two gestures apart, the most effective first.
@@ -117,8 +117,8 @@ def find_pair_remedies(
     pair
         Indices of two gestures with demonstrations.
     before
-        The rehearsal of the whole language.
-    rehearsing
+        The trials of the whole language.
+    run_trials
         How it was made.
     strokes
         Seconds in which each of the two differs from the other one, where that is known.
@@ -130,19 +130,19 @@ def find_pair_remedies(
         before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
     )
     missed = sum(before.missed(performer).rate for performer in performers)
-    trials = [
-        (_tried(changed, rehearsing), change, changed) for change, changed in _changed(two, strokes)
+    tried = [
+        (_tried(changed, run_trials), edit, changed) for edit, changed in _changed(two, strokes)
     ]
-    trials.sort(key=lambda trial: (trial[0].rate, trial[0].high))
-    best_of_kind = {change.kind: (change, changed) for _, change, changed in reversed(trials)}
-    kinds = list(dict.fromkeys(change.kind for _, change, _ in trials))
+    tried.sort(key=lambda trial: (trial[0].rate, trial[0].high))
+    best_of_kind = {edit.kind: (edit, changed) for _, edit, changed in reversed(tried)}
+    kinds = list(dict.fromkeys(edit.kind for _, edit, _ in tried))
     proposed = []
-    for change, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
-        rehearsal = rehearsing(Recognizer(_with(language, pair, changed), "full"), pair)
-        after = is_worse(rehearsal.confusion(0, pair[1]), rehearsal.confusion(1, pair[0]))
-        missed_then = rehearsal.missed(0).rate + rehearsal.missed(1).rate
+    for edit, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
+        repeated = run_trials(Recognizer(_with(language, pair, changed), "full"), pair)
+        after = is_worse(repeated.confusion(0, pair[1]), repeated.confusion(1, pair[0]))
+        missed_then = repeated.missed(0).rate + repeated.missed(1).rate
         if after.rate <= HELPS * confused.rate and missed_then < missed:
-            proposed.append(Remedy(change.kind, change.label, change.text, confused, after))
+            proposed.append(Remedy(edit.kind, edit.label, edit.text, confused, after))
     return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
 
 
@@ -161,12 +161,12 @@ def _changed(
             yield change, [changed, other] if which == 0 else [other, changed]
 
 
-def _tried(two: list[Gesture], rehearsing: TrialRunner) -> RateEstimate:
+def _tried(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     language = Language("two", two)
     # Only scores are compared: thresholds are not made for a language that nobody will speak.
     uncalibrated = replace(language, thresholds_for=language.fingerprint)
-    rehearsal = rehearsing(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
-    return is_worse(rehearsal.confusion(0, 1), rehearsal.confusion(1, 0))
+    trials = run_trials(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
+    return is_worse(trials.confusion(0, 1), trials.confusion(1, 0))
 
 
 def _with(language: Language, indices: tuple[int, ...], changed: list[Gesture]) -> Language:

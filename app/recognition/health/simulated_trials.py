@@ -1,4 +1,4 @@
-"""A rehearsal: every gesture of a language performed many times before anybody dives.
+"""A trials: every gesture of a language performed many times before anybody dives.
 
 The performances are variants of the demonstrations (`variation`), read by the recogniser itself.
 """
@@ -17,8 +17,8 @@ from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.model_error import VARIANT_BIASES, VariantBias
 from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variant_bias import VARIANT_BIASES, VariantBias
 from app.recognition.simulation.variation import Person, draw_variants
 
 WIDEST_MARGIN = 4.0
@@ -122,7 +122,7 @@ def simulate_trials(
     person
         Who performs: whoever demonstrated it, or somebody else.
     advance
-        Called after each take; what it raises ends the rehearsal.
+        Called after each take; what it raises ends the trials.
 
     """
     language = recognizer.language

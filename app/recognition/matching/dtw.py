@@ -91,7 +91,7 @@ class DtwReferences:
         Returns
         -------
         ``(2, H, H, M)``: squared distances of the first H steps, and of the last H from the last
-        one backwards, as `compute_alignment_costs` takes them; infinite where nothing is comparable.
+        one backwards, for `compute_alignment_costs`; infinite where nothing is comparable.
 
         """
         count = count_half_steps(len(query), self.band)

@@ -1,7 +1,7 @@
 """The finite automaton of a grammar's messages (Glushkov 1961).
 
 Its positions are the occurrences of gestures in the grammar, every bounded repetition written out;
-a message is a walk over positions, and what the walk says is its reading. Nothing is consumed
+a message is a walk over positions, and what the walk says is its parse. Nothing is consumed
 without a gesture, so the parser and the search for ambiguities both go gesture by gesture.
 """
 
@@ -21,7 +21,7 @@ BEFORE = -1
 
 
 class Contribution(NamedTuple):
-    """What one gesture adds to a reading.
+    """What one gesture adds to a parse.
 
     A phrase that begins has only its index; a value has its slot, too.
     """
@@ -106,7 +106,7 @@ class PhraseAutomaton:
         return frozenset(self._first if position == BEFORE else self._follow[position])
 
     def moves(self, position: int) -> Mapping[str, Sequence[tuple[int, Reading]]]:
-        """Return per label the positions that it leads to, and what that adds to the reading."""
+        """Return per label the positions that it leads to, and what that adds to the parse."""
         return self._moves[position]
 
     @cached_property

@@ -62,10 +62,10 @@ class Mission:
         return [meaning.to_dict() for meaning in self.phrases]
 
 
-def interpret_message(grammar: Grammar, reading: Reading) -> Mission:
-    """Return what a reading means."""
+def interpret_message(grammar: Grammar, parse: Reading) -> Mission:
+    """Return what a parse means."""
     said: list[tuple[Phrase, dict[str, list[Value]]]] = []
-    for each in reading:
+    for each in parse:
         if each.slot is None:
             said.append((grammar.phrases[each.phrase], {}))
         elif each.value is not None:

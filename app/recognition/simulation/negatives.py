@@ -14,7 +14,7 @@ import numpy as np
 
 from app.recognition.gestures.gesture import Gesture, condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.accidental_motion import simulate_background_motion
+from app.recognition.simulation.background_motion import simulate_background_motion
 
 MOST_SPLICES = 16
 """Splices made of a language, as many as there are kinds of accidental movements."""

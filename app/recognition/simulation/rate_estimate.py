@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.model_error import VariantBias
+from app.recognition.simulation.variant_bias import VariantBias
 
 STANDARD_ERRORS = 1.96
 """Standard errors to either side that hold 95 % of a normal distribution."""

@@ -166,7 +166,7 @@ def draw_variants(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When `count` is negative.
 
     """

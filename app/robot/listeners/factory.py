@@ -21,7 +21,7 @@ def hearing_of(language: SpokenLanguage, *, without_salutes: bool = False) -> Ph
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the language cannot be heard without salutes; see `SpottingListener`.
 
     """

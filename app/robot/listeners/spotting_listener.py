@@ -21,7 +21,7 @@ class SpottingListener:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When its profile is not ``full``, or none of its gestures has a demonstration.
 
     """
@@ -72,7 +72,7 @@ class SpottingListener:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When none of its gestures has a demonstration; the language before it is kept.
 
         """

@@ -41,7 +41,7 @@ def test_a_closed_figure_is_found_wherever_it_begins_and_whichever_way_it_goes(
     distances = REFERENCES.distances(described(begun_at(share, shape, backward=backward)))[PATH]
     nearest = int(distances.argmin())
     assert GESTURES[REFERENCES.gestures[nearest]].label == shape.__name__
-    assert REFERENCES.readings[nearest].backward is backward
+    assert REFERENCES.traversals[nearest].backward is backward
     assert distances[nearest] < 0.05
 
 
@@ -71,7 +71,7 @@ def test_references_are_remembered_until_what_they_depend_on_changes() -> None:
     changed = MotionReferences.of([one_way, *GESTURES[1:]])
     assert len(changed) < len(REFERENCES)
     assert not any(
-        reading.backward
-        for gesture, reading in zip(changed.gestures, changed.readings, strict=True)
+        traversal.backward
+        for gesture, traversal in zip(changed.gestures, changed.traversals, strict=True)
         if gesture == 0
     )

@@ -1,6 +1,6 @@
 """What the published implementation gets wrong (2025-03-01, head bf8232a), and this one must not.
 
-Defects of its video reading and of its salutes are tested with clips and takes.
+Defects of its video traversal and of its salutes are tested with clips and takes.
 """
 
 import json

@@ -43,9 +43,9 @@ def test_the_smallest_score_wins_in_profile_full(query: PoseSequence) -> None:
 def test_a_figure_read_backwards_costs_half_as_much_again() -> None:
     comparison = compared(RECOGNIZERS["full"], recording(lambda share: line(1 - share)))
     at = LANGUAGE.labels.index("line")
-    reading = comparison.readings[at]
-    assert reading is not None
-    assert reading.backward
+    traversal = comparison.traversals[at]
+    assert traversal is not None
+    assert traversal.backward
     assert comparison.turned[at] == pytest.approx(comparison.contributions[:, at].sum() / 2)
 
 

@@ -48,8 +48,8 @@ def test_sides_may_have_been_exchanged_where_both_take_part() -> None:
 
 
 def test_every_reading_takes_every_step_once_and_only_turning_round_costs() -> None:
-    for reading in list_traversals(moved(circle), hands=1, both_ways=True):
-        assert sorted(reading.order) == list(range(STEPS))
-        step = (reading.order[1] - reading.order[0]) % STEPS
-        assert reading.backward == (step == STEPS - 1)
-        assert reading.penalty == (BACKWARD_PENALTY if reading.backward else 1.0)
+    for traversal in list_traversals(moved(circle), hands=1, both_ways=True):
+        assert sorted(traversal.order) == list(range(STEPS))
+        step = (traversal.order[1] - traversal.order[0]) % STEPS
+        assert traversal.backward == (step == STEPS - 1)
+        assert traversal.penalty == (BACKWARD_PENALTY if traversal.backward else 1.0)

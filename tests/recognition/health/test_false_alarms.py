@@ -4,7 +4,7 @@ from app.recognition import Language, Recognizer
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.false_alarms import find_false_alarms
 from app.recognition.poses.sequence import PoseSequence
-from app.recognition.simulation.accidental_motion import MANNERS, simulate_background_motion
+from app.recognition.simulation.background_motion import MANNERS, simulate_background_motion
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, infinity
 

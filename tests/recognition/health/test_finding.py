@@ -13,7 +13,7 @@ from app.recognition.health.finding import (
     measure_visible_share,
 )
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.accidental_motion import simulate_background_motion
+from app.recognition.simulation.background_motion import simulate_background_motion
 from tests.recognition.demonstrations import shown
 from tests.recognition.strategies import circle, line
 

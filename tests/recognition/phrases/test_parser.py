@@ -163,10 +163,10 @@ def test_every_message_means_what_it_was_made_to_mean(
 ) -> None:
     if find_ambiguities(grammar):
         return
-    labels, reading = data.draw(st.sampled_from(list(sentences(grammar))))
+    labels, parse = data.draw(st.sampled_from(list(sentences(grammar))))
     events = heard(PhraseParser(grammar), *labels)
     assert kinds(events) == ["continues"] * (len(labels) - 1) + ["complete"]
-    assert events[-1].mission == interpret_message(grammar, reading)
+    assert events[-1].mission == interpret_message(grammar, parse)
     assert events[-1].gestures == labels
 
 

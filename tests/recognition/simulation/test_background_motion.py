@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.preprocessing.salience import measure_displacements
-from app.recognition.simulation.accidental_motion import (
+from app.recognition.simulation.background_motion import (
     MANNERS,
     TREMOR,
     UPPER_ARM,

@@ -6,7 +6,7 @@ from hypothesis import given
 from app.recognition import Gesture, PoseSequence
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.accidental_motion import MANNERS
+from app.recognition.simulation.background_motion import MANNERS
 from app.recognition.simulation.negatives import MOST_SPLICES, draw_negatives, splice, splice_all
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.simulation.model_error import VariantBias
 from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variant_bias import VariantBias
 
 MARGINS = st.lists(st.floats(-5, 5), min_size=2, max_size=40).map(np.array)
 SPREADS = st.floats(0.1, 2)

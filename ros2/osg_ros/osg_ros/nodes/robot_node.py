@@ -81,7 +81,7 @@ def published(arguments: Sequence[str]) -> Iterator[RobotNode]:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When ROS 2 does not understand an argument, or the node cannot be started.
 
     """

@@ -49,7 +49,7 @@ class PictureDecoder:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When the encoding is not known, the data is damaged, or the picture is too large.
 
         """
