@@ -2,6 +2,7 @@
 
 import re
 import runpy
+import tomllib
 from importlib.metadata import distribution
 from importlib.util import find_spec
 from pathlib import Path
@@ -88,3 +89,25 @@ def test_no_folder_of_pages_is_long_and_every_page_begins_with_its_title() -> No
         assert len([page for page in PAGES if page.parent == folder]) < 20
     for page in PAGES:
         assert page.read_text(encoding="utf-8").startswith("# ")
+
+
+def test_the_architecture_names_every_layer_in_its_order() -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    picture = (ROOT / "docs" / "images" / "rooms.svg").read_text(encoding="utf-8")
+    layered = {
+        container: contract["layers"]
+        for contract in contracts["contracts"]
+        for container in contract.get("containers", ())
+    }
+    assert layered.keys() == {"app.recognition", "app.api"}
+    for container, layers in layered.items():
+        rooms = [re.findall(r"\w+", layer) for layer in layers]
+        section = page.split(f"`{container.replace('.', '/')}`", 2)[2].split("## ")[0]
+        places = [[section.index(f"`{room}") for room in layer] for layer in rooms]
+        assert [sorted(layer) for layer in places] == places
+        assert places == sorted(places)
+        if container == "app.recognition":
+            drawn = re.findall(r'class="n">(\w+)<', picture)
+            in_order = [room for layer in rooms for room in layer]
+            assert drawn[-len(in_order) :] == in_order
