@@ -80,7 +80,7 @@ def _raised() -> Iterator[tuple[str, int]]:
 
 def _tree(kind: type[Exception], depth: int) -> Iterator[tuple[str, str]]:
     summary = (kind.__doc__ or "").split("\n\n")[0]
-    yield f"{'&emsp;' * depth}`{kind.__name__}`", cell(summary)
+    yield f"{'&nbsp;' * 4 * depth}`{kind.__name__}`", cell(summary)
     for child in kind.__subclasses__():
         if child.__module__ == errors.__name__:
             yield from _tree(child, depth + 1)

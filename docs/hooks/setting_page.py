@@ -14,13 +14,13 @@ UNITS = {"_bytes": (2**20, "MiB"), "_per_second": (2**10, "KiB/s")}
 
 
 def settings() -> str:
-    """Return the table of settings with type, default and meaning."""
+    """Return the table of settings with default and meaning."""
     documented = griffe.load("app.settings")["Settings"].members
     rows = [
-        (f"`{name}`", f"`OSG_{name.upper()}`", _default(name, field), cell(_text(documented[name])))
+        (f"`OSG_{name.upper()}`", _default(name, field), cell(_text(documented[name])))
         for name, field in Settings.model_fields.items()
     ]
-    return table(["setting", "environment", "default", "meaning"], rows)
+    return table(["variable", "default", "meaning"], rows)
 
 
 def _text(attribute: griffe.Object | griffe.Alias) -> str:
