@@ -20,8 +20,8 @@ LOCKS = (
     "requirements-robot.txt",
 )
 
-# Where packages come from is the user's pip configuration, mirrors and all, never ours. The words are
-# put together here, so that this file holds none of them.
+# Where packages come from is the user's pip configuration, mirrors and all, never ours. The words
+# are put together here, so that this file holds none of them.
 HOSTS = (
     ("py" + "pi", "org"),
     ("python" + "hosted", "org"),
