@@ -1,28 +1,28 @@
 // Start: load what there is, follow what changes, and keep every part of the page in step.
 
-import { showJoint, showMoment } from "./alignment.js";
-import * as api from "./api.js";
-import { copyLink } from "./clipboard.js";
-import { drawClips, drawSamples, findClips } from "./clips.js";
-import { byId, icon } from "./dom.js";
-import { drawGestures } from "./gestures.js";
-import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
-import { answerQuestion, drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
-import { listenToKeys, showKeys } from "./keys.js";
-import { rememberFrame } from "./playback.js";
-import { drawConnection, followServer } from "./server.js";
-import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
-import { drawNow } from "./timeline.js";
-import { attempt, toast } from "./toasts.js";
-import { offerTour } from "./tour.js";
-import { drawTransport } from "./transport.js";
-import { drawTuning } from "./tuning.js";
-import { bindUndo } from "./undo.js";
-import { acceptFiles, drawUploads } from "./uploads.js";
-import { followViews, go } from "./views.js";
-import { drawWelcome } from "./welcome.js";
-import { drawCosts, drawWhy, loadWhy } from "./why.js";
-import { followTheme, openWorkspace } from "./workspace.js";
+import { showJoint, showMoment } from "./studio/alignment.js";
+import * as api from "./core/api.js";
+import { copyLink } from "./core/clipboard.js";
+import { drawClips, drawSamples, findClips } from "./clips/clip-list.js";
+import { byId, icon } from "./core/dom.js";
+import { drawGestures } from "./studio/gesture-cards.js";
+import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages/language-store.js";
+import { answerQuestion, drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./studio/stage.js";
+import { listenToKeys, showKeys } from "./core/keys.js";
+import { rememberFrame } from "./studio/playback.js";
+import { drawConnection, followServer } from "./core/server-events.js";
+import { follow, followHistory, readUrl, selectedClip, state, update } from "./core/state.js";
+import { drawNow } from "./studio/timeline.js";
+import { attempt, toast } from "./core/toasts.js";
+import { offerTour } from "./studio/tour.js";
+import { drawTransport } from "./studio/transport.js";
+import { drawTuning } from "./languages/language-tuning.js";
+import { bindUndo } from "./core/undo.js";
+import { acceptFiles, drawUploads } from "./upload/upload-list.js";
+import { followViews, go } from "./core/views.js";
+import { drawWelcome } from "./studio/welcome.js";
+import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
+import { followTheme, openWorkspace } from "./studio/workspace.js";
 
 /** What is drawn, and which values it depends on. */
 function drawEverything() {

@@ -1,13 +1,13 @@
 // The clips: what each is, how far its poses are, and the samples for a first try.
 
-import * as api from "./api.js";
-import { byId, h, icon, iconButton, reconcile } from "./dom.js";
-import { duration, plural, timeLeft } from "./format.js";
-import { refresh } from "./refresh.js";
-import { state, update } from "./state.js";
-import { attempt } from "./toasts.js";
-import { openTopics } from "./topics.js";
-import { did, tellDone } from "./undo.js";
+import * as api from "../core/api.js";
+import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
+import { duration, plural, timeLeft } from "../core/format.js";
+import { refresh } from "../core/list-refresh.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { openTopics } from "./topic-dialog.js";
+import { did, tellDone } from "../core/undo.js";
 
 export const BUSY = new Set(["queued", "running"]);
 const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.

@@ -1,8 +1,8 @@
 // The topics of a dive recording, of which one becomes the clip.
 
-import * as api from "./api.js";
-import { byId, h } from "./dom.js";
-import { duration, plural } from "./format.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { duration, plural } from "../core/format.js";
 
 const USES = { pictures: "Pictures", keypoints: "Keypoints, shown as a skeleton" };
 

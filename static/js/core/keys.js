@@ -78,7 +78,7 @@ export function showKeys() {
     h("h2", { id: "dialog-title" }, "Keys"),
     list,
     h("div", { className: "dialog-actions" },
-      h("button", { type: "button", onclick: () => { dialog.close(); import("./tour.js").then(({ startTour }) => startTour()); } }, "Tour"),
+      h("button", { type: "button", onclick: () => { dialog.close(); import("../studio/tour.js").then(({ startTour }) => startTour()); } }, "Tour"),
       h("button", { type: "button", className: "primary", autofocus: true, onclick: () => dialog.close() }, "Close"))));
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;

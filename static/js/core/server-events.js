@@ -1,11 +1,11 @@
 // The connection to the server: what changes there, and what is done when it was away.
 
 import * as api from "./api.js";
-import { followJob, reloadClip, reloadClips } from "./clips.js";
+import { followJob, reloadClip, reloadClips } from "../clips/clip-list.js";
 import { byId } from "./dom.js";
-import { reloadLanguages, reloadOneLanguage } from "./languages.js";
+import { reloadLanguages, reloadOneLanguage } from "../languages/language-store.js";
 import { state, update } from "./state.js";
-import { restart } from "./workspace.js";
+import { restart } from "../studio/workspace.js";
 
 const RETRY = 1000; // ms, as the server asks of the browser
 

@@ -1,10 +1,10 @@
 // What was done here and can be taken back, and done again: across reloads, until the tab closes.
 
 import * as api from "./api.js";
-import { reloadClips, select } from "./clips.js";
+import { reloadClips, select } from "../clips/clip-list.js";
 import { byId } from "./dom.js";
 import { bind } from "./keys.js";
-import { reloadLanguages } from "./languages.js";
+import { reloadLanguages } from "../languages/language-store.js";
 import { complain, toast } from "./toasts.js";
 
 const KEY = "osg-studio.undo"; // sessionStorage: a tab takes back what was done in it.

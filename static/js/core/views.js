@@ -10,11 +10,11 @@ const FIRST = "studio";
 // A passing view has a tab only while it is open: elsewhere there is nothing it could show.
 const VIEWS = [
   { name: FIRST, title: "Studio" },
-  { name: "languages", title: "Languages", load: () => import("./languages/view.js") },
-  { name: "gesture", title: "Gesture", load: () => import("./editor/view.js"), passing: true },
-  { name: "phrases", title: "Phrases", load: () => import("./phrases/view.js") },
-  { name: "health", title: "Health", load: () => import("./health/view.js") },
-  { name: "live", title: "Live", load: () => import("./live/view.js") },
+  { name: "languages", title: "Languages", load: () => import("../languages/languages-view.js") },
+  { name: "gesture", title: "Gesture", load: () => import("../editor/gesture-editor.js"), passing: true },
+  { name: "phrases", title: "Phrases", load: () => import("../phrases/phrases-view.js") },
+  { name: "health", title: "Health", load: () => import("../health/health-view.js") },
+  { name: "live", title: "Live", load: () => import("../live/live-view.js") },
 ];
 
 const opened = new Map();

@@ -1,16 +1,16 @@
 // The demonstration: which part of which clip, shown frame by frame, with its two ends to be moved.
 
-import * as api from "../api.js";
-import { filmstrip } from "../curves.js";
-import { h, icon } from "../dom.js";
-import { moment } from "../format.js";
-import { nearestFrame } from "../frames.js";
-import { state } from "../state.js";
-import { attempt } from "../toasts.js";
-import { change, draft, saved } from "./draft.js";
-import { figure } from "./figure.js";
-import { chosenIn } from "./keypoints.js";
-import { framesOf, movedTo, takeOf, wholeOf } from "./range.js";
+import * as api from "../core/api.js";
+import { filmstrip } from "../studio/timeline-curves.js";
+import { h, icon } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
+import { state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { change, draft, saved } from "./gesture-draft.js";
+import { figure } from "./pose-picture.js";
+import { chosenIn } from "./salient-keypoints.js";
+import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 
 const BY_HAND = "by hand";
 

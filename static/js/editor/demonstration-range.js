@@ -1,6 +1,6 @@
 // Which part of a clip the demonstration is: a take's stroke, all of a take, or a range by hand.
 
-import { LEAST_FRAMES, nearestFrame } from "../frames.js";
+import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
 
 const SAME_MOMENT = 1e-3; // s, as the server tells a take's own range
 

@@ -1,8 +1,8 @@
 // A draft as the server takes it: to preview it, and to save it as one revision.
 
-import * as api from "../api.js";
-import { edit } from "../gestures.js";
-import { read } from "./command.js";
+import * as api from "../core/api.js";
+import { edit } from "../studio/gesture-cards.js";
+import { read } from "../languages/robot-command.js";
 
 const SWITCHES = ["direction", "tempo", "mirror"];
 

@@ -1,23 +1,23 @@
 // One gesture being made or changed: nothing is saved before "Save", and nothing is lost until then.
 
-import * as api from "../api.js";
-import { h } from "../dom.js";
-import { ago } from "../format.js";
-import { bind } from "../keys.js";
-import { choose, reloadLanguages } from "../languages.js";
-import { follow, selectedRange, state } from "../state.js";
-import { attempt, complain, toast } from "../toasts.js";
-import { tellDone } from "../undo.js";
-import { go, guard } from "../views.js";
-import { written } from "./command.js";
-import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, isKept, placeOf, redo, saved, undo } from "./draft.js";
-import { switches, textProblem, texts } from "./form.js";
-import { keypoints, toggle } from "./keypoints.js";
-import { mayLeave } from "./leaving.js";
-import { previewing } from "./previewing.js";
-import { health, image } from "./results.js";
-import { requestOf, save } from "./saving.js";
-import { take } from "./take.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { ago } from "../core/format.js";
+import { bind } from "../core/keys.js";
+import { choose, reloadLanguages } from "../languages/language-store.js";
+import { follow, selectedRange, state } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { tellDone } from "../core/undo.js";
+import { go, guard } from "../core/views.js";
+import { written } from "../languages/robot-command.js";
+import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, isKept, placeOf, redo, saved, undo } from "./gesture-draft.js";
+import { switches, textProblem, texts } from "./gesture-form.js";
+import { keypoints, toggle } from "./salient-keypoints.js";
+import { mayLeave } from "./leave-dialog.js";
+import { previewing } from "./preview-requests.js";
+import { health, image } from "./preview-results.js";
+import { requestOf, save } from "./draft-saving.js";
+import { take } from "./demonstration-panel.js";
 
 const GROUP = "Editing a gesture";
 

@@ -1,8 +1,8 @@
 // What a gesture says, and which of its properties count.
 
-import { h } from "../dom.js";
-import { read } from "./command.js";
-import { change, draft, rest } from "./draft.js";
+import { h } from "../core/dom.js";
+import { read } from "../languages/robot-command.js";
+import { change, draft, rest } from "./gesture-draft.js";
 
 const MOST = { label: 80, description: 2000, command: 4000 };
 

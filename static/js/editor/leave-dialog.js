@@ -1,7 +1,7 @@
 // Leaving with a draft that is not saved: it can be kept for later, or dropped.
 
-import { byId, h } from "../dom.js";
-import { forget } from "./draft.js";
+import { byId, h } from "../core/dom.js";
+import { forget } from "./gesture-draft.js";
 
 /** Ask. Resolves to whether to leave. */
 export function mayLeave() {

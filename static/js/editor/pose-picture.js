@@ -1,10 +1,10 @@
 // The diver in one frame: the video under the skeleton, whose landmarks are switched by a click.
 
-import * as api from "../api.js";
-import { h, svg } from "../dom.js";
-import { readable } from "../format.js";
-import { firstMoment, insideFrame } from "../frames.js";
-import { drawPose, skeleton } from "../skeleton.js";
+import * as api from "../core/api.js";
+import { h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { firstMoment, insideFrame } from "../core/frame-times.js";
+import { drawPose, skeleton } from "../core/skeleton.js";
 
 const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side: a finger hits it at 390 px.
 

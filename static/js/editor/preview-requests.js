@@ -1,6 +1,6 @@
 // Asking the server what the draft would be: shortly after the last change, the newest answer wins.
 
-import * as api from "../api.js";
+import * as api from "../core/api.js";
 
 const SETTLED = 120; // ms without a change: a slider being dragged tells many, typing is no change.
 

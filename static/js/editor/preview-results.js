@@ -1,7 +1,7 @@
 // What the draft would be: its trajectory image, its descriptors, and the outlook of its language.
 
-import { h, svg } from "../dom.js";
-import { readable } from "../format.js";
+import { h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
 
 const HEIGHT = 22; // of a descriptor's drawing, in its own units
 

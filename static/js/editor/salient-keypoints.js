@@ -1,8 +1,8 @@
 // The salient keypoints: how far each moves, as bars that switch it on and off.
 
-import { h, reconcile } from "../dom.js";
-import { readable } from "../format.js";
-import { change, draft } from "./draft.js";
+import { h, reconcile } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { change, draft } from "./gesture-draft.js";
 
 /** The keypoints that are followed: as chosen, or as proposed. */
 export function chosenIn(preview) {

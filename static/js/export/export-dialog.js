@@ -1,12 +1,12 @@
 // The language as a file for the robot: what it holds, what it needs, and how it is used there.
 
-import * as api from "../api.js";
-import { copy } from "../clipboard.js";
-import { byId, h } from "../dom.js";
-import { bytes, plural, readable } from "../format.js";
-import { state } from "../state.js";
-import { attempt, toast } from "../toasts.js";
-import { tuningWords } from "../tuning.js";
+import * as api from "../core/api.js";
+import { copy } from "../core/clipboard.js";
+import { byId, h } from "../core/dom.js";
+import { bytes, plural, readable } from "../core/format.js";
+import { state } from "../core/state.js";
+import { attempt, toast } from "../core/toasts.js";
+import { tuningWords } from "../languages/language-tuning.js";
 
 const FORMATS = {
   "osg-studio": { title: "OSG Studio language", text: "For osg-studio, here or on a robot. Importing it again gives the same language.", command: (file) => `osg-studio robot --language ${file} --source 0` },

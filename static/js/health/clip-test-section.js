@@ -1,14 +1,14 @@
 // The batch test on the page: drop clips, correct their labels, see what was confused, open the clips.
 
-import { statusText } from "../clips.js";
-import { h, iconButton } from "../dom.js";
-import { plural } from "../format.js";
-import { follow, state, update } from "../state.js";
-import { takeFilesIn } from "../uploads.js";
-import { address, go, here } from "../views.js";
-import { addTestClips, correct, csvOf, leaveOut, leaveWaiting, loadTested, means, repeat, testedOf, waitingClips, workOff } from "./batch.js";
-import { confusionGrid } from "./grid.js";
-import { pairName, pairOf } from "./links.js";
+import { statusText } from "../clips/clip-list.js";
+import { h, iconButton } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { follow, state, update } from "../core/state.js";
+import { takeFilesIn } from "../upload/upload-list.js";
+import { address, go, here } from "../core/views.js";
+import { addTestClips, correct, csvOf, leaveOut, leaveWaiting, loadTested, means, repeat, testedOf, waitingClips, workOff } from "./clip-test.js";
+import { confusionGrid } from "./confusion-grid.js";
+import { pairName, pairOf } from "./finding-links.js";
 
 const REFUSED = "refused";
 const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.

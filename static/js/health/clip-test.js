@@ -3,12 +3,12 @@
 // A take is in the test as long as its newest recognition says what was meant. So the test is the
 // same for everybody, survives reloads, and is repeated whenever the language has changed.
 
-import * as api from "../api.js";
-import { BUSY } from "../clips.js";
-import { proposed } from "../gestures.js";
-import { state, update } from "../state.js";
-import { attempt, complain, toast } from "../toasts.js";
-import { addFiles } from "../uploads.js";
+import * as api from "../core/api.js";
+import { BUSY } from "../clips/clip-list.js";
+import { proposed } from "../studio/gesture-cards.js";
+import { state, update } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { addFiles } from "../upload/upload-list.js";
 
 const KEY = "osg-studio.batch"; // sessionStorage: clips whose poses are still being found, over a reload.
 

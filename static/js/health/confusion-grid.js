@@ -1,6 +1,6 @@
 // A confusion matrix: a grid whose cells are walked by the arrow keys and opened by Enter.
 
-import { h } from "../dom.js";
+import { h } from "../core/dom.js";
 
 const MANY = 12; // Columns; more fit into a page only when their names are written upwards.
 const STRONGEST = 55; // Per cent of the accent in a full cell: the number on it stays readable.

@@ -1,8 +1,8 @@
 // Where a finding leads to: the editor of a gesture, or two gestures side by side.
 
-import { h } from "../dom.js";
-import { state, update } from "../state.js";
-import { address, go, here, knows } from "../views.js";
+import { h } from "../core/dom.js";
+import { state, update } from "../core/state.js";
+import { address, go, here, knows } from "../core/views.js";
 
 /** Two labels as the address names them; a comma in a label is not the one between them. */
 export const pairName = (one, other) => [one, other].map(encodeURIComponent).join(",");

@@ -1,13 +1,13 @@
 // What was found, the worst first, each with what would help and where to do it.
 
-import * as api from "../api.js";
-import { h } from "../dom.js";
-import { edit } from "../gestures.js";
-import { complain } from "../toasts.js";
-import { tellDone } from "../undo.js";
-import { go } from "../views.js";
-import { compare, editLink } from "./links.js";
-import { told } from "./report.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { edit } from "../studio/gesture-cards.js";
+import { complain } from "../core/toasts.js";
+import { tellDone } from "../core/undo.js";
+import { go } from "../core/views.js";
+import { compare, editLink } from "./finding-links.js";
+import { told } from "./report-words.js";
 
 const AT_FIRST = 5; // Warnings shown before the matrix and the map; the worst come first.
 const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.

@@ -1,9 +1,9 @@
 // What is to be expected of each gesture by itself.
 
-import { h } from "../dom.js";
-import { duration, readable } from "../format.js";
-import { editLink } from "./links.js";
-import { percent, told } from "./report.js";
+import { h } from "../core/dom.js";
+import { duration, readable } from "../core/format.js";
+import { editLink } from "./finding-links.js";
+import { percent, told } from "./report-words.js";
 
 /** A rate with a bar of that length and its interval; over the bar it is marked by a sign as well. */
 function rate(forecast, bar) {

@@ -1,19 +1,19 @@
 // The health of the language: what will be confused before the dive, and what its test clips showed.
 
-import * as api from "../api.js";
-import { h } from "../dom.js";
-import { plural } from "../format.js";
-import { follow, state } from "../state.js";
-import { attempt } from "../toasts.js";
-import { go } from "../views.js";
-import { batchSection } from "./batch-section.js";
-import { forecastTable } from "./forecasts.js";
-import { confusionGrid } from "./grid.js";
-import { compare } from "./links.js";
-import { languageMap } from "./map.js";
-import { predicted, showPair } from "./pair.js";
-import { cancel, check, isCurrent, keepChecked, percent, told } from "./report.js";
-import { warningsList } from "./warnings.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { follow, state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { go } from "../core/views.js";
+import { batchSection } from "./clip-test-section.js";
+import { forecastTable } from "./gesture-estimates.js";
+import { confusionGrid } from "./confusion-grid.js";
+import { compare } from "./finding-links.js";
+import { languageMap } from "./language-map.js";
+import { predicted, showPair } from "./pair-page.js";
+import { cancel, check, isCurrent, keepChecked, percent, told } from "./report-words.js";
+import { warningsList } from "./findings-list.js";
 
 const STAGES = { rehearsing: "Rehearsing takes of every gesture", "accidental movements": "Trying accidental movements", remedies: "Trying what would help" };
 

@@ -1,6 +1,6 @@
 // A map of the language: near gestures near, each as its thumbnail; what would overlap is moved apart.
 
-import { h, svg } from "../dom.js";
+import { h, svg } from "../core/dom.js";
 
 const WIDTH = 600;
 const HEIGHT = 420;

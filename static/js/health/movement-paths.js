@@ -1,6 +1,6 @@
 // A demonstration drawn as it moves: the diver's arms at one moment, and the way its hands went.
 
-import { svg } from "../dom.js";
+import { svg } from "../core/dom.js";
 
 const MARGIN = 0.15; // Torso lengths around all that moves.
 

@@ -1,9 +1,9 @@
 // One time cursor over two demonstrations that take their time differently.
 
-import { h, icon, svg } from "../dom.js";
-import { moment } from "../format.js";
-import { bind } from "../keys.js";
-import { state } from "../state.js";
+import { h, icon, svg } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { bind } from "../core/keys.js";
+import { state } from "../core/state.js";
 
 const FREE = 60; // Steps of the cursor where the two cannot be aligned: each shows its own share.
 const LONGEST = 0.5; // Seconds of one step while playing: where one of the two rests, nobody waits.

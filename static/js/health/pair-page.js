@@ -1,15 +1,15 @@
 // Two gestures side by side: their images, their movements on one time cursor, and how they differ.
 
-import * as api from "../api.js";
-import { h, icon } from "../dom.js";
-import { bind } from "../keys.js";
-import { follow, state, update } from "../state.js";
-import { attempt } from "../toasts.js";
-import { stepsOf, timeCursor } from "./cursor.js";
-import { editLink, pairOf } from "./links.js";
-import { boxOf, movingPaths } from "./paths.js";
-import { told } from "./report.js";
-import { warningsList } from "./warnings.js";
+import * as api from "../core/api.js";
+import { h, icon } from "../core/dom.js";
+import { bind } from "../core/keys.js";
+import { follow, state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { stepsOf, timeCursor } from "./pair-cursor.js";
+import { editLink, pairOf } from "./finding-links.js";
+import { boxOf, movingPaths } from "./movement-paths.js";
+import { told } from "./report-words.js";
+import { warningsList } from "./findings-list.js";
 
 const close = () => update({ pair: null });
 

@@ -1,7 +1,7 @@
 // The health report of the language on display: asked for when looked at, with progress and cancel.
 
-import * as api from "../api.js";
-import { state, update } from "../state.js";
+import * as api from "../core/api.js";
+import { state, update } from "../core/state.js";
 
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 

@@ -1,8 +1,8 @@
 // The health of the languages on the cards: asked for when a card is seen, one after the other,
 // since the first answer about a revision takes the server seconds.
 
-import * as api from "../api.js";
-import { plural } from "../format.js";
+import * as api from "../core/api.js";
+import { plural } from "../core/format.js";
 
 const reports = new Map(); // by language and revision; null while it is not known
 const waiting = [];

@@ -1,8 +1,8 @@
 // Two changed the same revision of a language: both versions side by side, and the user picks.
 
-import * as api from "./api.js";
-import { h } from "./dom.js";
-import { ago } from "./format.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { ago } from "../core/format.js";
 
 const cancelled = () => Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
 

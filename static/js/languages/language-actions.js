@@ -1,12 +1,12 @@
 // What can be done with a language as a whole; each can be taken back.
 
-import * as api from "../api.js";
-import { ask } from "../dialogs.js";
-import { edit } from "../gestures.js";
-import { begin, choose, reloadLanguages } from "../languages.js";
-import { state, update } from "../state.js";
-import { attempt } from "../toasts.js";
-import { did, tellDone } from "../undo.js";
+import * as api from "../core/api.js";
+import { ask } from "../core/dialogs.js";
+import { edit } from "../studio/gesture-cards.js";
+import { begin, choose, reloadLanguages } from "./language-store.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { did, tellDone } from "../core/undo.js";
 
 /** Ask for another name and author. */
 export async function rename({ id }) {

@@ -1,14 +1,14 @@
 // A language as a card.
 
-import * as api from "../api.js";
-import { h } from "../dom.js";
-import { ago, dateAndTime, plural } from "../format.js";
-import { choose } from "../languages.js";
-import { menu } from "../menu.js";
-import { state } from "../state.js";
-import { address, go, here } from "../views.js";
-import { duplicate, openHistory, remove, rename } from "./actions.js";
-import { showHealth } from "./health.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { ago, dateAndTime, plural } from "../core/format.js";
+import { choose } from "./language-store.js";
+import { menu } from "../core/menu.js";
+import { state } from "../core/state.js";
+import { address, go, here } from "../core/views.js";
+import { duplicate, openHistory, remove, rename } from "./language-actions.js";
+import { showHealth } from "./card-health.js";
 
 const PICTURES = 5; // A row of a card; the rest are told by their number.
 

@@ -1,14 +1,14 @@
 // Which language is edited, its import and its export.
 
-import * as api from "./api.js";
-import { ask } from "./dialogs.js";
-import { byId, h } from "./dom.js";
-import { openExport } from "./export/dialog.js";
-import { plural } from "./format.js";
-import { refresh } from "./refresh.js";
-import { state, update } from "./state.js";
-import { attempt } from "./toasts.js";
-import { did, tellDone } from "./undo.js";
+import * as api from "../core/api.js";
+import { ask } from "../core/dialogs.js";
+import { byId, h } from "../core/dom.js";
+import { openExport } from "../export/export-dialog.js";
+import { plural } from "../core/format.js";
+import { refresh } from "../core/list-refresh.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { did, tellDone } from "../core/undo.js";
 
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 

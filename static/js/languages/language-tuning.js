@@ -1,11 +1,11 @@
 // How the language on display is recognised, where its author kept what differs from the profile.
 
-import * as api from "./api.js";
-import { byId, h } from "./dom.js";
-import { edit } from "./gestures.js";
-import { state } from "./state.js";
-import { complain } from "./toasts.js";
-import { tellDone } from "./undo.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { edit } from "../studio/gesture-cards.js";
+import { state } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { tellDone } from "../core/undo.js";
 
 const UNTUNED = { profile: "full", tuning: null };
 

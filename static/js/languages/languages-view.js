@@ -1,12 +1,12 @@
 // The library: every language as a card, or the history of one.
 
-import { h, icon, reconcile } from "../dom.js";
-import { plural } from "../format.js";
-import { importLanguage, newLanguage } from "../languages.js";
-import { follow, state } from "../state.js";
-import { drawCard } from "./card.js";
-import { openHistoryPanel } from "./history.js";
-import { drawSamples } from "./samples.js";
+import { h, icon, reconcile } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { importLanguage, newLanguage } from "./language-store.js";
+import { follow, state } from "../core/state.js";
+import { drawCard } from "./language-card.js";
+import { openHistoryPanel } from "./revision-history.js";
+import { drawSamples } from "./sample-languages.js";
 
 const REDRAWN_EVERY = 60000; // ms. "2 minutes ago" grows old.
 

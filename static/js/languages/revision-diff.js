@@ -1,7 +1,7 @@
 // Two revisions of a language side by side, gesture by gesture.
 
-import { h } from "../dom.js";
-import { plural } from "../format.js";
+import { h } from "../core/dom.js";
+import { plural } from "../core/format.js";
 
 const SIGNS = { added: "+", removed: "\u2212", changed: "\u2260", same: "=" };
 

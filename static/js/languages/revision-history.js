@@ -1,14 +1,14 @@
 // A language's history: its revisions with names, and two of them side by side.
 
-import * as api from "../api.js";
-import { h, icon, reconcile } from "../dom.js";
-import { ago, dateAndTime } from "../format.js";
-import { edit } from "../gestures.js";
-import { follow, state, update } from "../state.js";
-import { attempt, complain } from "../toasts.js";
-import { tellDone } from "../undo.js";
-import { address, here } from "../views.js";
-import { drawComparison } from "./comparison.js";
+import * as api from "../core/api.js";
+import { h, icon, reconcile } from "../core/dom.js";
+import { ago, dateAndTime } from "../core/format.js";
+import { edit } from "../studio/gesture-cards.js";
+import { follow, state, update } from "../core/state.js";
+import { attempt, complain } from "../core/toasts.js";
+import { tellDone } from "../core/undo.js";
+import { address, here } from "../core/views.js";
+import { drawComparison } from "./revision-diff.js";
 
 let revisions = []; // of `of`, newest first
 let of = null;

@@ -1,11 +1,11 @@
 // The sample languages that are not in the library, each with a button that brings it.
 
-import * as api from "../api.js";
-import { h } from "../dom.js";
-import { plural } from "../format.js";
-import { state } from "../state.js";
-import { attempt } from "../toasts.js";
-import { addSample } from "./actions.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { addSample } from "./language-actions.js";
 
 let samples = null;
 

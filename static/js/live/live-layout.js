@@ -1,7 +1,7 @@
 // The elements of the view, before anything is seen.
 
-import { h } from "../dom.js";
-import { SALUTE } from "../salute.js";
+import { h } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
 
 const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "false" }, text);
 const check = (id, text, title, checked) => h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);

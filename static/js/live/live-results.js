@@ -1,8 +1,8 @@
 // What was recognised: the newest one large, the others in a list.
 
-import { byId, h } from "../dom.js";
-import { moment, plural } from "../format.js";
-import { go } from "../views.js";
+import { byId, h } from "../core/dom.js";
+import { moment, plural } from "../core/format.js";
+import { go } from "../core/views.js";
 
 const MOST = 50; // in the list; a practice session has fewer.
 

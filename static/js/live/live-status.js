@@ -1,8 +1,8 @@
 // What goes on, in words: the salute, the take, and how fast frames are looked at.
 
-import { byId, h } from "../dom.js";
-import { SALUTE } from "../salute.js";
-import { state as page } from "../state.js";
+import { byId, h } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
+import { state as page } from "../core/state.js";
 
 const FEW = 6; // frames a second: below, a stroke of a second is five points, and looks like any other.
 

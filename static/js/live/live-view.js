@@ -1,19 +1,19 @@
 // The view "Live": a camera, or a clip played as if it were one, and what the recogniser sees in it.
 
-import * as api from "../api.js";
-import { byId, h } from "../dom.js";
-import { bind } from "../keys.js";
-import { follow, state, update } from "../state.js";
-import { toast } from "../toasts.js";
-import { addFiles } from "../uploads.js";
-import { go } from "../views.js";
-import { panel } from "./layout.js";
-import { openLink } from "./link.js";
-import { drawSeen, overlay } from "./overlay.js";
-import { countDown, record } from "./recording.js";
-import { addResult, clearResults, nothingHeard } from "./results.js";
-import { sayState, saySpeed } from "./saying.js";
-import { CAMERA_LOST, cameraPossible, cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./source.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { bind } from "../core/keys.js";
+import { follow, state, update } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+import { addFiles } from "../upload/upload-list.js";
+import { go } from "../core/views.js";
+import { panel } from "./live-layout.js";
+import { openLink } from "./live-socket.js";
+import { drawSeen, overlay } from "./pose-overlay.js";
+import { countDown, record } from "./camera-recording.js";
+import { addResult, clearResults, nothingHeard } from "./live-results.js";
+import { sayState, saySpeed } from "./live-status.js";
+import { CAMERA_LOST, cameraPossible, cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./video-source.js";
 
 const COUNT = 3; // s: from the button to where the diver stands.
 const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.

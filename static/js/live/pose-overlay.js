@@ -1,7 +1,7 @@
 // What is seen, drawn over the picture: the body's skeleton and the hands.
 
-import { svg } from "../dom.js";
-import { drawPose, skeleton } from "../skeleton.js";
+import { svg } from "../core/dom.js";
+import { drawPose, skeleton } from "../core/skeleton.js";
 
 /** Pairs of a hand's landmarks joined by a bone, as positions in `HAND_LANDMARKS`. */
 const HAND_BONES = [

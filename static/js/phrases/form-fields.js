@@ -1,6 +1,6 @@
 // Controls of the form. Each saves when it is left or Enter is pressed; after a redraw the focus is where it was.
 
-import { h, icon } from "../dom.js";
+import { h, icon } from "../core/dom.js";
 
 let drawing = false;
 

@@ -1,10 +1,10 @@
 // The grammar of the language on display, and the steps that change it. Each step is a function of a
 // grammar, so that it can be done again on top of what somebody else did meanwhile.
 
-import * as api from "../api.js";
-import { edit } from "../gestures.js";
-import { state } from "../state.js";
-import { complain } from "../toasts.js";
+import * as api from "../core/api.js";
+import { edit } from "../studio/gesture-cards.js";
+import { state } from "../core/state.js";
+import { complain } from "../core/toasts.js";
 
 const EMPTY = { start: null, end: null, cancel: null, timeout: 10, most_phrases: 1, slot_types: [], phrases: [] };
 

@@ -1,8 +1,8 @@
 // What frames a message: the gestures that open, close and drop it, and how long the diver may pause.
 
-import { h } from "../dom.js";
-import { choice, numberField } from "./fields.js";
-import { grammar, labels, save } from "./grammar.js";
+import { h } from "../core/dom.js";
+import { choice, numberField } from "./form-fields.js";
+import { grammar, labels, save } from "./grammar-edits.js";
 
 const TEXTS = { start: ["Starts with", "none: any phrase may begin"], end: ["Ends with", "none: a pause ends it"], cancel: ["Cancelled by", "none"] };
 

@@ -1,16 +1,16 @@
 // One phrase as a card: at a glance, or open with its form.
 
-import { h, icon } from "../dom.js";
-import { read, written } from "../editor/command.js";
-import { plural } from "../format.js";
-import { state, update } from "../state.js";
-import { toast } from "../toasts.js";
-import { tellDone } from "../undo.js";
-import { sequence } from "./chips.js";
-import { textField, tool } from "./fields.js";
-import { inPhrase, rememberName, save, slotsOf } from "./grammar.js";
-import { addButtons, partList } from "./parts.js";
-import { found, showExample } from "./trial.js";
+import { h, icon } from "../core/dom.js";
+import { read, written } from "../languages/robot-command.js";
+import { plural } from "../core/format.js";
+import { state, update } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+import { tellDone } from "../core/undo.js";
+import { sequence } from "./phrase-sequence.js";
+import { textField, tool } from "./form-fields.js";
+import { inPhrase, rememberName, save, slotsOf } from "./grammar-edits.js";
+import { addButtons, partList } from "./phrase-parts.js";
+import { found, showExample } from "./phrase-trial.js";
 
 const put = (phrase, title, change) => save(title, inPhrase(phrase.name, (whole) => ({ ...whole, ...change })));
 

@@ -1,8 +1,8 @@
 // The parts of a phrase, in the order in which they are shown: gestures, slots, and groups of both.
 
-import { h, icon } from "../dom.js";
-import { checkbox, choice, numberField, textField, tool } from "./fields.js";
-import { gesturePart, grammar, inPart, inParts, inPhrase, labels, moved, save, typed, without, withSlot, withSlotRenamed } from "./grammar.js";
+import { h, icon } from "../core/dom.js";
+import { checkbox, choice, numberField, textField, tool } from "./form-fields.js";
+import { gesturePart, grammar, inPart, inParts, inPhrase, labels, moved, save, typed, without, withSlot, withSlotRenamed } from "./grammar-edits.js";
 
 const idOf = (path) => `part-${path.join("-")}`;
 

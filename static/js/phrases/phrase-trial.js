@@ -1,10 +1,10 @@
 // Trying phrases: gestures are shown by clicking them, and the robot's parser answers.
 
-import * as api from "../api.js";
-import { h, reconcile } from "../dom.js";
-import { follow, state, update } from "../state.js";
-import { attempt } from "../toasts.js";
-import { ROLES, called, grammar, saved } from "./grammar.js";
+import * as api from "../core/api.js";
+import { h, reconcile } from "../core/dom.js";
+import { follow, state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { ROLES, called, grammar, saved } from "./grammar-edits.js";
 
 /** After these a message is over, and the next gesture begins another one. */
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);

@@ -1,16 +1,16 @@
 // The phrases of the language: made in a form, checked as they change, and tried by clicking gestures.
 
-import { h, icon } from "../dom.js";
-import { plural } from "../format.js";
-import { follow, state, update } from "../state.js";
-import { tellDone } from "../undo.js";
-import { go } from "../views.js";
-import { redraw } from "./fields.js";
-import { framePanel } from "./frame.js";
-import { followRefusals, free, grammar, labels, save, withPhrase } from "./grammar.js";
-import { phraseCard } from "./phrase.js";
+import { h, icon } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { follow, state, update } from "../core/state.js";
+import { tellDone } from "../core/undo.js";
+import { go } from "../core/views.js";
+import { redraw } from "./form-fields.js";
+import { framePanel } from "./message-frame.js";
+import { followRefusals, free, grammar, labels, save, withPhrase } from "./grammar-edits.js";
+import { phraseCard } from "./phrase-card.js";
 import { slotTypesPanel } from "./slot-types.js";
-import { followFound, found, show, trialPanel } from "./trial.js";
+import { followFound, found, show, trialPanel } from "./phrase-trial.js";
 
 async function addPhrase() {
   const name = free("phrase", grammar().phrases.map((each) => each.name));

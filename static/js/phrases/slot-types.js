@@ -1,8 +1,8 @@
 // What slots are filled with: gestures, and the value that each stands for.
 
-import { h, icon } from "../dom.js";
-import { choice, textField, tool } from "./fields.js";
-import { grammar, inSlotType, labels, rememberName, save, slotsOf, typed, without, withSlotType, withSlotTypeRenamed } from "./grammar.js";
+import { h, icon } from "../core/dom.js";
+import { choice, textField, tool } from "./form-fields.js";
+import { grammar, inSlotType, labels, rememberName, save, slotsOf, typed, without, withSlotType, withSlotTypeRenamed } from "./grammar-edits.js";
 
 const READS = [["number", "a number each"], ["text", "a word each"], ["digits", "digits of one number"]];
 

@@ -1,10 +1,10 @@
 // The take beside the gestures it is held against: both paths, and which of their moments correspond.
 
-import { h, svg } from "./dom.js";
-import { moment, readable } from "./format.js";
-import { nearestFrame } from "./frames.js";
+import { h, svg } from "../core/dom.js";
+import { moment, readable } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
 import { seek } from "./playback.js";
-import { state, update } from "./state.js";
+import { state, update } from "../core/state.js";
 
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it

@@ -1,13 +1,13 @@
 // The gestures of the language, as cards with their trajectory images.
 
-import * as api from "./api.js";
-import { byId, h, iconButton, reconcile } from "./dom.js";
-import { readable } from "./format.js";
-import { reloadLanguage } from "./languages.js";
-import { selectedClip, state, update } from "./state.js";
-import { complain } from "./toasts.js";
-import { did, tellDone } from "./undo.js";
-import { go } from "./views.js";
+import * as api from "../core/api.js";
+import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { reloadLanguage } from "../languages/language-store.js";
+import { selectedClip, state, update } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { did, tellDone } from "../core/undo.js";
+import { go } from "../core/views.js";
 
 /**
  * Change the language by `change(base)`, which calls the API with the revision `base`; it can be
@@ -20,7 +20,7 @@ export async function edit(doing, title, change, { from = state.gestures, mine =
     made = { before: from.revision, language: await change(from) };
   } catch (error) {
     if (error.status !== 412) throw error;
-    const { settleRace } = await import("./race.js");
+    const { settleRace } = await import("../languages/edit-conflict.js");
     await reloadLanguage();
     made = await settleRace({ doing, title, from, mine, change });
   }

@@ -1,13 +1,13 @@
 // A change on trial: applied at once, recognised again, and then kept or taken back.
 
-import * as api from "./api.js";
-import { h } from "./dom.js";
-import { edit } from "./gestures.js";
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { edit } from "./gesture-cards.js";
 import { rangeOf, recogniseWith } from "./stage.js";
-import { state, update } from "./state.js";
-import { complain, toast } from "./toasts.js";
-import { keepTuning } from "./tuning.js";
-import { tellDone, undo } from "./undo.js";
+import { state, update } from "../core/state.js";
+import { complain, toast } from "../core/toasts.js";
+import { keepTuning } from "../languages/language-tuning.js";
+import { tellDone, undo } from "../core/undo.js";
 
 /** What differs from the profile in the recognition on display. */
 const tuning = () => state.result.tuning ?? state.gestures.tuning ?? { weights: {} };

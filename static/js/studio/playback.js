@@ -1,6 +1,6 @@
 // The clock of the workspace: one for the 3D view, the timeline, and every key.
 
-import { state, update } from "./state.js";
+import { state, update } from "../core/state.js";
 
 const RETRY = 1000; // ms
 

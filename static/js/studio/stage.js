@@ -1,14 +1,14 @@
 // The clip on display: its takes, what is done with them, and what came of it.
 
-import * as api from "./api.js";
-import { byId, h } from "./dom.js";
-import { newLanguage } from "./languages.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { newLanguage } from "../languages/language-store.js";
 import { frameShown } from "./playback.js";
-import { selectedClip, selectedRange, state, update } from "./state.js";
+import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { drawTimeline } from "./timeline.js";
-import { attempt, complain, toast } from "./toasts.js";
+import { attempt, complain, toast } from "../core/toasts.js";
 import { buildTransport } from "./transport.js";
-import { go } from "./views.js";
+import { go } from "../core/views.js";
 import { show } from "./workspace.js";
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.

@@ -1,8 +1,8 @@
 // What lies behind the takes: thumbnails of the clip, the salute's confidence, the wrists' speed.
 
-import * as api from "./api.js";
-import { h, svg } from "./dom.js";
-import { SALUTE } from "./salute.js";
+import * as api from "../core/api.js";
+import { h, svg } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
 
 const HEIGHT = 30; // of the drawing, in its own units
 

@@ -1,11 +1,11 @@
 // The takes of a clip along its time, where the clock stands, and the range the buttons act on.
 
-import { curves, filmstrip, legend } from "./curves.js";
-import { byId, h, icon } from "./dom.js";
-import { moment, plural } from "./format.js";
-import { LEAST_FRAMES, nearestFrame } from "./frames.js";
+import { curves, filmstrip, legend } from "./timeline-curves.js";
+import { byId, h, icon } from "../core/dom.js";
+import { moment, plural } from "../core/format.js";
+import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
 import { seek } from "./playback.js";
-import { selectedClip, selectedRange, state, update } from "./state.js";
+import { selectedClip, selectedRange, state, update } from "../core/state.js";
 
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 

@@ -1,7 +1,7 @@
 // A first visit's tour: a small card that points at what is really there. The page stays usable.
 
-import { byId, h } from "./dom.js";
-import { go } from "./views.js";
+import { byId, h } from "../core/dom.js";
+import { go } from "../core/views.js";
 
 const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
 const GAP = 12; // px between the card and what it points at.

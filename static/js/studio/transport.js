@@ -1,10 +1,10 @@
 // Play, step, speed and loop: the bar under the timeline, and the keys that do the same.
 
-import { byId, h, icon } from "./dom.js";
-import { moment } from "./format.js";
-import { bind } from "./keys.js";
+import { byId, h, icon } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { bind } from "../core/keys.js";
 import { loop, play, step } from "./playback.js";
-import { selectedClip, state, update } from "./state.js";
+import { selectedClip, state, update } from "../core/state.js";
 import { setEnd, setStart } from "./timeline.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2];

@@ -1,13 +1,13 @@
 // What stands in the middle while there is nothing to show yet: the way to begin, or the progress.
 
-import * as api from "./api.js";
-import { addSample, BUSY, needsTopic, samplesList, statusText } from "./clips.js";
-import { byId, h } from "./dom.js";
-import { firstMoment } from "./frames.js";
-import { choose } from "./languages.js";
-import { drawPose, skeleton } from "./skeleton.js";
-import { selectedClip, state, update } from "./state.js";
-import { topicsPanel } from "./topics.js";
+import * as api from "../core/api.js";
+import { addSample, BUSY, needsTopic, samplesList, statusText } from "../clips/clip-list.js";
+import { byId, h } from "../core/dom.js";
+import { firstMoment } from "../core/frame-times.js";
+import { choose } from "../languages/language-store.js";
+import { drawPose, skeleton } from "../core/skeleton.js";
+import { selectedClip, state, update } from "../core/state.js";
+import { topicsPanel } from "../clips/topic-dialog.js";
 
 const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],

@@ -1,12 +1,12 @@
 // Why a recognition came out as it did, where the difference lies, and what would have helped.
 
 import { alignmentsOf } from "./alignment.js";
-import * as api from "./api.js";
-import { byId, h, svg } from "./dom.js";
-import { readable } from "./format.js";
-import { state, update } from "./state.js";
-import { attempt } from "./toasts.js";
-import { trialBar, tryOut } from "./trial.js";
+import * as api from "../core/api.js";
+import { byId, h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { trialBar, tryOut } from "./intervention-trial.js";
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.

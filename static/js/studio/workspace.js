@@ -1,11 +1,11 @@
 // The viser frame: one workspace per tab, kept over reloads, opened anew when the server forgot it.
 
-import * as api from "./api.js";
-import { byId, h } from "./dom.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
 import { followClock, frameShown, rememberFrame } from "./playback.js";
-import { listenToKeys } from "./keys.js";
-import { state } from "./state.js";
-import { complain } from "./toasts.js";
+import { listenToKeys } from "../core/keys.js";
+import { state } from "../core/state.js";
+import { complain } from "../core/toasts.js";
 
 const KEY = "osg-studio.workspace"; // sessionStorage, over a reload: every tab is its own workspace.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.

@@ -1,6 +1,6 @@
 // Other programs' keypoint files: which of the dropped files are some, and what they do not tell.
 
-import { ask } from "./dialogs.js";
+import { ask } from "../core/dialogs.js";
 
 const HEAD = 65536; // bytes of a file that are looked at: what it is stands at its beginning.
 

@@ -1,6 +1,6 @@
 // Sending a file so that a lost connection, a reload or a restarted server loses nothing (tus 1.0.0).
 
-import { ApiError, isAway, problemOf, unreachable } from "./api.js";
+import { ApiError, isAway, problemOf, unreachable } from "../core/api.js";
 
 const PLACE = "/api/v1/uploads";
 const VERSION = { "Tus-Resumable": "1.0.0" };
