@@ -6,8 +6,21 @@ import { copyLink } from "./core/clipboard.js";
 import { drawClips, drawSamples, findClips } from "./clips/clip-list.js";
 import { byId, icon } from "./core/dom.js";
 import { drawGestures } from "./studio/gesture-cards.js";
-import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages/language-store.js";
-import { answerQuestion, drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./studio/stage.js";
+import {
+  drawExport,
+  drawPicker,
+  manageLanguages,
+  reloadLanguages,
+} from "./languages/language-store.js";
+import {
+  answerQuestion,
+  drawOutcome,
+  drawStage,
+  loadResult,
+  loadTakes,
+  showSelection,
+  stageButtons,
+} from "./studio/stage.js";
 import { listenToKeys, showKeys } from "./core/keys.js";
 import { rememberFrame } from "./studio/playback.js";
 import { drawConnection, followServer } from "./core/server-events.js";
@@ -74,8 +87,15 @@ function tellWhatIsGone({ clip, language }) {
   const gone = [
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,
     language && language !== state.language ? "language" : null,
-  ].filter(Boolean).join(" and the ");
-  if (gone) toast(`The ${gone} of this link cannot be found`, `It was deleted, or is in another studio.${state.clips.length ? " Another one is shown instead." : ""}`, { kind: "error" });
+  ]
+    .filter(Boolean)
+    .join(" and the ");
+  if (gone)
+    toast(
+      `The ${gone} of this link cannot be found`,
+      `It was deleted, or is in another studio.${state.clips.length ? " Another one is shown instead." : ""}`,
+      { kind: "error" },
+    );
 }
 
 async function start() {
@@ -107,7 +127,8 @@ async function start() {
   ]);
   update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
   if (linked && clips) tellWhatIsGone({ clip, language });
-  if (state.clip && clips && !selectedClip()) update({ clip: null, take: null, start: null, end: null, recognition: null });
+  if (state.clip && clips && !selectedClip())
+    update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();
   followServer();

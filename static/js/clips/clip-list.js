@@ -11,7 +11,12 @@ import { did, tellDone } from "../core/undo.js";
 
 export const BUSY = new Set(["queued", "running"]);
 const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
-const STAGES = { queued: "Waiting for its turn", starting: "Starting", poses: "Finding poses", saving: "Saving" };
+const STAGES = {
+  queued: "Waiting for its turn",
+  starting: "Starting",
+  poses: "Finding poses",
+  saving: "Saving",
+};
 
 let inView = null; // the clip that the list was last scrolled to
 
@@ -21,12 +26,14 @@ export async function reloadClips() {
 }
 
 /** Load one clip that changed. */
-export const reloadClip = (id) => refresh(id, {
-  load: api.clips.get,
-  current: () => state.clips,
-  order: (one, other) => other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
-  take: (clips) => update({ clips }),
-});
+export const reloadClip = (id) =>
+  refresh(id, {
+    load: api.clips.get,
+    current: () => state.clips,
+    order: (one, other) =>
+      other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
+    take: (clips) => update({ clips }),
+  });
 
 /** Show another clip. */
 export function select(id) {
@@ -53,11 +60,19 @@ export function statusText(clip, job) {
     if (!job?.total || job.stage !== "poses") return stage;
     return `${stage}, ${job.done} of ${job.total} frames${job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`}`;
   }
-  return [clip.duration ? duration(clip.duration) : null, clip.frames ? plural(clip.frames, "frame") : null].filter(Boolean).join(" \u00b7 ");
+  return [
+    clip.duration ? duration(clip.duration) : null,
+    clip.frames ? plural(clip.frames, "frame") : null,
+  ]
+    .filter(Boolean)
+    .join(" \u00b7 ");
 }
 
 async function remove(clip) {
-  const done = await attempt("Deleting the clip", async () => { await api.clips.remove(clip.id); return true; });
+  const done = await attempt("Deleting the clip", async () => {
+    await api.clips.remove(clip.id);
+    return true;
+  });
   if (!done) return;
   const at = state.clips.findIndex(({ id }) => id === clip.id);
   await reloadClips();
@@ -73,9 +88,28 @@ async function retry(clip) {
 }
 
 function buttons(clip) {
-  if (BUSY.has(clip.status)) return [iconButton("close", `Cancel ${clip.name}`, () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id)))];
-  const choose = needsTopic(clip) ? h("button", { type: "button", className: "choose-topic", "aria-label": `Choose the topic of ${clip.name}`, onclick: () => openTopics(clip) }, "Choose\u2026") : null;
-  const again = clip.status === "done" || choose ? null : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
+  if (BUSY.has(clip.status))
+    return [
+      iconButton("close", `Cancel ${clip.name}`, () =>
+        attempt("Cancelling", () => api.jobs.cancel(clip.job_id)),
+      ),
+    ];
+  const choose = needsTopic(clip)
+    ? h(
+        "button",
+        {
+          type: "button",
+          className: "choose-topic",
+          "aria-label": `Choose the topic of ${clip.name}`,
+          onclick: () => openTopics(clip),
+        },
+        "Choose\u2026",
+      )
+    : null;
+  const again =
+    clip.status === "done" || choose
+      ? null
+      : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
   return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
 }
 
@@ -83,7 +117,14 @@ function buttons(clip) {
 function posterOf(clip, element) {
   const known = element?.querySelector(".poster:not(.blank)");
   if (known) return known;
-  const poster = h("img", { className: "poster", src: api.clips.poster(clip.id), alt: "", loading: "lazy", width: 64, height: 48 });
+  const poster = h("img", {
+    className: "poster",
+    src: api.clips.poster(clip.id),
+    alt: "",
+    loading: "lazy",
+    width: 64,
+    height: 48,
+  });
   poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
   return poster;
 }
@@ -107,16 +148,40 @@ function draw(clip, element) {
   drawn.dataset.signature = signature;
   drawn.dataset.shape = shape;
   drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
-  const focused = drawn.contains(document.activeElement) ? document.activeElement.getAttribute("aria-label") : null;
+  const focused = drawn.contains(document.activeElement)
+    ? document.activeElement.getAttribute("aria-label")
+    : null;
   drawn.replaceChildren(
-    h("button", { type: "button", className: "clip-open", "aria-label": `Show ${clip.name}`, title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`, "aria-pressed": String(chosen), onclick: () => select(clip.id) },
+    h(
+      "button",
+      {
+        type: "button",
+        className: "clip-open",
+        "aria-label": `Show ${clip.name}`,
+        title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`,
+        "aria-pressed": String(chosen),
+        onclick: () => select(clip.id),
+      },
       posterOf(clip, element),
-      h("span", { className: "clip-text" },
+      h(
+        "span",
+        { className: "clip-text" },
         h("b", {}, clip.name),
         h("span", { className: "stage-text" }, statusText(clip, job)),
-        busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...(job?.total ? { max: job.total, value: job.done } : {}) }) : null)),
-    h("div", { className: "clip-buttons" }, buttons(clip)));
-  if (focused) [...drawn.querySelectorAll("[aria-label]")].find((each) => each.getAttribute("aria-label") === focused)?.focus();
+        busy
+          ? h("progress", {
+              "aria-label": `Poses of ${clip.name}`,
+              ...(job?.total ? { max: job.total, value: job.done } : {}),
+            })
+          : null,
+      ),
+    ),
+    h("div", { className: "clip-buttons" }, buttons(clip)),
+  );
+  if (focused)
+    [...drawn.querySelectorAll("[aria-label]")]
+      .find((each) => each.getAttribute("aria-label") === focused)
+      ?.focus();
   return drawn;
 }
 
@@ -128,7 +193,8 @@ export function drawClips({ clips, clip: chosen }) {
   const shown = clips.filter(({ name }) => name.toLowerCase().includes(wanted));
   const list = byId("clips");
   reconcile(list, shown, (clip) => clip.id, draw);
-  byId("no-clip").textContent = clips.length && !shown.length ? `No clip is called \u201c${search.value.trim()}\u201d.` : "";
+  byId("no-clip").textContent =
+    clips.length && !shown.length ? `No clip is called \u201c${search.value.trim()}\u201d.` : "";
   if (chosen !== inView && list.clientHeight) bringIntoView(list, chosen);
 }
 
@@ -138,7 +204,8 @@ function bringIntoView(list, chosen) {
   if (!item) return;
   inView = chosen;
   const top = item.offsetTop - list.offsetTop;
-  const seen = top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
+  const seen =
+    top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
   if (!seen) list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
 }
 
@@ -166,14 +233,22 @@ export async function addSample(sample, button) {
 
 /** Make the list of sample clips, each a button that adds it. */
 export function samplesList(samples) {
-  return h("ul", { className: "samples" }, samples.map((sample) => {
-    const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
-    button.onclick = () => addSample(sample, button);
-    return h("li", {}, button);
-  }));
+  return h(
+    "ul",
+    { className: "samples" },
+    samples.map((sample) => {
+      const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
+      button.onclick = () => addSample(sample, button);
+      return h("li", {}, button);
+    }),
+  );
 }
 
 /** Offer the sample clips in the library, folded away. */
 export function drawSamples({ samples }) {
-  byId("samples").replaceChildren(...(samples.length ? [h("details", {}, h("summary", {}, "Sample clips"), samplesList(samples))] : []));
+  byId("samples").replaceChildren(
+    ...(samples.length
+      ? [h("details", {}, h("summary", {}, "Sample clips"), samplesList(samples))]
+      : []),
+  );
 }

@@ -7,18 +7,41 @@ import { duration, plural } from "../core/format.js";
 const USES = { pictures: "Pictures", keypoints: "Keypoints, shown as a skeleton" };
 
 function choice(topic, chosen) {
-  const facts = [topic.type.replace("/msg/", "/"), `${topic.width} \u00d7 ${topic.height}`].join("  \u00b7  ");
-  return h("label", { className: "topic-choice" },
+  const facts = [topic.type.replace("/msg/", "/"), `${topic.width} \u00d7 ${topic.height}`].join(
+    "  \u00b7  ",
+  );
+  return h(
+    "label",
+    { className: "topic-choice" },
     h("input", { type: "radio", name: "topic", value: topic.name, checked: chosen }),
-    h("span", {}, h("b", {}, topic.name), h("span", {}, USES[topic.use]), h("span", { className: "dim" }, facts)),
-    h("small", { className: "dim num" }, `${duration(topic.duration)}, ${plural(topic.messages, "message")}`));
+    h(
+      "span",
+      {},
+      h("b", {}, topic.name),
+      h("span", {}, USES[topic.use]),
+      h("span", { className: "dim" }, facts),
+    ),
+    h(
+      "small",
+      { className: "dim num" },
+      `${duration(topic.duration)}, ${plural(topic.messages, "message")}`,
+    ),
+  );
 }
 
 /** What stands in the middle until a topic is chosen. */
-export const topicsPanel = (clip) => h("div", { className: "welcome-progress topics-panel" },
-  h("h1", {}, `This recording holds ${plural(clip.topics.length, "topic")}`),
-  h("p", { className: "dim" }, "One of them becomes the clip: the one that shows the diver."),
-  h("button", { type: "button", className: "primary", onclick: () => openTopics(clip) }, "Choose a topic"));
+export const topicsPanel = (clip) =>
+  h(
+    "div",
+    { className: "welcome-progress topics-panel" },
+    h("h1", {}, `This recording holds ${plural(clip.topics.length, "topic")}`),
+    h("p", { className: "dim" }, "One of them becomes the clip: the one that shows the diver."),
+    h(
+      "button",
+      { type: "button", className: "primary", onclick: () => openTopics(clip) },
+      "Choose a topic",
+    ),
+  );
 
 /** Let the user choose what a recording's clip is made of. */
 export function openTopics(clip) {
@@ -26,12 +49,28 @@ export function openTopics(clip) {
   if (dialog.open) return; // its card asks again
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const confirm = h("button", { type: "submit", className: "primary" }, "Find poses");
-  const form = h("form", { method: "dialog", className: "topics-dialog" },
+  const form = h(
+    "form",
+    { method: "dialog", className: "topics-dialog" },
     h("h2", { id: "dialog-title" }, "Choose a topic"),
-    h("p", { className: "dim" }, `${clip.name} holds ${plural(clip.topics.length, "topic")} that can become a clip. Choose the one that shows the diver.`),
-    h("div", { role: "radiogroup", "aria-label": "Topic", className: "topic-choices" }, clip.topics.map((topic, index) => choice(topic, index === 0))),
+    h(
+      "p",
+      { className: "dim" },
+      `${clip.name} holds ${plural(clip.topics.length, "topic")} that can become a clip. Choose the one that shows the diver.`,
+    ),
+    h(
+      "div",
+      { role: "radiogroup", "aria-label": "Topic", className: "topic-choices" },
+      clip.topics.map((topic, index) => choice(topic, index === 0)),
+    ),
     problem,
-    h("div", { className: "dialog-actions" }, h("button", { type: "button", onclick: () => dialog.close() }, "Later"), confirm));
+    h(
+      "div",
+      { className: "dialog-actions" },
+      h("button", { type: "button", onclick: () => dialog.close() }, "Later"),
+      confirm,
+    ),
+  );
   form.onsubmit = async (event) => {
     event.preventDefault();
     confirm.disabled = true;

@@ -14,7 +14,14 @@ export class ApiError extends Error {
 
 /** What is told when nobody answered. */
 export const unreachable = () =>
-  new ApiError({ title: "No connection", detail: "The server did not answer. Is it still running? It is tried again by itself.", code: "offline" }, 0);
+  new ApiError(
+    {
+      title: "No connection",
+      detail: "The server did not answer. Is it still running? It is tried again by itself.",
+      code: "offline",
+    },
+    0,
+  );
 
 /** Whether a call failed only because the server is away for now. */
 export const isAway = ({ code }) => code === "offline" || code === "server_stopping";
@@ -80,25 +87,62 @@ export const languages = {
   list: () => request("GET", "/languages"),
   get: (language) => request("GET", `/languages/${id(language)}`),
   create: (name) => request("POST", "/languages", { body: { name } }),
-  change: (language, change) => request("PATCH", `/languages/${id(language.id)}`, { body: change, headers: matching(language) }),
+  change: (language, change) =>
+    request("PATCH", `/languages/${id(language.id)}`, {
+      body: change,
+      headers: matching(language),
+    }),
   duplicate: (language) => request("POST", `/languages/${id(language)}/duplicate`),
   revisions: (language) => request("GET", `/languages/${id(language)}/revisions`),
-  compare: (language, older, newer) => request("GET", `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`),
-  phrases: ({ id: language, revision }, gestures, paused) => request("GET", `/languages/${id(language)}/phrases?${new URLSearchParams([["revision", revision], ["then", paused ? "pause" : "wait"], ...gestures.map((label) => ["gesture", label])])}`),
-  check: (language, revision) => request("GET", `/languages/${id(language)}/check?revision=${revision}`),
-  cancelCheck: (language, revision) => request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
-  contrast: (language, one, other, revision) => request("GET", `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`),
-  image: (language, label, revision) => `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
+  compare: (language, older, newer) =>
+    request(
+      "GET",
+      `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`,
+    ),
+  phrases: ({ id: language, revision }, gestures, paused) =>
+    request(
+      "GET",
+      `/languages/${id(language)}/phrases?${new URLSearchParams([["revision", revision], ["then", paused ? "pause" : "wait"], ...gestures.map((label) => ["gesture", label])])}`,
+    ),
+  check: (language, revision) =>
+    request("GET", `/languages/${id(language)}/check?revision=${revision}`),
+  cancelCheck: (language, revision) =>
+    request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
+  contrast: (language, one, other, revision) =>
+    request(
+      "GET",
+      `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`,
+    ),
+  image: (language, label, revision) =>
+    `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
-  remove: (language) => request("DELETE", `/languages/${id(language.id)}`, "revision" in language ? { headers: matching(language) } : {}),
-  import: (name, text) => request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),
-  revert: (language, revision) => request("POST", `/languages/${id(language.id)}/revert`, { body: { revision }, headers: matching(language) }),
+  remove: (language) =>
+    request(
+      "DELETE",
+      `/languages/${id(language.id)}`,
+      "revision" in language ? { headers: matching(language) } : {},
+    ),
+  import: (name, text) =>
+    request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),
+  revert: (language, revision) =>
+    request("POST", `/languages/${id(language.id)}/revert`, {
+      body: { revision },
+      headers: matching(language),
+    }),
   preview: (language, body) => request("POST", `/languages/${id(language)}/preview`, { body }),
-  previewHealth: (language, body) => request("POST", `/languages/${id(language)}/preview/health`, { body }),
-  demonstration: (language, label) => request("GET", `${gestureAt({ id: language }, label)}/demonstration`),
-  addGesture: (language, gesture) => request("POST", `/languages/${id(language.id)}/gestures`, { body: gesture, headers: matching(language) }),
-  changeGesture: (language, label, change) => request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
-  removeGesture: (language, label) => request("DELETE", gestureAt(language, label), { headers: matching(language) }),
+  previewHealth: (language, body) =>
+    request("POST", `/languages/${id(language)}/preview/health`, { body }),
+  demonstration: (language, label) =>
+    request("GET", `${gestureAt({ id: language }, label)}/demonstration`),
+  addGesture: (language, gesture) =>
+    request("POST", `/languages/${id(language.id)}/gestures`, {
+      body: gesture,
+      headers: matching(language),
+    }),
+  changeGesture: (language, label, change) =>
+    request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
+  removeGesture: (language, label) =>
+    request("DELETE", gestureAt(language, label), { headers: matching(language) }),
   exportContents: (language) => request("GET", `/languages/${id(language)}/export/contents`),
   exportUrl: (language, format) => `${BASE}/languages/${id(language)}/export?format=${format}`,
 };

@@ -8,11 +8,20 @@ export async function copy(text, title, detail = text) {
     await navigator.clipboard.writeText(text);
     toast(title, detail);
   } catch {
-    toast("Could not copy", `The browser does not let this page use the clipboard; select and copy it yourself: ${text}`, { kind: "error" });
+    toast(
+      "Could not copy",
+      `The browser does not let this page use the clipboard; select and copy it yourself: ${text}`,
+      { kind: "error" },
+    );
   }
 }
 
 /** Copy the address: it names all that is on display. */
-export const copyLink = () => copy(location.href, "Link copied", ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname)
-  ? "It shows the same clip, take, frame, language and panel again, on this computer: the studio is served to no other one."
-  : "It shows the same clip, take, frame, language and panel to everyone who reaches this studio.");
+export const copyLink = () =>
+  copy(
+    location.href,
+    "Link copied",
+    ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname)
+      ? "It shows the same clip, take, frame, language and panel again, on this computer: the studio is served to no other one."
+      : "It shows the same clip, take, frame, language and panel to everyone who reaches this studio.",
+  );

@@ -23,16 +23,26 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
       preview,
       fields.map((field, index) => rowOf(field, inputs[index])),
       problem,
-      h("div", { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"), confirm),
+      h(
+        "div",
+        { className: "dialog-actions" },
+        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+        confirm,
+      ),
     );
     form.onsubmit = async (event) => {
       event.preventDefault();
-      const empty = fields.findIndex((field, index) => field.required && !inputs[index].value.trim());
+      const empty = fields.findIndex(
+        (field, index) => field.required && !inputs[index].value.trim(),
+      );
       if (empty >= 0) return tell(`${fields[empty].label} is empty; type one.`, inputs[empty]);
       confirm.disabled = true;
       try {
-        answer = await submit(Object.fromEntries(fields.map((field, index) => [field.name, inputs[index].value.trim()])));
+        answer = await submit(
+          Object.fromEntries(
+            fields.map((field, index) => [field.name, inputs[index].value.trim()]),
+          ),
+        );
         dialog.close();
       } catch (error) {
         if (error.code === "cancelled") return dialog.close();
@@ -55,13 +65,30 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
 }
 
 function inputOf(field) {
-  const properties = { id: `field-${field.name}`, name: field.name, value: field.value ?? "", autocomplete: "off", required: Boolean(field.required), maxLength: field.most ?? 2000 };
-  return field.multiline ? h("textarea", { ...properties, rows: 2 }) : h("input", { ...properties, type: "text" });
+  const properties = {
+    id: `field-${field.name}`,
+    name: field.name,
+    value: field.value ?? "",
+    autocomplete: "off",
+    required: Boolean(field.required),
+    maxLength: field.most ?? 2000,
+  };
+  return field.multiline
+    ? h("textarea", { ...properties, rows: 2 })
+    : h("input", { ...properties, type: "text" });
 }
 
 function rowOf(field, input) {
-  return h("div", { className: "field" },
-    h("label", { for: input.id }, field.label, field.required ? null : h("span", { className: "dim" }, " (optional)")),
+  return h(
+    "div",
+    { className: "field" },
+    h(
+      "label",
+      { for: input.id },
+      field.label,
+      field.required ? null : h("span", { className: "dim" }, " (optional)"),
+    ),
     input,
-    field.hint ? h("p", { className: "dim" }, field.hint) : null);
+    field.hint ? h("p", { className: "dim" }, field.hint) : null,
+  );
 }

@@ -14,7 +14,8 @@ const ICONS = {
   plus: "M10 4v12M4 10h12",
   rename: "M4 16l1-4 8-8 3 3-8 8z",
   retry: "M15.5 6.5A6.5 6.5 0 1 0 16.5 11M16 3v4h-4",
-  salute: "M6 17c-1.5-2-3.5-4-3.5-5.5 1.500-1 2.800.5 3.500 1.300L4.200 5.500c1.500-.8 2.200.3 2.400 1L8 10.500 7.600 3.500c1.500-.5 2 .6 2 1.200l.4 6 2.400-6.500c1.600 0 1.700 1 1.500 1.700L12.200 11l3.300-4c1.300.5 1.300 1.400.8 2.200L13 14.500 12 17z",
+  salute:
+    "M6 17c-1.5-2-3.5-4-3.5-5.5 1.500-1 2.800.5 3.500 1.300L4.200 5.500c1.500-.8 2.200.3 2.400 1L8 10.500 7.600 3.500c1.500-.5 2 .6 2 1.200l.4 6 2.400-6.500c1.600 0 1.700 1 1.500 1.700L12.200 11l3.300-4c1.300.5 1.300 1.400.8 2.200L13 14.500 12 17z",
   trash: "M4 6h12M8 6V4h4v2M6 6l1 10h6l1-10",
   up: "M5 12l5-5 5 5",
 };
@@ -31,7 +32,8 @@ export function h(tag, properties = {}, ...children) {
   for (const [name, value] of Object.entries(properties)) {
     if (value === undefined || value === null) continue;
     if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
-    else if (name === "style") for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
+    else if (name === "style")
+      for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
     else element[name] = value;
   }
   element.append(...children.flat().filter((child) => child !== null && child !== undefined));
@@ -48,12 +50,20 @@ export function svg(tag, attributes = {}, ...children) {
 
 /** Make one of the line icons; it is decoration, so its button needs a label of its own. */
 export function icon(name) {
-  return svg("svg", { viewBox: "0 0 20 20", "aria-hidden": "true" }, svg("path", { d: ICONS[name] }));
+  return svg(
+    "svg",
+    { viewBox: "0 0 20 20", "aria-hidden": "true" },
+    svg("path", { d: ICONS[name] }),
+  );
 }
 
 /** Make a small button that shows only an icon. */
 export function iconButton(name, label, onclick) {
-  return h("button", { type: "button", className: "quiet icon", title: label, "aria-label": label, onclick }, icon(name));
+  return h(
+    "button",
+    { type: "button", className: "quiet icon", title: label, "aria-label": label, onclick },
+    icon(name),
+  );
 }
 
 /**

@@ -23,7 +23,13 @@ export function timeLeft(seconds) {
 }
 
 const RELATIVE = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
-const UNITS = [["year", 31536000], ["month", 2592000], ["day", 86400], ["hour", 3600], ["minute", 60]];
+const UNITS = [
+  ["year", 31536000],
+  ["month", 2592000],
+  ["day", 86400],
+  ["hour", 3600],
+  ["minute", 60],
+];
 
 /** How long ago a moment was. */
 export function ago(moment) {
@@ -33,7 +39,8 @@ export function ago(moment) {
 }
 
 /** A moment in full, as the reader's own system writes it. */
-export const dateAndTime = (moment) => new Date(moment).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+export const dateAndTime = (moment) =>
+  new Date(moment).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 
 /** An identifier, such as a landmark or a voter, in words. */
 export const readable = (identifier) => identifier.replaceAll("_", " ");

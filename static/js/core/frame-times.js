@@ -19,14 +19,21 @@ export function nearestFrame(time, seconds) {
  * A moment inside a frame, so that a video that is sent there shows that frame and not the one
  * before. Of the last frame nobody knows how long it stands: as long as the one before it.
  */
-export const insideFrame = (time, frame) => time[frame] + (time[frame + 1] === undefined ? time[frame] - (time[frame - 1] ?? time[frame]) : time[frame + 1] - time[frame]) / 2;
+export const insideFrame = (time, frame) =>
+  time[frame] +
+  (time[frame + 1] === undefined
+    ? time[frame] - (time[frame - 1] ?? time[frame])
+    : time[frame + 1] - time[frame]) /
+    2;
 
 /**
  * When a video whose source was just set shows its first frame, by its own clock. That is not 0
  * where sound begins before the picture, or where the file was cut out of a longer one.
  */
-export const firstMoment = (video) => new Promise((resolve) => {
-  // Firefox before 132 has no such callback.
-  if (video.requestVideoFrameCallback) video.requestVideoFrameCallback((now, { mediaTime }) => resolve(mediaTime));
-  else video.addEventListener("loadeddata", () => resolve(video.currentTime), { once: true });
-});
+export const firstMoment = (video) =>
+  new Promise((resolve) => {
+    // Firefox before 132 has no such callback.
+    if (video.requestVideoFrameCallback)
+      video.requestVideoFrameCallback((now, { mediaTime }) => resolve(mediaTime));
+    else video.addEventListener("loadeddata", () => resolve(video.currentTime), { once: true });
+  });

@@ -12,20 +12,40 @@ function close(back = false) {
   if (back) menu.querySelector("summary").focus();
 }
 
-addEventListener("click", (event) => { if (open && !open.menu.contains(event.target)) close(); });
+addEventListener("click", (event) => {
+  if (open && !open.menu.contains(event.target)) close();
+});
 
 /**
  * Make a menu. `items` are `{ text, run }`, or `{ text, href }` for a file to download; the arrow
  * keys walk through them.
  */
 export function menu(label, items) {
-  const entry = ({ text, run, href }) => (href
-    ? h("a", { href, download: "", onclick: () => close() }, text)
-    : h("button", { type: "button", onclick: () => { close(true); run(); } }, text));
+  const entry = ({ text, run, href }) =>
+    href
+      ? h("a", { href, download: "", onclick: () => close() }, text)
+      : h(
+          "button",
+          {
+            type: "button",
+            onclick: () => {
+              close(true);
+              run();
+            },
+          },
+          text,
+        );
   const list = h("div", { className: "menu-list" }, items.map(entry));
-  const element = h("details", { className: "menu" },
-    h("summary", { className: "button quiet icon", "aria-label": label, title: label }, icon("more")),
-    list);
+  const element = h(
+    "details",
+    { className: "menu" },
+    h(
+      "summary",
+      { className: "button quiet icon", "aria-label": label, title: label },
+      icon("more"),
+    ),
+    list,
+  );
   element.ontoggle = () => {
     if (element.open) {
       if (open?.menu !== element) close();

@@ -13,7 +13,13 @@ const RETRY = 1000; // ms, as the server asks of the browser
 export function followServer(lost = false) {
   const stream = api.changes();
   let away = lost;
-  const data = (event) => { try { return JSON.parse(event.data); } catch { return {}; } };
+  const data = (event) => {
+    try {
+      return JSON.parse(event.data);
+    } catch {
+      return {};
+    }
+  };
   stream.onopen = () => {
     update({ connected: true });
     // What changed since everything was loaded was not heard of; nothing is sent twice.
@@ -44,7 +50,8 @@ export function followServer(lost = false) {
 /** Say whether the server is there. */
 export function drawConnection({ connected }) {
   const element = byId("connection");
-  element.textContent = { true: "Connected", false: "Reconnecting\u2026" }[connected] ?? "Connecting\u2026";
+  element.textContent =
+    { true: "Connected", false: "Reconnecting\u2026" }[connected] ?? "Connecting\u2026";
   element.classList.toggle("on", connected === true);
   byId("away").hidden = connected !== false;
 }

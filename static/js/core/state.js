@@ -1,15 +1,68 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
-const IN_URL = { view: "view", source: "source", clip: "clip", take: "take", start: "start", end: "end", frame: "frame", language: "language", gesture: "gesture", recognition: "recognition", joint: "joint",
-  panel: "panel", older: "older", newer: "newer", pair: "pair", cell: "cell", phrase: "phrase", shown: "shown", paused: "paused" };
+const IN_URL = {
+  view: "view",
+  source: "source",
+  clip: "clip",
+  take: "take",
+  start: "start",
+  end: "end",
+  frame: "frame",
+  language: "language",
+  gesture: "gesture",
+  recognition: "recognition",
+  joint: "joint",
+  panel: "panel",
+  older: "older",
+  newer: "newer",
+  pair: "pair",
+  cell: "cell",
+  phrase: "phrase",
+  shown: "shown",
+  paused: "paused",
+};
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
 // `returns` counts how often the server came back: what could not be asked meanwhile is asked then.
 const values = {
-  view: null, source: null, clips: [], uploads: [], jobs: new Map(), takes: null, samples: [],
-  timeline: null, position: null, frame: null, languages: [], gestures: null, result: null, why: null, trial: null, question: null, connected: null, returns: 0, loaded: false, health: null, checking: null, recognised: null,
-  clip: null, take: null, start: null, end: null, language: null, gesture: null, recognition: null, joint: null,
-  panel: null, older: null, newer: null, pair: null, cell: null, phrase: null, shown: null, paused: null,
+  view: null,
+  source: null,
+  clips: [],
+  uploads: [],
+  jobs: new Map(),
+  takes: null,
+  samples: [],
+  timeline: null,
+  position: null,
+  frame: null,
+  languages: [],
+  gestures: null,
+  result: null,
+  why: null,
+  trial: null,
+  question: null,
+  connected: null,
+  returns: 0,
+  loaded: false,
+  health: null,
+  checking: null,
+  recognised: null,
+  clip: null,
+  take: null,
+  start: null,
+  end: null,
+  language: null,
+  gesture: null,
+  recognition: null,
+  joint: null,
+  panel: null,
+  older: null,
+  newer: null,
+  pair: null,
+  cell: null,
+  phrase: null,
+  shown: null,
+  paused: null,
 };
 
 const listeners = [];
@@ -26,7 +79,8 @@ export function update(change) {
   Object.assign(values, change);
   // Another view is another page to go back from; the rest is only where one is in it.
   if (!returning && changed.some((name) => name in IN_URL)) writeUrl(changed.includes("view"));
-  for (const { names, react } of listeners) if (names.some((name) => changed.includes(name))) react(values);
+  for (const { names, react } of listeners)
+    if (names.some((name) => changed.includes(name))) react(values);
 }
 
 /** Call `react` now, and whenever one of the named values changes. */
@@ -61,7 +115,8 @@ function writeUrl(another) {
   const query = new URLSearchParams();
   for (const [name, key] of Object.entries(IN_URL)) {
     const value = values[name];
-    if (value !== null && value !== undefined) query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
+    if (value !== null && value !== undefined)
+      query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
   }
   const text = query.toString();
   const url = text ? `?${text}` : location.pathname;
@@ -79,7 +134,8 @@ export function selectedRange() {
   const clip = selectedClip();
   if (!clip) return null;
   const take = values.takes?.[values.take];
-  if (take) return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
+  if (take)
+    return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
   const start = values.start ?? 0;
   const end = values.end ?? lengthOf(clip);
   return { start, end, shown: [start, end], take: null };

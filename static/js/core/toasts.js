@@ -16,7 +16,19 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
     "div",
     { className: `toast ${kind}`, role: kind === "error" ? "alert" : "status" },
     h("div", {}, h("b", {}, title), detail ? h("p", {}, detail) : null),
-    action ? h("button", { type: "button", onclick: () => { close(); action.run(); } }, action.label) : null,
+    action
+      ? h(
+          "button",
+          {
+            type: "button",
+            onclick: () => {
+              close();
+              action.run();
+            },
+          },
+          action.label,
+        )
+      : null,
     iconButton("close", "Dismiss", close),
   );
   element.dataset.text = title + detail;
@@ -24,7 +36,9 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
   let timer = setTimeout(close, SHOWN_FOR[kind]);
   // Nobody loses a message while reading or reaching for it.
   element.onpointerenter = element.onfocusin = () => clearTimeout(timer);
-  element.onpointerleave = element.onfocusout = () => { timer = setTimeout(close, SHOWN_FOR[kind]); };
+  element.onpointerleave = element.onfocusout = () => {
+    timer = setTimeout(close, SHOWN_FOR[kind]);
+  };
   return element;
 }
 
@@ -32,7 +46,9 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
 export function complain(error, doing) {
   if (error.code === "cancelled") return;
   if (!("status" in error)) console.error(error);
-  toast(doing ? `${doing} failed` : error.title ?? "Something went wrong", error.message, { kind: "error" });
+  toast(doing ? `${doing} failed` : (error.title ?? "Something went wrong"), error.message, {
+    kind: "error",
+  });
 }
 
 /** Run a task and show its error, if any, as a toast; the answer is null then. */

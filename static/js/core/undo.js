@@ -10,7 +10,13 @@ import { complain, toast } from "./toasts.js";
 const KEY = "osg-studio.undo"; // sessionStorage: a tab takes back what was done in it.
 const MOST = 100;
 
-const stored = () => { try { return JSON.parse(sessionStorage.getItem(KEY)); } catch { return null; } };
+const stored = () => {
+  try {
+    return JSON.parse(sessionStorage.getItem(KEY));
+  } catch {
+    return null;
+  }
+};
 
 // heads: per language its newest revision as this tab left it, and the one whose content that shows.
 let { done, undone, heads } = stored() ?? { done: [], undone: [], heads: {} };
@@ -28,10 +34,26 @@ export function did(deed) {
 }
 
 const KINDS = {
-  edit: { back: ({ language, before, after }) => turn(language, after, before), again: ({ language, before, after }) => turn(language, before, after) },
-  clip: { back: ({ id }) => api.clips.restore(id).then(reloadClips).then(() => select(id)), again: ({ id }) => api.clips.remove(id).then(reloadClips) },
-  language: { back: ({ id }) => api.languages.restore(id).then(reloadLanguages), again: ({ id }) => api.languages.remove({ id }).then(reloadLanguages) },
-  created: { back: ({ id }) => api.languages.remove({ id }).then(reloadLanguages), again: ({ id }) => api.languages.restore(id).then(reloadLanguages) },
+  edit: {
+    back: ({ language, before, after }) => turn(language, after, before),
+    again: ({ language, before, after }) => turn(language, before, after),
+  },
+  clip: {
+    back: ({ id }) =>
+      api.clips
+        .restore(id)
+        .then(reloadClips)
+        .then(() => select(id)),
+    again: ({ id }) => api.clips.remove(id).then(reloadClips),
+  },
+  language: {
+    back: ({ id }) => api.languages.restore(id).then(reloadLanguages),
+    again: ({ id }) => api.languages.remove({ id }).then(reloadLanguages),
+  },
+  created: {
+    back: ({ id }) => api.languages.remove({ id }).then(reloadLanguages),
+    again: ({ id }) => api.languages.restore(id).then(reloadLanguages),
+  },
 };
 
 /**
@@ -42,7 +64,12 @@ async function turn(language, from, to) {
   const head = await api.languages.get(language);
   const left = heads[language];
   if (left?.revision !== head.revision || left.shows !== from) {
-    throw Object.assign(new Error(`The language was changed elsewhere as well; its newest revision is ${head.revision}. Its history shows every revision, and can go back to any.`), { status: 412 });
+    throw Object.assign(
+      new Error(
+        `The language was changed elsewhere as well; its newest revision is ${head.revision}. Its history shows every revision, and can go back to any.`,
+      ),
+      { status: 412 },
+    );
   }
   const now = await api.languages.revert(head, to);
   heads[language] = { revision: now.revision, shows: to };

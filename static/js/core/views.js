@@ -11,7 +11,12 @@ const FIRST = "studio";
 const VIEWS = [
   { name: FIRST, title: "Studio" },
   { name: "languages", title: "Languages", load: () => import("../languages/languages-view.js") },
-  { name: "gesture", title: "Gesture", load: () => import("../editor/gesture-editor.js"), passing: true },
+  {
+    name: "gesture",
+    title: "Gesture",
+    load: () => import("../editor/gesture-editor.js"),
+    passing: true,
+  },
   { name: "phrases", title: "Phrases", load: () => import("../phrases/phrases-view.js") },
   { name: "health", title: "Health", load: () => import("../health/health-view.js") },
   { name: "live", title: "Live", load: () => import("../live/live-view.js") },
@@ -56,13 +61,18 @@ export const here = (run) => (event) => {
 
 /** Draw the tabs; a link that has the focus keeps it. */
 function drawTabs(current) {
-  reconcile(byId("views"), VIEWS.filter(({ name, passing }) => !passing || name === current), ({ name }) => name, ({ name, title }, known) => {
-    const link = known ?? h("a", { onclick: here(() => go(name)) }, title);
-    link.href = address(name);
-    if (name === current) link.setAttribute("aria-current", "page");
-    else link.removeAttribute("aria-current");
-    return link;
-  });
+  reconcile(
+    byId("views"),
+    VIEWS.filter(({ name, passing }) => !passing || name === current),
+    ({ name }) => name,
+    ({ name, title }, known) => {
+      const link = known ?? h("a", { onclick: here(() => go(name)) }, title);
+      link.href = address(name);
+      if (name === current) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+      return link;
+    },
+  );
 }
 
 /** Show the view that is selected. */

@@ -26,37 +26,100 @@ export function take({ language, gesture, drawn, pick }) {
   let clock = 0; // of the animation that plays
   const picture = figure(pick);
   const clips = h("select", { id: "editor-clip", onchange: () => choose(clips.value) });
-  const takes = h("select", { id: "editor-take", onchange: () => { if (takes.value !== BY_HAND) change({ clip: wholeOf(source.id, source.takes, source.poses.time, Number(takes.value)) }); } });
-  const scrub = h("input", { type: "range", id: "editor-frame", min: 0, step: 1, oninput: () => go(Number(scrub.value)) });
+  const takes = h("select", {
+    id: "editor-take",
+    onchange: () => {
+      if (takes.value !== BY_HAND)
+        change({ clip: wholeOf(source.id, source.takes, source.poses.time, Number(takes.value)) });
+    },
+  });
+  const scrub = h("input", {
+    type: "range",
+    id: "editor-frame",
+    min: 0,
+    step: 1,
+    oninput: () => go(Number(scrub.value)),
+  });
   const clockText = h("output", { className: "num", for: "editor-frame" });
   const playing = h("button", { type: "button", className: "quiet icon", onclick: () => play() });
   const ends = ["start", "end"].map((which) => edge(which));
-  const strip = h("div", { className: "track" }, h("div", { className: "range" }), ends.map((each) => each.handle));
-  const transit = h("input", { type: "checkbox", id: "editor-transit", onchange: () => change({ clip: { ...draft().clip, keep_transit: !transit.checked } }) });
+  const strip = h(
+    "div",
+    { className: "track" },
+    h("div", { className: "range" }),
+    ends.map((each) => each.handle),
+  );
+  const transit = h("input", {
+    type: "checkbox",
+    id: "editor-transit",
+    onchange: () => change({ clip: { ...draft().clip, keep_transit: !transit.checked } }),
+  });
   const transitText = h("small", { className: "dim" });
-  const trim = h("div", { className: "trim" }, strip, h("div", { className: "ends" }, ends.map((each) => each.row)),
-    h("label", { className: "check" }, transit, h("span", {}, "Leave out the hand\u2019s way from and to the salute", transitText)));
+  const trim = h(
+    "div",
+    { className: "trim" },
+    strip,
+    h(
+      "div",
+      { className: "ends" },
+      ends.map((each) => each.row),
+    ),
+    h(
+      "label",
+      { className: "check" },
+      transit,
+      h("span", {}, "Leave out the hand\u2019s way from and to the salute", transitText),
+    ),
+  );
   const note = h("p", { className: "dim" });
-  const played = h("div", { className: "scrub" }, playing, h("label", { className: "visually-hidden", for: "editor-frame" }, "Frame"), scrub, clockText);
+  const played = h(
+    "div",
+    { className: "scrub" },
+    playing,
+    h("label", { className: "visually-hidden", for: "editor-frame" }, "Frame"),
+    scrub,
+    clockText,
+  );
 
   function edge(which) {
     const title = which === "start" ? "Start" : "End";
-    const handle = h("input", { type: "range", className: `handle ${which}`, min: 0, step: 1, "aria-label": `${title} of the demonstration`, title: `${title}: drag, or use the arrow keys, frame by frame` });
+    const handle = h("input", {
+      type: "range",
+      className: `handle ${which}`,
+      min: 0,
+      step: 1,
+      "aria-label": `${title} of the demonstration`,
+      title: `${title}: drag, or use the arrow keys, frame by frame`,
+    });
     const number = h("input", { type: "number", id: `editor-${which}`, min: 0, step: 1 });
     const seconds = h("small", { className: "dim num" });
     handle.oninput = () => move(which, Number(handle.value));
-    number.onchange = () => { if (number.value !== "") move(which, Math.round(Number(number.value))); };
-    return { which, handle, number, seconds, row: h("div", {}, h("label", { for: number.id }, `${title} frame`), number, seconds) };
+    number.onchange = () => {
+      if (number.value !== "") move(which, Math.round(Number(number.value)));
+    };
+    return {
+      which,
+      handle,
+      number,
+      seconds,
+      row: h("div", {}, h("label", { for: number.id }, `${title} frame`), number, seconds),
+    };
   }
 
   function move(which, to) {
     if (!source?.id) return;
-    change({ clip: movedTo(draft().clip, source.takes, source.poses.time, which, to) }, `trim ${which}`);
+    change(
+      { clip: movedTo(draft().clip, source.takes, source.poses.time, which, to) },
+      `trim ${which}`,
+    );
     const [first, last] = span();
     go(which === "start" ? first : last);
   }
 
-  const span = () => (source.id ? framesOf(draft().clip, source.takes, source.poses.time) : [0, source.poses.time.length - 1]);
+  const span = () =>
+    source.id
+      ? framesOf(draft().clip, source.takes, source.poses.time)
+      : [0, source.poses.time.length - 1];
 
   async function choose(id) {
     if (!id) return change({ clip: null });
@@ -68,8 +131,13 @@ export function take({ language, gesture, drawn, pick }) {
 
   function load(id) {
     return attempt("Loading the demonstration", async () => {
-      if (!id) return { id: null, takes: [], poses: await api.languages.demonstration(language, gesture) };
-      const [poses, found, timeline] = await Promise.all([api.clips.poses(id), api.clips.takes(id), api.clips.timeline(id)]);
+      if (!id)
+        return { id: null, takes: [], poses: await api.languages.demonstration(language, gesture) };
+      const [poses, found, timeline] = await Promise.all([
+        api.clips.poses(id),
+        api.clips.takes(id),
+        api.clips.timeline(id),
+      ]);
       return { id, poses, takes: found, timeline };
     });
   }
@@ -114,14 +182,26 @@ export function take({ language, gesture, drawn, pick }) {
 
   function drawChoices() {
     const ready = state.clips.filter((clip) => clip.status === "done");
-    const own = gesture ? saved().clip?.clip_id ?? "" : null; // where the saved demonstration comes from
-    const options = [...(own === "" ? [["", "As it is saved"]] : []), ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name])];
+    const own = gesture ? (saved().clip?.clip_id ?? "") : null; // where the saved demonstration comes from
+    const options = [
+      ...(own === "" ? [["", "As it is saved"]] : []),
+      ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name]),
+    ];
     clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
     clips.value = draft().clip?.clip_id ?? "";
     const several = Boolean(source?.id);
     takes.parentElement.hidden = !several;
     if (!several) return;
-    takes.replaceChildren(...source.takes.map((each, index) => h("option", { value: index }, `Take ${index + 1}, ${moment(each.start)} to ${moment(each.end)}`)), h("option", { value: BY_HAND }, "Range by hand"));
+    takes.replaceChildren(
+      ...source.takes.map((each, index) =>
+        h(
+          "option",
+          { value: index },
+          `Take ${index + 1}, ${moment(each.start)} to ${moment(each.end)}`,
+        ),
+      ),
+      h("option", { value: BY_HAND }, "Range by hand"),
+    );
     const taken = takeOf(draft().clip, source.takes);
     takes.value = taken ? source.takes.indexOf(taken) : BY_HAND;
   }
@@ -132,8 +212,12 @@ export function take({ language, gesture, drawn, pick }) {
     const { time } = source.poses;
     const frames = span();
     ends.forEach(({ which, handle, number, seconds }, index) => {
-      for (const input of [handle, number]) Object.assign(input, { max: time.length - 1, value: frames[index] });
-      handle.setAttribute("aria-valuetext", `frame ${frames[index]}, ${moment(time[frames[index]])}`);
+      for (const input of [handle, number])
+        Object.assign(input, { max: time.length - 1, value: frames[index] });
+      handle.setAttribute(
+        "aria-valuetext",
+        `frame ${frames[index]}, ${moment(time[frames[index]])}`,
+      );
       seconds.textContent = moment(time[frames[index]]);
       seconds.dataset.end = which;
     });
@@ -158,7 +242,10 @@ export function take({ language, gesture, drawn, pick }) {
     const loaded = id === null && (gesture === null || drawn) ? null : await load(id);
     if (opening !== id) return; // Another one is on its way, or this one is shown already.
     opening = undefined;
-    if (!loaded || (draft().clip?.clip_id ?? null) !== id) { element.classList.toggle("bare", !loaded); return; }
+    if (!loaded || (draft().clip?.clip_id ?? null) !== id) {
+      element.classList.toggle("bare", !loaded);
+      return;
+    }
     source = loaded;
     element.classList.remove("bare");
     picture.show(source.poses, id);
@@ -167,23 +254,55 @@ export function take({ language, gesture, drawn, pick }) {
     draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
     go(span()[0]);
     const clip = state.clips.find((each) => each.id === id);
-    if (clip && strip.clientWidth) strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
+    if (clip && strip.clientWidth)
+      strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
   }
 
   function draw(preview) {
     chosen = chosenIn(preview);
     drawChoices();
-    note.textContent = draft().clip ? "" : drawn ? "Imported as a drawing: the demonstration is not in the file, so it cannot be played, trimmed or followed by other keypoints. Show the gesture anew from a clip." : "The demonstration as the language keeps it; its clip is not here, or no longer. To trim it, or to show the gesture anew, choose a clip.";
+    note.textContent = draft().clip
+      ? ""
+      : drawn
+        ? "Imported as a drawing: the demonstration is not in the file, so it cannot be played, trimmed or followed by other keypoints. Show the gesture anew from a clip."
+        : "The demonstration as the language keeps it; its clip is not here, or no longer. To trim it, or to show the gesture anew, choose a clip.";
     note.hidden = Boolean(draft().clip);
     drawTrim();
     if (source) go(frame);
     return open();
   }
   drawPlaying();
-  const element = h("section", { className: "panel take-panel", "aria-label": "Demonstration" },
-    h("div", { className: "panel-head" }, h("h2", {}, "Demonstration"),
-      h("span", { className: "choose" }, h("label", { className: "visually-hidden", for: "editor-clip" }, "Clip"), clips),
-      h("span", { className: "choose" }, h("label", { className: "visually-hidden", for: "editor-take" }, "Take"), takes)),
-    picture.element, played, note, trim);
-  return { element, draw, play, pause, step: (by) => go(frame + by), setHere: (which) => move(which, frame) };
+  const element = h(
+    "section",
+    { className: "panel take-panel", "aria-label": "Demonstration" },
+    h(
+      "div",
+      { className: "panel-head" },
+      h("h2", {}, "Demonstration"),
+      h(
+        "span",
+        { className: "choose" },
+        h("label", { className: "visually-hidden", for: "editor-clip" }, "Clip"),
+        clips,
+      ),
+      h(
+        "span",
+        { className: "choose" },
+        h("label", { className: "visually-hidden", for: "editor-take" }, "Take"),
+        takes,
+      ),
+    ),
+    picture.element,
+    played,
+    note,
+    trim,
+  );
+  return {
+    element,
+    draw,
+    play,
+    pause,
+    step: (by) => go(frame + by),
+    setHere: (which) => move(which, frame),
+  };
 }

@@ -54,7 +54,9 @@ export function change(values, field = null) {
 }
 
 /** The text field was left: what is typed next is another step. */
-export const rest = () => { typing = null; };
+export const rest = () => {
+  typing = null;
+};
 
 export function undo() {
   if (!canUndo()) return;
@@ -90,7 +92,9 @@ function keep() {
   try {
     if (isChanged()) localStorage.setItem(place, JSON.stringify({ values: now, time: Date.now() }));
     else forget();
-  } catch { /* A full or forbidden store: the draft lives as long as its tab. */ }
+  } catch {
+    /* A full or forbidden store: the draft lives as long as its tab. */
+  }
 }
 
 function read(at) {

@@ -10,7 +10,21 @@ import { attempt, complain, toast } from "../core/toasts.js";
 import { tellDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
 import { written } from "../languages/robot-command.js";
-import { begin, canRedo, canUndo, change, discard, draft, forget, isChanged, isKept, placeOf, redo, saved, undo } from "./gesture-draft.js";
+import {
+  begin,
+  canRedo,
+  canUndo,
+  change,
+  discard,
+  draft,
+  forget,
+  isChanged,
+  isKept,
+  placeOf,
+  redo,
+  saved,
+  undo,
+} from "./gesture-draft.js";
 import { switches, textProblem, texts } from "./gesture-form.js";
 import { keypoints, toggle } from "./salient-keypoints.js";
 import { mayLeave } from "./leave-dialog.js";
@@ -28,35 +42,78 @@ function subject() {
   const { gestures, gesture, clip, clips, loaded } = state;
   if (!gestures || gestures.id !== state.language || !loaded) return null;
   if (gesture) return { language: gestures, gesture, key: `${gestures.id} ${gesture}` };
-  if (!clip || !clips.some((each) => each.id === clip && each.status === "done") || !state.takes || !state.timeline) return null;
+  if (
+    !clip ||
+    !clips.some((each) => each.id === clip && each.status === "done") ||
+    !state.takes ||
+    !state.timeline
+  )
+    return null;
   return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
 }
 
 /** Whether the clip of a demonstration can be shown. */
-const isThere = (where) => Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
+const isThere = (where) =>
+  Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
 
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = selectedRange();
-    return { label: "", description: "", command: "", salient: null, direction: "auto", tempo: "auto", mirror: "auto", clip: { clip_id: state.clip, start, end, keep_transit: false } };
+    return {
+      label: "",
+      description: "",
+      command: "",
+      salient: null,
+      direction: "auto",
+      tempo: "auto",
+      mirror: "auto",
+      clip: { clip_id: state.clip, start, end, keep_transit: false },
+    };
   }
-  const { label, description, command, salient, direction, tempo, mirror, source } = language.gestures.find((each) => each.label === gesture);
-  return { label, description, command: written(command), salient: [...salient].sort(), direction, tempo, mirror, clip: isThere(source) ? source : null };
+  const { label, description, command, salient, direction, tempo, mirror, source } =
+    language.gestures.find((each) => each.label === gesture);
+  return {
+    label,
+    description,
+    command: written(command),
+    salient: [...salient].sort(),
+    direction,
+    tempo,
+    mirror,
+    clip: isThere(source) ? source : null,
+  };
 }
 
 function build(section, about) {
   const { language, gesture } = about;
-  const others = () => state.gestures.gestures.map((each) => each.label).filter((label) => label !== gesture);
-  const drawn = gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
+  const others = () =>
+    state.gestures.gestures.map((each) => each.label).filter((label) => label !== gesture);
+  const drawn =
+    gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
   let preview = null;
   let outlook = null;
   let before = null; // the outlook of what is saved
-  const pick = (landmark) => { if (!toggle(landmark, preview)) toast("One keypoint stays", "At least one keypoint is followed; choose another one first."); };
-  const parts = { take: take({ language: language.id, gesture, drawn, pick }), image: image(), keypoints: keypoints(() => preview), health: health(language.name), texts: texts(others), switches: switches() };
-  const button = (text, title, run, className = "") => h("button", { type: "button", className, title, onclick: run }, text);
+  const pick = (landmark) => {
+    if (!toggle(landmark, preview))
+      toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
+  };
+  const parts = {
+    take: take({ language: language.id, gesture, drawn, pick }),
+    image: image(),
+    keypoints: keypoints(() => preview),
+    health: health(language.name),
+    texts: texts(others),
+    switches: switches(),
+  };
+  const button = (text, title, run, className = "") =>
+    h("button", { type: "button", className, title, onclick: run }, text);
   const undoing = button("Undo", "Undo (Ctrl+Z)", undo);
   const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
-  const saving = h("button", { type: "submit", className: "primary" }, gesture === null ? "Save gesture" : "Save");
+  const saving = h(
+    "button",
+    { type: "submit", className: "primary" },
+    gesture === null ? "Save gesture" : "Save",
+  );
   const status = h("span", { className: "draft-state dim", role: "status" });
   const restored = h("p", { className: "restored", role: "status", hidden: true });
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
@@ -122,20 +179,46 @@ function build(section, about) {
     input?.focus();
   }
 
-  const form = h("form", { className: "editor-page", noValidate: true, onsubmit: submit },
-    h("div", { className: "page-head" },
-      h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`), h("span", { className: "dim in-language" }, `in ${language.name}`), status,
+  const form = h(
+    "form",
+    { className: "editor-page", noValidate: true, onsubmit: submit },
+    h(
+      "div",
+      { className: "page-head" },
+      h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`),
+      h("span", { className: "dim in-language" }, `in ${language.name}`),
+      status,
       h("span", { className: "spacer" }),
-      h("div", { className: "editor-actions" }, undoing, redoing, button("Cancel", "Back without saving", leave), saving)),
-    restored, problem,
-    h("div", { className: "editor-grid" },
+      h(
+        "div",
+        { className: "editor-actions" },
+        undoing,
+        redoing,
+        button("Cancel", "Back without saving", leave),
+        saving,
+      ),
+    ),
+    restored,
+    problem,
+    h(
+      "div",
+      { className: "editor-grid" },
       h("div", { className: "column" }, parts.take.element, parts.keypoints.element),
       h("div", { className: "column" }, parts.image.element, parts.health.element),
-      h("div", { className: "column" }, parts.texts.element, parts.switches.element)));
-  const kept = begin(placeOf(language.id, gesture ?? `new ${state.clip}`), valuesOf(about), changed);
+      h("div", { className: "column" }, parts.texts.element, parts.switches.element),
+    ),
+  );
+  const kept = begin(
+    placeOf(language.id, gesture ?? `new ${state.clip}`),
+    valuesOf(about),
+    changed,
+  );
   if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip }); // It was deleted since.
   if (kept !== null) {
-    restored.replaceChildren(`A draft that was not saved, last changed ${ago(kept)}, is restored.`, button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard));
+    restored.replaceChildren(
+      `A draft that was not saved, last changed ${ago(kept)}, is restored.`,
+      button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard),
+    );
     restored.hidden = false;
   }
   section.replaceChildren(form);
@@ -160,12 +243,17 @@ function left() {
     if (state.language !== language.id) await choose(language.id);
     await go("gesture", { gesture });
   };
-  toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, { action: away ? { label: "Go on editing", run: goOn } : null });
+  toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, {
+    action: away ? { label: "Go on editing", run: goOn } : null,
+  });
 }
 
 /** The language was deleted elsewhere: another one's gesture of the same label is not what was edited. */
 function bereft() {
-  const { gesture, language: { id, name } } = editor.about;
+  const {
+    gesture,
+    language: { id, name },
+  } = editor.about;
   const kept = isKept();
   close();
   go(null, { gesture: null });
@@ -175,7 +263,11 @@ function bereft() {
     await choose(id);
     await go("gesture", { gesture });
   };
-  toast(`\u201c${name}\u201d was deleted elsewhere`, kept ? "The draft is kept, and comes back with the language." : "", { kind: "error", action: { label: "Bring it back", run: restore } });
+  toast(
+    `\u201c${name}\u201d was deleted elsewhere`,
+    kept ? "The draft is kept, and comes back with the language." : "",
+    { kind: "error", action: { label: "Bring it back", run: restore } },
+  );
 }
 
 const leave = () => go(null, { gesture: null });
@@ -183,28 +275,62 @@ const leave = () => go(null, { gesture: null });
 function explain(section) {
   const { gestures, gesture } = state;
   const missing = gestures && gesture && !gestures.gestures.some((each) => each.label === gesture);
-  section.replaceChildren(h("div", { className: "editor-empty" },
-    h("h1", {}, missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"),
-    h("p", { className: "dim" }, missing ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.` : "Choose a gesture of the language, or a take of a clip to make one of."),
-    h("button", { type: "button", className: "primary", onclick: leave }, "Back to the studio")));
+  section.replaceChildren(
+    h(
+      "div",
+      { className: "editor-empty" },
+      h("h1", {}, missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"),
+      h(
+        "p",
+        { className: "dim" },
+        missing
+          ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.`
+          : "Choose a gesture of the language, or a take of a clip to make one of.",
+      ),
+      h("button", { type: "button", className: "primary", onclick: leave }, "Back to the studio"),
+    ),
+  );
 }
 
 /** Build the view, and build it anew when something else is edited. */
 export function open(section) {
-  follow(["view", "gesture", "gestures", "languages", "language", "clip", "clips", "takes", "timeline", "loaded"], () => {
-    if (state.view !== "gesture") return left();
-    if (editor && !state.languages.some(({ id }) => id === editor.about.language.id)) return bereft();
-    const about = subject();
-    const known = about && (about.gesture === null || about.language.gestures.some((each) => each.label === about.gesture));
-    if (!known) {
+  follow(
+    [
+      "view",
+      "gesture",
+      "gestures",
+      "languages",
+      "language",
+      "clip",
+      "clips",
+      "takes",
+      "timeline",
+      "loaded",
+    ],
+    () => {
+      if (state.view !== "gesture") return left();
+      if (editor && !state.languages.some(({ id }) => id === editor.about.language.id))
+        return bereft();
+      const about = subject();
+      const known =
+        about &&
+        (about.gesture === null ||
+          about.language.gestures.some((each) => each.label === about.gesture));
+      if (!known) {
+        left();
+        if (
+          state.loaded &&
+          (state.gestures || !state.languages.length) &&
+          (state.gesture || !state.clip)
+        )
+          explain(section);
+        return undefined;
+      }
+      if (editor?.about.key === about.key) return adopt(about);
       left();
-      if (state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip)) explain(section);
-      return undefined;
-    }
-    if (editor?.about.key === about.key) return adopt(about);
-    left();
-    return build(section, about);
-  });
+      return build(section, about);
+    },
+  );
   // What could not be asked while the server was away is asked now.
   follow(["returns"], () => editor?.changed());
   guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
@@ -215,7 +341,13 @@ const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, 
 keys(["Ctrl+Z"], "Undo in the draft", undo);
 keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
 keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
-for (const [key, by, text] of [[",", -1, "One frame back"], [".", 1, "One frame on"], ["Shift+,", -10, "Ten frames back"], ["Shift+.", 10, "Ten frames on"]]) keys([key], text, () => editor.take.step(by));
+for (const [key, by, text] of [
+  [",", -1, "One frame back"],
+  [".", 1, "One frame on"],
+  ["Shift+,", -10, "Ten frames back"],
+  ["Shift+.", 10, "Ten frames on"],
+])
+  keys([key], text, () => editor.take.step(by));
 keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
 keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
 
@@ -223,6 +355,7 @@ keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
 function adopt(about) {
   const now = about.language.gestures.find((each) => each.label === about.gesture);
   const then = editor.about.language.gestures.find((each) => each.label === about.gesture);
-  const content = (gesture) => gesture && JSON.stringify({ ...gesture, thumbnail: null, source: null });
+  const content = (gesture) =>
+    gesture && JSON.stringify({ ...gesture, thumbnail: null, source: null });
   if (content(now) === content(then)) editor.about.language = about.language;
 }

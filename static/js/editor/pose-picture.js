@@ -80,25 +80,57 @@ export function figure(onPick) {
       circle.classList.toggle("on", chosen.includes(name));
       circle.firstChild.textContent = `${readable(name)}: ${chosen.includes(name) ? "followed; click to leave it out" : "click to follow it"}`;
     });
-    parts.trails.replaceChildren(...chosen.map((name) => svg("path", { d: trail(poses.landmarks.indexOf(name), first, last) })));
-    if (!video.hidden) { wanted = insideFrame(poses.time, frame); seek(); }
+    parts.trails.replaceChildren(
+      ...chosen.map((name) =>
+        svg("path", { d: trail(poses.landmarks.indexOf(name), first, last) }),
+      ),
+    );
+    if (!video.hidden) {
+      wanted = insideFrame(poses.time, frame);
+      seek();
+    }
   }
 
   function trail(index, first, last) {
     if (index < 0) return "";
     let down = false;
-    return poses.xy.slice(first, last + 1).map((points) => {
-      const [x, y] = points[index];
-      const command = x === null ? "" : `${down ? "L" : "M"}${x} ${y}`;
-      down = x !== null;
-      return command;
-    }).join("");
+    return poses.xy
+      .slice(first, last + 1)
+      .map((points) => {
+        const [x, y] = points[index];
+        const command = x === null ? "" : `${down ? "L" : "M"}${x} ${y}`;
+        down = x !== null;
+        return command;
+      })
+      .join("");
   }
   return { element, show, draw };
 }
 
 /** The landmarks in the order of `BONES`: `POSE_LANDMARKS` in app/recognition/landmarks.py. */
 const LANDMARKS = [
-  "nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye", "right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right",
-  ...["shoulder", "elbow", "wrist", "pinky", "index", "thumb", "hip", "knee", "ankle", "heel", "foot_index"].flatMap((part) => [`left_${part}`, `right_${part}`]),
+  "nose",
+  "left_eye_inner",
+  "left_eye",
+  "left_eye_outer",
+  "right_eye_inner",
+  "right_eye",
+  "right_eye_outer",
+  "left_ear",
+  "right_ear",
+  "mouth_left",
+  "mouth_right",
+  ...[
+    "shoulder",
+    "elbow",
+    "wrist",
+    "pinky",
+    "index",
+    "thumb",
+    "hip",
+    "knee",
+    "ankle",
+    "heel",
+    "foot_index",
+  ].flatMap((part) => [`left_${part}`, `right_${part}`]),
 ];

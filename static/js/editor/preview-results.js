@@ -12,27 +12,57 @@ function descriptor({ voter, unit, values }) {
   const most = Math.max(...values.map(Math.abs)) || 1;
   const bars = values.map((value, index) => {
     const size = (HEIGHT / 2) * (Math.abs(value) / most);
-    return svg("rect", { x: index, width: 0.7, y: value < 0 ? HEIGHT / 2 : HEIGHT / 2 - size, height: Math.max(0.3, size) });
+    return svg("rect", {
+      x: index,
+      width: 0.7,
+      y: value < 0 ? HEIGHT / 2 : HEIGHT / 2 - size,
+      height: Math.max(0.3, size),
+    });
   });
-  return h("li", { title: `${readable(voter)}: distances in ${unit}` },
+  return h(
+    "li",
+    { title: `${readable(voter)}: distances in ${unit}` },
     h("span", { className: "name" }, readable(voter)),
     values.length === 1
       ? h("span", { className: "num" }, values[0].toFixed(3))
-      : svg("svg", { viewBox: `0 0 ${values.length} ${HEIGHT}`, preserveAspectRatio: "none", role: "img", "aria-label": `${values.length} numbers, the largest ${most.toFixed(2)}` }, ...bars));
+      : svg(
+          "svg",
+          {
+            viewBox: `0 0 ${values.length} ${HEIGHT}`,
+            preserveAspectRatio: "none",
+            role: "img",
+            "aria-label": `${values.length} numbers, the largest ${most.toFixed(2)}`,
+          },
+          ...bars,
+        ),
+  );
 }
 
 /** Build the image and descriptors. */
 export function image() {
-  const drawing = h("img", { className: "trajectory", alt: "Trajectory image of the gesture", width: 224, height: 224, hidden: true });
+  const drawing = h("img", {
+    className: "trajectory",
+    alt: "Trajectory image of the gesture",
+    width: 224,
+    height: 224,
+    hidden: true,
+  });
   const nothing = h("p", {}, "Nothing to draw yet");
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const list = h("ul", { className: "descriptors", "aria-label": "Descriptors" });
-  const described = h("details", { open: true, hidden: true }, h("summary", {}, "Descriptors of the image"), list);
+  const described = h(
+    "details",
+    { open: true, hidden: true },
+    h("summary", {}, "Descriptors of the image"),
+    list,
+  );
   const length = h("small", { className: "dim num" });
   function draw(preview) {
     if (!preview) return;
     problem.hidden = !preview.problem;
-    problem.textContent = preview.problem ? `It cannot be saved like this: ${preview.problem}.` : "";
+    problem.textContent = preview.problem
+      ? `It cannot be saved like this: ${preview.problem}.`
+      : "";
     drawing.classList.toggle("stale", Boolean(preview.problem));
     length.textContent = preview.seconds === null ? "" : `${preview.seconds.toFixed(2)} s`;
     if (preview.image) {
@@ -43,10 +73,14 @@ export function image() {
     list.replaceChildren(...preview.descriptors.map(descriptor));
   }
   return {
-    element: h("section", { className: "panel image-panel", "aria-label": "Trajectory image" },
+    element: h(
+      "section",
+      { className: "panel image-panel", "aria-label": "Trajectory image" },
       h("div", { className: "panel-head" }, h("h2", {}, "Trajectory image"), length),
-      h("div", { className: "image-box" }, nothing, drawing), problem,
-      described),
+      h("div", { className: "image-box" }, nothing, drawing),
+      problem,
+      described,
+    ),
     draw,
   };
 }
@@ -54,20 +88,59 @@ export function image() {
 /** One forecast, with its bar: a sign and words say what the length does. */
 function forecast(words, share, bar, before) {
   const bad = share.rate > bar;
-  const was = before && percent(before.rate) !== percent(share.rate) ? h("small", { className: "dim" }, ` (saved: ${percent(before.rate)})`) : null;
-  return h("li", { className: bad ? "bad" : "good", title: `95 %: ${percent(share.low)} to ${percent(share.high)}` },
-    h("span", { className: "verdict", role: "img", "aria-label": bad ? "Too often" : "Fine" }, bad ? "!" : "\u2713"),
-    h("span", {}, words, was), h("b", { className: "num" }, percent(share.rate)),
-    h("span", { className: "bar-track" }, h("i", { className: "fill", style: { width: `${100 * Math.min(1, share.rate)}%` } }), h("i", { className: "mark", style: { left: `${100 * bar}%` } })));
+  const was =
+    before && percent(before.rate) !== percent(share.rate)
+      ? h("small", { className: "dim" }, ` (saved: ${percent(before.rate)})`)
+      : null;
+  return h(
+    "li",
+    {
+      className: bad ? "bad" : "good",
+      title: `95 %: ${percent(share.low)} to ${percent(share.high)}`,
+    },
+    h(
+      "span",
+      { className: "verdict", role: "img", "aria-label": bad ? "Too often" : "Fine" },
+      bad ? "!" : "\u2713",
+    ),
+    h("span", {}, words, was),
+    h("b", { className: "num" }, percent(share.rate)),
+    h(
+      "span",
+      { className: "bar-track" },
+      h("i", { className: "fill", style: { width: `${100 * Math.min(1, share.rate)}%` } }),
+      h("i", { className: "mark", style: { left: `${100 * bar}%` } }),
+    ),
+  );
 }
 
 function rows(found, before) {
   const earlier = (label) => before?.pairs.find((pair) => pair.gestures[1] === label)?.confusion;
   return [
-    forecast("Missed: read as another gesture, or refused", found.missed, found.most_missed, before?.missed),
-    ...found.pairs.filter((pair) => pair.confusion).map((pair) => forecast(
-      h("span", {}, "Confused with ", h("b", {}, pair.gestures[1]), pair.distance === null ? "" : h("small", { className: "dim" }, ` distance ${pair.distance.toFixed(2)}`)),
-      pair.confusion, found.most_confusion, earlier(pair.gestures[1]))),
+    forecast(
+      "Missed: read as another gesture, or refused",
+      found.missed,
+      found.most_missed,
+      before?.missed,
+    ),
+    ...found.pairs
+      .filter((pair) => pair.confusion)
+      .map((pair) =>
+        forecast(
+          h(
+            "span",
+            {},
+            "Confused with ",
+            h("b", {}, pair.gestures[1]),
+            pair.distance === null
+              ? ""
+              : h("small", { className: "dim" }, ` distance ${pair.distance.toFixed(2)}`),
+          ),
+          pair.confusion,
+          found.most_confusion,
+          earlier(pair.gestures[1]),
+        ),
+      ),
   ];
 }
 
@@ -77,11 +150,28 @@ export function health(name) {
   const note = h("p", { className: "dim", role: "status" });
   function draw(found, before, problem) {
     list.classList.toggle("stale", !found);
-    if (!found) { note.textContent = problem ? "Nothing to forecast before the gesture is one." : "Rehearsing\u2026"; return; }
+    if (!found) {
+      note.textContent = problem
+        ? "Nothing to forecast before the gesture is one."
+        : "Rehearsing\u2026";
+      return;
+    }
     const empty = found.missed === null;
-    note.textContent = empty ? "Without a demonstration there is nothing to rehearse: show it anew from a clip."
-      : found.pairs.length ? "Of takes by another diver, forecast from rehearsals; the nearest gestures. The line is the bar of the health report." : "The first gesture of a language has nothing to be confused with.";
+    note.textContent = empty
+      ? "Without a demonstration there is nothing to rehearse: show it anew from a clip."
+      : found.pairs.length
+        ? "Of takes by another diver, forecast from rehearsals; the nearest gestures. The line is the bar of the health report."
+        : "The first gesture of a language has nothing to be confused with.";
     list.replaceChildren(...(empty ? [] : rows(found, before)));
   }
-  return { element: h("section", { className: "panel health-panel", "aria-label": "Health" }, h("h2", {}, `Health of ${name} with it`), note, list), draw };
+  return {
+    element: h(
+      "section",
+      { className: "panel health-panel", "aria-label": "Health" },
+      h("h2", {}, `Health of ${name} with it`),
+      note,
+      list,
+    ),
+    draw,
+  };
 }

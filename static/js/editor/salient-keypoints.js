@@ -6,13 +6,18 @@ import { change, draft } from "./gesture-draft.js";
 
 /** The keypoints that are followed: as chosen, or as proposed. */
 export function chosenIn(preview) {
-  return draft().salient ?? (preview?.keypoints ?? []).filter((each) => each.proposed).map((each) => each.landmark);
+  return (
+    draft().salient ??
+    (preview?.keypoints ?? []).filter((each) => each.proposed).map((each) => each.landmark)
+  );
 }
 
 /** Switch a keypoint on or off. The last one stays: without any there is no gesture. */
 export function toggle(landmark, preview) {
   const chosen = chosenIn(preview);
-  const next = chosen.includes(landmark) ? chosen.filter((each) => each !== landmark) : [...chosen, landmark].sort();
+  const next = chosen.includes(landmark)
+    ? chosen.filter((each) => each !== landmark)
+    : [...chosen, landmark].sort();
   if (next.length) change({ salient: next });
   return next.length > 0;
 }
@@ -22,16 +27,53 @@ export function keypoints(latest) {
   let all = false;
   const list = h("ul", { className: "bars", "aria-label": "Keypoints" });
   const note = h("p", { className: "dim" });
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true }, "At least one keypoint is followed; choose another one first.");
-  const every = h("button", { type: "button", className: "link", onclick: () => { all = !all; draw(latest()); } });
-  const proposal = h("button", { type: "button", onclick: () => change({ salient: null }) }, "As proposed");
+  const problem = h(
+    "p",
+    { className: "field-problem", role: "alert", hidden: true },
+    "At least one keypoint is followed; choose another one first.",
+  );
+  const every = h("button", {
+    type: "button",
+    className: "link",
+    onclick: () => {
+      all = !all;
+      draw(latest());
+    },
+  });
+  const proposal = h(
+    "button",
+    { type: "button", onclick: () => change({ salient: null }) },
+    "As proposed",
+  );
 
   function row(keypoint, element, most, threshold, chosen) {
     const { landmark, displacement, seen } = keypoint;
     const on = chosen.includes(landmark);
     if (!element) {
-      const input = h("input", { type: "checkbox", onchange: () => { problem.hidden = toggle(landmark, latest()); draw(latest()); } });
-      element = h("li", {}, h("label", {}, input, h("span", { className: "name" }), h("span", { className: "bar-track" }, h("i", { className: "fill" }), h("i", { className: "mark" })), h("span", { className: "num" })));
+      const input = h("input", {
+        type: "checkbox",
+        onchange: () => {
+          problem.hidden = toggle(landmark, latest());
+          draw(latest());
+        },
+      });
+      element = h(
+        "li",
+        {},
+        h(
+          "label",
+          {},
+          input,
+          h("span", { className: "name" }),
+          h(
+            "span",
+            { className: "bar-track" },
+            h("i", { className: "fill" }),
+            h("i", { className: "mark" }),
+          ),
+          h("span", { className: "num" }),
+        ),
+      );
     }
     element.querySelector("input").checked = on;
     element.classList.toggle("on", on);
@@ -47,20 +89,38 @@ export function keypoints(latest) {
     const found = preview?.keypoints ?? [];
     const chosen = chosenIn(preview);
     problem.hidden = problem.hidden || chosen.length > 1;
-    const shown = found.filter((each) => all || each.usual || each.proposed || chosen.includes(each.landmark));
-    const most = Math.max(preview?.threshold ?? 0, ...found.map((each) => each.displacement)) * 1.04 || 1;
-    reconcile(list, shown, (each) => each.landmark, (each, element) => row(each, element, most, preview.threshold, chosen));
+    const shown = found.filter(
+      (each) => all || each.usual || each.proposed || chosen.includes(each.landmark),
+    );
+    const most =
+      Math.max(preview?.threshold ?? 0, ...found.map((each) => each.displacement)) * 1.04 || 1;
+    reconcile(
+      list,
+      shown,
+      (each) => each.landmark,
+      (each, element) => row(each, element, most, preview.threshold, chosen),
+    );
     every.hidden = found.length === 0;
     every.textContent = all ? "Fewer keypoints" : `All ${found.length} keypoints`;
     proposal.disabled = draft().salient === null || !found.length;
     note.textContent = found.length
       ? `Movement in ${preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent"}. From the line, ${preview.threshold.toFixed(2)}, a keypoint is proposed.`
-      : preview && draft().clip ? "No keypoint is seen in this range of the clip: choose another range, or another clip."
-      : preview ? "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose." : "\u2026";
+      : preview && draft().clip
+        ? "No keypoint is seen in this range of the clip: choose another range, or another clip."
+        : preview
+          ? "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose."
+          : "\u2026";
   }
   return {
-    element: h("section", { className: "panel keypoints", "aria-label": "Salient keypoints" },
-      h("div", { className: "panel-head" }, h("h2", {}, "Salient keypoints"), proposal), note, list, problem, every),
+    element: h(
+      "section",
+      { className: "panel keypoints", "aria-label": "Salient keypoints" },
+      h("div", { className: "panel-head" }, h("h2", {}, "Salient keypoints"), proposal),
+      note,
+      list,
+      problem,
+      every,
+    ),
     draw,
   };
 }

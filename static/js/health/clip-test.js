@@ -12,7 +12,13 @@ import { addFiles } from "../upload/upload-list.js";
 
 const KEY = "osg-studio.batch"; // sessionStorage: clips whose poses are still being found, over a reload.
 
-const stored = () => { try { return JSON.parse(sessionStorage.getItem(KEY)) ?? []; } catch { return []; } };
+const stored = () => {
+  try {
+    return JSON.parse(sessionStorage.getItem(KEY)) ?? [];
+  } catch {
+    return [];
+  }
+};
 
 update({ tested: [], pending: stored() });
 
@@ -29,40 +35,67 @@ export function testedOf(recognitions, clips, profile) {
     const key = `${each.clip_id} ${each.start}`;
     if (each.profile === profile && !each.tuning && !newest.has(key)) newest.set(key, each);
   }
-  return [...newest.values()].filter((each) => each.expected !== null && names.has(each.clip_id))
-    .map((each) => ({ ...each, clip: names.get(each.clip_id), right: each.label === each.expected }))
-    .sort((one, other) => one.clip.localeCompare(other.clip, "en", { numeric: true }) || one.start - other.start);
+  return [...newest.values()]
+    .filter((each) => each.expected !== null && names.has(each.clip_id))
+    .map((each) => ({
+      ...each,
+      clip: names.get(each.clip_id),
+      right: each.label === each.expected,
+    }))
+    .sort(
+      (one, other) =>
+        one.clip.localeCompare(other.clip, "en", { numeric: true }) || one.start - other.start,
+    );
 }
 
 /** Load what was recognised in the language on display. */
 export async function loadTested() {
   const { language } = state;
-  const recognitions = language ? await attempt("Loading the test", () => api.recognitions.list(language)) : [];
+  const recognitions = language
+    ? await attempt("Loading the test", () => api.recognitions.list(language))
+    : [];
   if (recognitions && state.language === language) update({ tested: recognitions });
 }
 
 /** Recognise every take of a clip as `expected`; `ranges` when not all of it. */
 async function recognise(clip, expected, ranges = null) {
-  const takes = ranges ?? await api.clips.takes(clip);
+  const takes = ranges ?? (await api.clips.takes(clip));
   const asked = takes.length > 1 || ranges ? takes.map(({ start, end }) => ({ start, end })) : [{}];
-  for (const range of asked) await api.recognitions.create({ clip_id: clip, language_id: state.language, expected, ...range });
+  for (const range of asked)
+    await api.recognitions.create({
+      clip_id: clip,
+      language_id: state.language,
+      expected,
+      ...range,
+    });
 }
 
 /** Take clips into the test, each with the label that its name begins with. */
 export function addTestClips(files) {
-  addFiles(files, (id) => setPending([...state.pending, { clip: id, language: state.language, expected: null }]));
+  addFiles(files, (id) =>
+    setPending([...state.pending, { clip: id, language: state.language, expected: null }]),
+  );
 }
 
 /** What a pending clip is taken for: what was chosen, or what its name says. */
-export const meantBy = ({ clip, expected }) => expected ?? proposed(state.clips.find(({ id }) => id === clip), state.gestures?.gestures ?? []);
+export const meantBy = ({ clip, expected }) =>
+  expected ??
+  proposed(
+    state.clips.find(({ id }) => id === clip),
+    state.gestures?.gestures ?? [],
+  );
 
 /** Say what a clip that was not recognised yet shows. */
-export const means = (clip, expected) => setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
+export const means = (clip, expected) =>
+  setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
 
 /** A clip that was waiting is recognised, or is no part of the test any more. */
 const forget = (clip) => setPending(state.pending.filter((each) => each.clip !== clip));
 
-const leftOut = (name, run) => toast("Left out of the test", `${name} stays among the clips.`, { action: { label: "Undo", run } });
+const leftOut = (name, run) =>
+  toast("Left out of the test", `${name} stays among the clips.`, {
+    action: { label: "Undo", run },
+  });
 
 /** Leave a clip out of the test that was not recognised yet. */
 export function leaveWaiting({ id, name }) {
@@ -101,15 +134,20 @@ export async function workOff() {
 function ready() {
   if (!state.gestures?.gestures.length) return null;
   const done = new Set(state.clips.filter(({ status }) => status === "done").map(({ id }) => id));
-  return state.pending.find((each) => each.language === state.language && done.has(each.clip) && meantBy(each));
+  return state.pending.find(
+    (each) => each.language === state.language && done.has(each.clip) && meantBy(each),
+  );
 }
 
 /** Clips of the test that are not recognised yet, as `{ clip, expected, busy }` with the clip itself. */
 export function waitingClips() {
-  return state.pending.filter(({ language }) => language === state.language).map((each) => {
-    const clip = state.clips.find(({ id }) => id === each.clip);
-    return clip && { clip, expected: meantBy(each), busy: BUSY.has(clip.status) };
-  }).filter(Boolean);
+  return state.pending
+    .filter(({ language }) => language === state.language)
+    .map((each) => {
+      const clip = state.clips.find(({ id }) => id === each.clip);
+      return clip && { clip, expected: meantBy(each), busy: BUSY.has(clip.status) };
+    })
+    .filter(Boolean);
 }
 
 /** Say that a take shows something else, or, by null, that it is no part of the test. */
@@ -122,18 +160,39 @@ export async function correct({ clip_id: clip, start, end }, expected) {
 export async function repeat(takes, advance) {
   for (const [done, { clip_id: clip, start, end, expected }] of takes.entries()) {
     advance(done);
-    if (!await attempt("Recognising", async () => { await recognise(clip, expected, [{ start, end }]); return true; })) break;
+    if (
+      !(await attempt("Recognising", async () => {
+        await recognise(clip, expected, [{ start, end }]);
+        return true;
+      }))
+    )
+      break;
   }
   await loadTested();
 }
 
-const COLUMNS = ["clip", "start", "end", "expected", "label", "nearest", "confidence", "right", "revision", "id"];
+const COLUMNS = [
+  "clip",
+  "start",
+  "end",
+  "expected",
+  "label",
+  "nearest",
+  "confidence",
+  "right",
+  "revision",
+  "id",
+];
 
 /** A value as CSV (RFC 4180); a text that a spreadsheet would calculate is marked as text. */
 function field(value) {
-  const text = typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
+  const text =
+    typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
 /** The table of takes as a CSV file. */
-export const csvOf = (takes) => [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => take[name]))].map((row) => `${row.map(field).join(",")}\r\n`).join("");
+export const csvOf = (takes) =>
+  [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => take[name]))]
+    .map((row) => `${row.map(field).join(",")}\r\n`)
+    .join("");

@@ -24,5 +24,14 @@ export const compare = (one, other) => update({ pair: pairName(one, other) });
 /** A link to what mends a gesture, or nothing while there is no such view. */
 export function editLink(label, text = `Edit ${label}`) {
   if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
-  return h("a", { className: "button", title: text, href: address("gesture", { gesture: label }), onclick: here(() => go("gesture", { gesture: label })) }, text);
+  return h(
+    "a",
+    {
+      className: "button",
+      title: text,
+      href: address("gesture", { gesture: label }),
+      onclick: here(() => go("gesture", { gesture: label })),
+    },
+    text,
+  );
 }

@@ -16,7 +16,8 @@ const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds nee
 async function switchOn(kind, gestures, text, button) {
   const change = async (base) => {
     let language = base;
-    for (const label of gestures) language = await api.languages.changeGesture(language, label, { [kind]: "on" });
+    for (const label of gestures)
+      language = await api.languages.changeGesture(language, label, { [kind]: "on" });
     return language;
   };
   button.disabled = true;
@@ -36,32 +37,77 @@ function apply(kind, gestures, text) {
 }
 
 function remedy({ kind, gesture, text, before, after }, gestures) {
-  return h("li", { className: "remedy" },
+  return h(
+    "li",
+    { className: "remedy" },
     h("span", { className: "remedy-text" }, text),
-    h("span", { className: "effect num", title: `${told(before)} without, ${told(after)} with it` },
-      h("span", { className: "visually-hidden" }, "confused in "), h("span", {}, told(before)), h("span", { "aria-label": "then" }, "\u2192"), h("b", {}, told(after))),
-    SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture));
+    h(
+      "span",
+      { className: "effect num", title: `${told(before)} without, ${told(after)} with it` },
+      h("span", { className: "visually-hidden" }, "confused in "),
+      h("span", {}, told(before)),
+      h("span", { "aria-label": "then" }, "\u2192"),
+      h("b", {}, told(after)),
+    ),
+    SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture),
+  );
 }
 
 function warning({ code, gestures, message, below_bar: below, remedies }) {
-  const mended = new Set(remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture));
-  return h("li", { className: `finding ${below ? "below" : "note"}` },
+  const mended = new Set(
+    remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture),
+  );
+  return h(
+    "li",
+    { className: `finding ${below ? "below" : "note"}` },
     h("span", { className: "mark", "aria-hidden": "true" }, below ? "!" : "i"),
-    h("div", { className: "finding-text" },
+    h(
+      "div",
+      { className: "finding-text" },
       h("p", {}, h("b", {}, below ? "Below the bar: " : "Note: "), message),
-      remedies.length ? h("p", { className: "dim remedies-title" }, "What would help, and how often the two would be confused then") : null,
-      remedies.length ? h("ul", { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` }, remedies.map((each) => remedy(each, gestures))) : null,
-      h("div", { className: "finding-links" },
-        code?.startsWith("phrases_") ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases") : null,
-        gestures.length === 2 ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two") : null,
-        gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)))));
+      remedies.length
+        ? h(
+            "p",
+            { className: "dim remedies-title" },
+            "What would help, and how often the two would be confused then",
+          )
+        : null,
+      remedies.length
+        ? h(
+            "ul",
+            { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` },
+            remedies.map((each) => remedy(each, gestures)),
+          )
+        : null,
+      h(
+        "div",
+        { className: "finding-links" },
+        code?.startsWith("phrases_")
+          ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
+          : null,
+        gestures.length === 2
+          ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two")
+          : null,
+        gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)),
+      ),
+    ),
+  );
 }
 
 /** Draw the warnings of a report; `only` keeps those about the same gestures. */
 export function warningsList(warnings, only = null) {
-  const shown = only ? warnings.filter(({ gestures }) => gestures.length === only.length && gestures.every((label) => only.includes(label))) : warnings;
+  const shown = only
+    ? warnings.filter(
+        ({ gestures }) =>
+          gestures.length === only.length && gestures.every((label) => only.includes(label)),
+      )
+    : warnings;
   if (!shown.length) return null;
-  const list = h("ul", { className: "findings", "aria-label": "Warnings" }, shown.slice(0, AT_FIRST).map(warning));
+  const list = h(
+    "ul",
+    { className: "findings", "aria-label": "Warnings" },
+    shown.slice(0, AT_FIRST).map(warning),
+  );
   if (shown.length <= AT_FIRST) return list;
   const rest = h("button", { type: "button" }, `Show all ${shown.length} warnings`);
   rest.onclick = () => {

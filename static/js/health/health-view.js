@@ -15,28 +15,71 @@ import { predicted, showPair } from "./pair-page.js";
 import { cancel, check, isCurrent, keepChecked, percent, told } from "./report-words.js";
 import { warningsList } from "./findings-list.js";
 
-const STAGES = { rehearsing: "Rehearsing takes of every gesture", "accidental movements": "Trying accidental movements", remedies: "Trying what would help" };
+const STAGES = {
+  rehearsing: "Rehearsing takes of every gesture",
+  "accidental movements": "Trying accidental movements",
+  remedies: "Trying what would help",
+};
 
-const imageOf = (label) => api.languages.image(state.health?.id ?? state.gestures.id, label, state.health?.shown ?? state.gestures.revision);
+const imageOf = (label) =>
+  api.languages.image(
+    state.health?.id ?? state.gestures.id,
+    label,
+    state.health?.shown ?? state.gestures.revision,
+  );
 
 function verdict({ ok, warnings }) {
   const below = warnings.filter((warning) => warning.below_bar).length;
   const notes = warnings.length - below;
   const text = ok ? "Nothing below the bar" : `${plural(below, "thing")} below the bar`;
-  return h("p", { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
-    h("span", { className: "mark", "aria-hidden": "true" }, ok ? "\u2713" : "!"), h("b", {}, text), notes ? h("span", { className: "dim" }, plural(notes, "note")) : null);
+  return h(
+    "p",
+    { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
+    h("span", { className: "mark", "aria-hidden": "true" }, ok ? "\u2713" : "!"),
+    h("b", {}, text),
+    notes ? h("span", { className: "dim" }, plural(notes, "note")) : null,
+  );
 }
 
 /** What stands above the report while there is a check, or when it was cancelled or failed. */
 function progress({ health }) {
   if (!isCurrent(health) || health.status === "done") return null;
-  const again = h("button", { type: "button", className: "primary", onclick: check }, "Check again");
-  if (health.status === "cancelled") return h("div", { className: "checking" }, h("p", {}, h("b", {}, "The check was cancelled."), " What is shown below, if anything, is of an older revision."), again);
-  if (health.status === "failed") return h("div", { className: "checking", role: "alert" }, h("p", {}, h("b", {}, "The check failed. "), health.error), again);
-  return h("div", { className: "checking" },
-    h("p", {}, h("b", {}, `Checking revision ${health.revision}`), h("span", { className: "dim num" }, "Beginning")),
+  const again = h(
+    "button",
+    { type: "button", className: "primary", onclick: check },
+    "Check again",
+  );
+  if (health.status === "cancelled")
+    return h(
+      "div",
+      { className: "checking" },
+      h(
+        "p",
+        {},
+        h("b", {}, "The check was cancelled."),
+        " What is shown below, if anything, is of an older revision.",
+      ),
+      again,
+    );
+  if (health.status === "failed")
+    return h(
+      "div",
+      { className: "checking", role: "alert" },
+      h("p", {}, h("b", {}, "The check failed. "), health.error),
+      again,
+    );
+  return h(
+    "div",
+    { className: "checking" },
+    h(
+      "p",
+      {},
+      h("b", {}, `Checking revision ${health.revision}`),
+      h("span", { className: "dim num" }, "Beginning"),
+    ),
     h("progress", { "aria-label": "Progress of the check" }),
-    h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"));
+    h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"),
+  );
 }
 
 /** Say how far the check is; the button beside it stays where it is, since it may just be pressed. */
@@ -44,7 +87,8 @@ function advance(bar, { health, checking }) {
   const running = bar.querySelector("progress");
   if (!running || checking?.id !== health.id || checking.revision !== health.revision) return;
   const { stage, done, total } = checking;
-  bar.querySelector(".num").textContent = `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
+  bar.querySelector(".num").textContent =
+    `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
   if (total) Object.assign(running, { max: total, value: done });
   else running.removeAttribute("value");
 }
@@ -55,46 +99,116 @@ function matrix(report) {
     const [one, other] = [report.gestures[row], report.gestures[column]];
     if (row === column) {
       const right = one.missed ? 1 - one.missed.rate : null;
-      return { text: right === null ? "" : `${percent(right)}`, amount: 0, className: "diagonal", label: right === null ? `${one.label}: not known` : `${one.label} is read as itself in ${percent(right)} %` };
+      return {
+        text: right === null ? "" : `${percent(right)}`,
+        amount: 0,
+        className: "diagonal",
+        label:
+          right === null
+            ? `${one.label}: not known`
+            : `${one.label} is read as itself in ${percent(right)} %`,
+      };
     }
     const forecast = predicted(report, one.label, other.label)?.forth;
     const over = forecast && forecast.rate > report.bar.confusion;
     return {
-      text: forecast ? percent(forecast.rate) : "?", amount: forecast?.rate ?? 0, className: over ? "over" : "",
-      label: forecast ? `${one.label} taken for ${other.label}: ${told(forecast)}${over ? ", above the bar" : ""}` : `${one.label} taken for ${other.label}: not known`,
+      text: forecast ? percent(forecast.rate) : "?",
+      amount: forecast?.rate ?? 0,
+      className: over ? "over" : "",
+      label: forecast
+        ? `${one.label} taken for ${other.label}: ${told(forecast)}${over ? ", above the bar" : ""}`
+        : `${one.label} taken for ${other.label}: not known`,
       open: () => compare(one.label, other.label),
     };
   };
-  return confusionGrid({ label: "Predicted confusions, per cent", corner: "shown \u2193  taken for \u2192", rows: heads, columns: heads, cell });
+  return confusionGrid({
+    label: "Predicted confusions, per cent",
+    corner: "shown \u2193  taken for \u2192",
+    rows: heads,
+    columns: heads,
+    cell,
+  });
 }
 
 /** Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with most. */
 function openNearest(report, label) {
   const pair = report.pairs.find(({ gestures }) => gestures.includes(label));
-  compare(label, pair.gestures.find((each) => each !== label));
+  compare(
+    label,
+    pair.gestures.find((each) => each !== label),
+  );
 }
 
-const section = (title, hint, ...content) => h("section", { className: "health-section" }, h("div", { className: "section-head" }, h("h2", {}, title), h("p", { className: "dim" }, hint)), ...content);
+const section = (title, hint, ...content) =>
+  h(
+    "section",
+    { className: "health-section" },
+    h("div", { className: "section-head" }, h("h2", {}, title), h("p", { className: "dim" }, hint)),
+    ...content,
+  );
 
 function drawReport(report) {
   const alone = report.gestures.length === 1;
-  const worst = report.pairs.filter(({ confusion }) => confusion && confusion.rate > report.bar.confusion);
+  const worst = report.pairs.filter(
+    ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
+  );
   const bar = percent(report.bar.confusion);
   return [
     warningsList(report.warnings),
-    alone ? h("div", { className: "health-empty" }, h("p", {}, h("b", {}, "One gesture by itself is confused with nothing")), h("p", { className: "dim" }, "Add a second one, and see here how well the two are told apart."))
-      : h("div", { className: "health-columns" },
-        section("Predicted confusions", `Of a hundred takes of the gesture at the left, how many would be nearer to the one above. Framed: above the bar of ${bar} %. Choose a cell to see the two side by side.`, matrix(report)),
-        section("Map", `Near gestures are alike.${worst.length ? ` Joined: pairs above the bar of ${bar} %.` : ""}`, languageMap({ points: report.map, worst, imageOf, open: (label) => openNearest(report, label) }))),
-    section("Each gesture", `Missed: read as another gesture, or refused. The bar is ${percent(report.bar.missed)} %. False alarms: accidental movements, as reaching or adjusting the mask, taken for it.`, forecastTable(report, imageOf)),
+    alone
+      ? h(
+          "div",
+          { className: "health-empty" },
+          h("p", {}, h("b", {}, "One gesture by itself is confused with nothing")),
+          h(
+            "p",
+            { className: "dim" },
+            "Add a second one, and see here how well the two are told apart.",
+          ),
+        )
+      : h(
+          "div",
+          { className: "health-columns" },
+          section(
+            "Predicted confusions",
+            `Of a hundred takes of the gesture at the left, how many would be nearer to the one above. Framed: above the bar of ${bar} %. Choose a cell to see the two side by side.`,
+            matrix(report),
+          ),
+          section(
+            "Map",
+            `Near gestures are alike.${worst.length ? ` Joined: pairs above the bar of ${bar} %.` : ""}`,
+            languageMap({
+              points: report.map,
+              worst,
+              imageOf,
+              open: (label) => openNearest(report, label),
+            }),
+          ),
+        ),
+    section(
+      "Each gesture",
+      `Missed: read as another gesture, or refused. The bar is ${percent(report.bar.missed)} %. False alarms: accidental movements, as reaching or adjusting the mask, taken for it.`,
+      forecastTable(report, imageOf),
+    ),
   ].filter(Boolean);
 }
 
 function nothing() {
-  return h("div", { className: "health-empty" },
+  return h(
+    "div",
+    { className: "health-empty" },
     h("p", {}, h("b", {}, state.gestures ? "No gestures to check yet" : "No language yet")),
-    h("p", { className: "dim" }, "Save a gesture from a clip; with the second one you see here which are confused, before the dive."),
-    h("button", { type: "button", className: "primary", onclick: () => go("studio") }, "To the clips"));
+    h(
+      "p",
+      { className: "dim" },
+      "Save a gesture from a clip; with the second one you see here which are confused, before the dive.",
+    ),
+    h(
+      "button",
+      { type: "button", className: "primary", onclick: () => go("studio") },
+      "To the clips",
+    ),
+  );
 }
 
 function overview() {
@@ -107,8 +221,12 @@ function overview() {
     const { gestures, health } = state;
     const report = health?.id === gestures?.id ? health?.report : null;
     name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
-    about.textContent = report ? `Revision ${health.shown}, for another diver than the demonstrator, ${report.takes} rehearsed takes of each gesture` : "";
-    says.replaceChildren(...(report && isCurrent(health) && health.status === "done" ? [verdict(report)] : []));
+    about.textContent = report
+      ? `Revision ${health.shown}, for another diver than the demonstrator, ${report.takes} rehearsed takes of each gesture`
+      : "";
+    says.replaceChildren(
+      ...(report && isCurrent(health) && health.status === "done" ? [verdict(report)] : []),
+    );
     bar.replaceChildren(...[gestures?.gestures.length ? progress(state) : null].filter(Boolean));
     advance(bar, state);
   };
@@ -125,7 +243,14 @@ function overview() {
   follow(["gestures", "health"], head);
   follow(["checking"], () => advance(bar, state));
   follow(["gestures", "health", "loaded"], draw);
-  return h("div", { className: "health-page" }, h("div", { className: "health-head" }, h("div", {}, name, about), says), bar, body, batchSection());
+  return h(
+    "div",
+    { className: "health-page" },
+    h("div", { className: "health-head" }, h("div", {}, name, about), says),
+    bar,
+    body,
+    batchSection(),
+  );
 }
 
 /** Build the view. */

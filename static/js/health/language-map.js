@@ -9,14 +9,25 @@ const LABEL = 18; // Height of the line under a thumbnail.
 const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
 
 /** A size of which all fit with room to spare. */
-const sizeOf = (count) => Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
+const sizeOf = (count) =>
+  Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
 
 /** Bring coordinates into the drawing, one scale for both axes. */
 function scaled(places, margin) {
-  const spread = (key) => Math.max(...places.map((place) => place[key])) - Math.min(...places.map((place) => place[key]));
-  const middle = (key) => (Math.max(...places.map((place) => place[key])) + Math.min(...places.map((place) => place[key]))) / 2;
-  const scale = Math.min((WIDTH - 2 * margin) / (spread("x") || 1), (HEIGHT - 2 * margin) / (spread("y") || 1));
-  return places.map(({ x, y }) => ({ x: WIDTH / 2 + scale * (x - middle("x")), y: HEIGHT / 2 + scale * (y - middle("y")) }));
+  const spread = (key) =>
+    Math.max(...places.map((place) => place[key])) - Math.min(...places.map((place) => place[key]));
+  const middle = (key) =>
+    (Math.max(...places.map((place) => place[key])) +
+      Math.min(...places.map((place) => place[key]))) /
+    2;
+  const scale = Math.min(
+    (WIDTH - 2 * margin) / (spread("x") || 1),
+    (HEIGHT - 2 * margin) / (spread("y") || 1),
+  );
+  return places.map(({ x, y }) => ({
+    x: WIDTH / 2 + scale * (x - middle("x")),
+    y: HEIGHT / 2 + scale * (y - middle("y")),
+  }));
 }
 
 function pushApart(one, other, index, width, height) {
@@ -35,7 +46,9 @@ export function apart(places, size) {
   const moved = places.map((place) => ({ ...place }));
   const [width, height] = [size + 8, size + LABEL + 6];
   for (let round = 0; round < ROUNDS; round += 1) {
-    moved.forEach((one, index) => moved.slice(index + 1).forEach((other) => pushApart(one, other, index, width, height)));
+    moved.forEach((one, index) =>
+      moved.slice(index + 1).forEach((other) => pushApart(one, other, index, width, height)),
+    );
     for (const place of moved) {
       const side = Math.max(width, WIDEST * size + 4) / 2;
       place.x = Math.max(side, Math.min(WIDTH - side, place.x));
@@ -58,9 +71,37 @@ export function languageMap({ points, worst, imageOf, open }) {
     const [one, other] = gestures.map((label) => at.get(label));
     return svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
   });
-  const leaders = places.map((place, index) => svg("path", { class: "leader", d: `M${place.x} ${place.y}L${moved[index].x} ${moved[index].y}` }));
-  return h("div", { className: "map" },
+  const leaders = places.map((place, index) =>
+    svg("path", {
+      class: "leader",
+      d: `M${place.x} ${place.y}L${moved[index].x} ${moved[index].y}`,
+    }),
+  );
+  return h(
+    "div",
+    { className: "map" },
     svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, "aria-hidden": "true" }, ...leaders, ...lines),
-    h("ul", { "aria-label": "Map of the language" }, points.map(({ label }, index) => h("li", { style: { left: `${(100 * moved[index].x) / WIDTH}%`, top: `${(100 * moved[index].y) / HEIGHT}%`, width: `${(100 * size) / WIDTH}%` } },
-      h("button", { type: "button", title: label, onclick: () => open(label) }, h("img", { src: imageOf(label), alt: "", loading: "lazy" }), h("span", {}, label))))));
+    h(
+      "ul",
+      { "aria-label": "Map of the language" },
+      points.map(({ label }, index) =>
+        h(
+          "li",
+          {
+            style: {
+              left: `${(100 * moved[index].x) / WIDTH}%`,
+              top: `${(100 * moved[index].y) / HEIGHT}%`,
+              width: `${(100 * size) / WIDTH}%`,
+            },
+          },
+          h(
+            "button",
+            { type: "button", title: label, onclick: () => open(label) },
+            h("img", { src: imageOf(label), alt: "", loading: "lazy" }),
+            h("span", {}, label),
+          ),
+        ),
+      ),
+    ),
+  );
 }

@@ -5,8 +5,13 @@ import { svg } from "../core/dom.js";
 const MARGIN = 0.15; // Torso lengths around all that moves.
 
 const BONES = [
-  ["left_shoulder", "right_shoulder"], ["left_shoulder", "left_elbow"], ["left_elbow", "left_wrist"], ["left_wrist", "left_index"],
-  ["right_shoulder", "right_elbow"], ["right_elbow", "right_wrist"], ["right_wrist", "right_index"],
+  ["left_shoulder", "right_shoulder"],
+  ["left_shoulder", "left_elbow"],
+  ["left_elbow", "left_wrist"],
+  ["left_wrist", "left_index"],
+  ["right_shoulder", "right_elbow"],
+  ["right_elbow", "right_wrist"],
+  ["right_wrist", "right_index"],
 ];
 
 /** The box that holds every place of some gestures, so that both are drawn in one scale. */
@@ -15,7 +20,12 @@ export function boxOf(gestures) {
   if (!places.length) return null;
   const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
   const [left, top] = [Math.min(...xs) - MARGIN, Math.min(...ys) - MARGIN];
-  return { left, top, width: Math.max(...xs) + MARGIN - left, height: Math.max(...ys) + MARGIN - top };
+  return {
+    left,
+    top,
+    width: Math.max(...xs) + MARGIN - left,
+    height: Math.max(...ys) + MARGIN - top,
+  };
 }
 
 /** The place of a landmark at a moment; null where it was not seen. */
@@ -32,12 +42,17 @@ function placeAt({ time }, path, seconds) {
 /** A line along places, interrupted where there is none. */
 function line(places) {
   let down = false;
-  return places.map((place) => {
-    if (!place) { down = false; return ""; }
-    const command = `${down ? "L" : "M"}${place[0].toFixed(3)} ${place[1].toFixed(3)}`;
-    down = true;
-    return command;
-  }).join("");
+  return places
+    .map((place) => {
+      if (!place) {
+        down = false;
+        return "";
+      }
+      const command = `${down ? "L" : "M"}${place[0].toFixed(3)} ${place[1].toFixed(3)}`;
+      down = true;
+      return command;
+    })
+    .join("");
 }
 
 /** Make a drawing of a gesture; `show(seconds)` moves it to a moment. */
@@ -47,14 +62,41 @@ export function movingPaths(gesture, box) {
   const path = (name, d = "") => svg("path", { class: name, d });
   const [bones, trail, dots] = [path("bones"), path("trail"), path("dots")];
   const whole = path("whole", followed.map((name) => line(paths[name])).join(""));
-  const drawing = svg("svg", { class: "paths", viewBox: `${box.left} ${box.top} ${box.width} ${box.height}`, role: "img", "aria-label": `The movement of ${label}` }, bones, whole, trail, dots);
+  const drawing = svg(
+    "svg",
+    {
+      class: "paths",
+      viewBox: `${box.left} ${box.top} ${box.width} ${box.height}`,
+      role: "img",
+      "aria-label": `The movement of ${label}`,
+    },
+    bones,
+    whole,
+    trail,
+    dots,
+  );
   const show = (seconds) => {
     const at = (name) => paths[name] && placeAt(gesture, paths[name], seconds);
     const passed = time.findLastIndex((each) => each <= seconds);
-    bones.setAttribute("d", BONES.filter(([from, to]) => at(from) && at(to)).map(([from, to]) => line([at(from), at(to)])).join(""));
-    trail.setAttribute("d", followed.map((name) => line([...paths[name].slice(0, passed + 1), at(name)])).join(""));
+    bones.setAttribute(
+      "d",
+      BONES.filter(([from, to]) => at(from) && at(to))
+        .map(([from, to]) => line([at(from), at(to)]))
+        .join(""),
+    );
+    trail.setAttribute(
+      "d",
+      followed.map((name) => line([...paths[name].slice(0, passed + 1), at(name)])).join(""),
+    );
     // A line without length has round ends: a dot.
-    dots.setAttribute("d", followed.map(at).filter(Boolean).map(([x, y]) => `M${x} ${y}h0`).join(""));
+    dots.setAttribute(
+      "d",
+      followed
+        .map(at)
+        .filter(Boolean)
+        .map(([x, y]) => `M${x} ${y}h0`)
+        .join(""),
+    );
   };
   return { drawing, show };
 }

@@ -14,7 +14,10 @@ let active = null;
 /** Which moments are shown together: `{ seconds: [one, other], cost }` each. */
 export function stepsOf({ gestures, alignment }) {
   if (!alignment) {
-    return Array.from({ length: FREE + 1 }, (_, step) => ({ seconds: gestures.map(({ time }) => ((time.at(-1) ?? 0) * step) / FREE), cost: 0 }));
+    return Array.from({ length: FREE + 1 }, (_, step) => ({
+      seconds: gestures.map(({ time }) => ((time.at(-1) ?? 0) * step) / FREE),
+      cost: 0,
+    }));
   }
   return alignment.pairs.map(([one, other], index) => ({
     seconds: [alignment.time[one], alignment.gesture_time[other]],
@@ -26,14 +29,37 @@ export function stepsOf({ gestures, alignment }) {
 function strip(steps) {
   const most = Math.max(...steps.map(({ cost }) => cost));
   if (!most) return null;
-  return svg("svg", { class: "strip", viewBox: `0 0 ${steps.length} ${HEIGHT}`, preserveAspectRatio: "none", role: "img", "aria-label": "How much the two differ along the movement" },
-    ...steps.map(({ cost }, index) => svg("rect", { x: index, width: 0.85, y: HEIGHT * (1 - Math.sqrt(cost / most)), height: HEIGHT * Math.sqrt(cost / most) })));
+  return svg(
+    "svg",
+    {
+      class: "strip",
+      viewBox: `0 0 ${steps.length} ${HEIGHT}`,
+      preserveAspectRatio: "none",
+      role: "img",
+      "aria-label": "How much the two differ along the movement",
+    },
+    ...steps.map(({ cost }, index) =>
+      svg("rect", {
+        x: index,
+        width: 0.85,
+        y: HEIGHT * (1 - Math.sqrt(cost / most)),
+        height: HEIGHT * Math.sqrt(cost / most),
+      }),
+    ),
+  );
 }
 
 /** Make the cursor; `show(step)` is called whenever it moves. */
 export function timeCursor(steps, labels, show) {
   const last = steps.length - 1;
-  const slider = h("input", { type: "range", min: 0, max: last, step: 1, value: 0, "aria-label": "Moment of both gestures" });
+  const slider = h("input", {
+    type: "range",
+    min: 0,
+    max: last,
+    step: 1,
+    value: 0,
+    "aria-label": "Moment of both gestures",
+  });
   const clocks = labels.map(() => h("b", { className: "num" }));
   const play = h("button", { type: "button", className: "quiet icon" });
   let timer = null;
@@ -47,16 +73,33 @@ export function timeCursor(steps, labels, show) {
     const step = Math.max(0, Math.min(last, to));
     slider.value = step;
     const { seconds } = steps[step];
-    seconds.forEach((each, index) => { clocks[index].textContent = moment(each); });
-    slider.setAttribute("aria-valuetext", labels.map((label, index) => `${label} at ${moment(seconds[index])}`).join(", "));
+    seconds.forEach((each, index) => {
+      clocks[index].textContent = moment(each);
+    });
+    slider.setAttribute(
+      "aria-valuetext",
+      labels.map((label, index) => `${label} at ${moment(seconds[index])}`).join(", "),
+    );
     show(steps[step]);
   };
-  const stop = () => { clearTimeout(timer); timer = null; face(); };
+  const stop = () => {
+    clearTimeout(timer);
+    timer = null;
+    face();
+  };
   const run = () => {
     const now = Number(slider.value);
     if (!slider.isConnected || now >= last) return stop();
-    const between = steps[now + 1].seconds.map((each, index) => Math.abs(each - steps[now].seconds[index]));
-    timer = setTimeout(() => { move(now + 1); run(); }, 1000 * Math.min(LONGEST, (between[0] + between[1]) / 2));
+    const between = steps[now + 1].seconds.map((each, index) =>
+      Math.abs(each - steps[now].seconds[index]),
+    );
+    timer = setTimeout(
+      () => {
+        move(now + 1);
+        run();
+      },
+      1000 * Math.min(LONGEST, (between[0] + between[1]) / 2),
+    );
     return face();
   };
   const toggle = () => {
@@ -64,20 +107,35 @@ export function timeCursor(steps, labels, show) {
     if (Number(slider.value) >= last) move(0);
     return run();
   };
-  const step = (by) => { stop(); move(Number(slider.value) + by); };
-  slider.oninput = () => { stop(); move(Number(slider.value)); };
+  const step = (by) => {
+    stop();
+    move(Number(slider.value) + by);
+  };
+  slider.oninput = () => {
+    stop();
+    move(Number(slider.value));
+  };
   play.onclick = toggle;
   active = { toggle, step, element: slider };
   face();
   move(0);
-  const element = h("div", { className: "cursor", role: "group", "aria-label": "Both gestures in time" },
-    play, h("div", { className: "cursor-track" }, strip(steps), slider),
-    h("p", { className: "cursor-clock" }, labels.map((label, index) => h("span", {}, label, " ", clocks[index]))));
+  const element = h(
+    "div",
+    { className: "cursor", role: "group", "aria-label": "Both gestures in time" },
+    play,
+    h("div", { className: "cursor-track" }, strip(steps), slider),
+    h(
+      "p",
+      { className: "cursor-clock" },
+      labels.map((label, index) => h("span", {}, label, " ", clocks[index])),
+    ),
+  );
   return { element, stop };
 }
 
 const shown = () => state.view === "health" && Boolean(active?.element.isConnected);
-const key = (keys, text, run) => bind({ keys, text, group: "Two gestures side by side", run, when: shown });
+const key = (keys, text, run) =>
+  bind({ keys, text, group: "Two gestures side by side", run, when: shown });
 key(["Space"], "Play or pause both", () => active.toggle());
 key([","], "One step back", () => active.step(-1));
 key(["."], "One step on", () => active.step(1));

@@ -13,46 +13,97 @@ import { warningsList } from "./findings-list.js";
 
 const close = () => update({ pair: null });
 
-bind({ keys: ["Escape"], text: "Back to all gestures", group: "Two gestures side by side", run: close, when: () => state.view === "health" && state.pair !== null });
+bind({
+  keys: ["Escape"],
+  text: "Back to all gestures",
+  group: "Two gestures side by side",
+  run: close,
+  when: () => state.view === "health" && state.pair !== null,
+});
 
 /** What is predicted of two gestures, from the first's side. */
 export function predicted(report, one, other) {
-  const pair = report?.pairs.find(({ gestures }) => gestures.includes(one) && gestures.includes(other));
+  const pair = report?.pairs.find(
+    ({ gestures }) => gestures.includes(one) && gestures.includes(other),
+  );
   if (!pair) return null;
-  return pair.gestures[0] === one ? { forth: pair.first_as_second, back: pair.second_as_first } : { forth: pair.second_as_first, back: pair.first_as_second };
+  return pair.gestures[0] === one
+    ? { forth: pair.first_as_second, back: pair.second_as_first }
+    : { forth: pair.second_as_first, back: pair.first_as_second };
 }
 
 /** How often each would be taken for the other; empty until the check is done. */
 function rateLines(report, one, other) {
   const rates = predicted(report, one, other);
-  const rate = (forecast, from, to) => (forecast ? h("li", {}, h("b", { className: "num" }, told(forecast)), ` of all takes of ${from} would be nearer to ${to}.`) : null);
+  const rate = (forecast, from, to) =>
+    forecast
+      ? h(
+          "li",
+          {},
+          h("b", { className: "num" }, told(forecast)),
+          ` of all takes of ${from} would be nearer to ${to}.`,
+        )
+      : null;
   return rates ? [rate(rates.forth, one, other), rate(rates.back, other, one)].filter(Boolean) : [];
 }
 
 function sentences([one, other], { differs, alignment }) {
-  const difference = (words, from, to) => (words ? h("li", {}, `${from} differs from ${to} in this: ${words}.`) : null);
-  return h("ul", { className: "pair-words" },
-    differs[0] || differs[1] ? [difference(differs[0], one, other), difference(differs[1], other, one)] : h("li", {}, "How they differ cannot be told: one of them came without its demonstration, or is shown with other joints."),
+  const difference = (words, from, to) =>
+    words ? h("li", {}, `${from} differs from ${to} in this: ${words}.`) : null;
+  return h(
+    "ul",
+    { className: "pair-words" },
+    differs[0] || differs[1]
+      ? [difference(differs[0], one, other), difference(differs[1], other, one)]
+      : h(
+          "li",
+          {},
+          "How they differ cannot be told: one of them came without its demonstration, or is shown with other joints.",
+        ),
     alignment?.mirrored ? h("li", {}, `${other} is compared as its mirror image.`) : null,
-    alignment?.backward ? h("li", {}, `${other} is compared from its end to its start.`) : null);
+    alignment?.backward ? h("li", {}, `${other} is compared from its end to its start.`) : null,
+  );
 }
 
 function figure(gesture, image, drawing) {
-  return h("figure", { className: "pair-gesture" },
+  return h(
+    "figure",
+    { className: "pair-gesture" },
     h("figcaption", {}, h("b", {}, gesture.label), editLink(gesture.label)),
-    h("div", { className: "pair-drawings" },
-      drawing ?? h("p", { className: "dim no-paths" }, "Without a demonstration there is no movement to show."),
-      h("img", { src: image, alt: `Trajectory image of ${gesture.label}`, width: 96, height: 96 })));
+    h(
+      "div",
+      { className: "pair-drawings" },
+      drawing ??
+        h(
+          "p",
+          { className: "dim no-paths" },
+          "Without a demonstration there is no movement to show.",
+        ),
+      h("img", { src: image, alt: `Trajectory image of ${gesture.label}`, width: 96, height: 96 }),
+    ),
+  );
 }
 
 function sideBySide(found, imageOf) {
   const { gestures } = found;
   const labels = gestures.map(({ label }) => label);
   const box = boxOf(gestures);
-  const moving = gestures.map((gesture) => (box && gesture.time.length ? movingPaths(gesture, box) : null));
-  const cursor = moving.every(Boolean) ? timeCursor(stepsOf(found), labels, ({ seconds }) => moving.forEach(({ show }, index) => show(seconds[index]))) : null;
+  const moving = gestures.map((gesture) =>
+    box && gesture.time.length ? movingPaths(gesture, box) : null,
+  );
+  const cursor = moving.every(Boolean)
+    ? timeCursor(stepsOf(found), labels, ({ seconds }) =>
+        moving.forEach(({ show }, index) => show(seconds[index])),
+      )
+    : null;
   return [
-    h("div", { className: "pair-gestures" }, gestures.map((gesture, index) => figure(gesture, imageOf(gesture.label), moving[index]?.drawing))),
+    h(
+      "div",
+      { className: "pair-gestures" },
+      gestures.map((gesture, index) =>
+        figure(gesture, imageOf(gesture.label), moving[index]?.drawing),
+      ),
+    ),
     cursor?.element,
   ];
 }
@@ -67,16 +118,41 @@ export async function showPair(box, imageOf) {
   fill = null;
   const labels = pairOf(pair);
   const known = labels?.every((label) => gestures.labels.includes(label));
-  const title = h("h1", { tabIndex: -1 }, known ? `${labels[0]} and ${labels[1]}` : "No such two gestures");
-  const head = h("div", { className: "page-head" }, h("button", { type: "button", className: "back", onclick: close }, icon("chevron"), "All gestures"), title);
+  const title = h(
+    "h1",
+    { tabIndex: -1 },
+    known ? `${labels[0]} and ${labels[1]}` : "No such two gestures",
+  );
+  const head = h(
+    "div",
+    { className: "page-head" },
+    h(
+      "button",
+      { type: "button", className: "back", onclick: close },
+      icon("chevron"),
+      "All gestures",
+    ),
+    title,
+  );
   box.replaceChildren(head);
   title.focus();
-  if (!known) return box.append(h("p", { className: "dim" }, "The link names gestures that this language does not have, or no longer has."));
-  const found = await attempt("Comparing the gestures", () => api.languages.contrast(gestures.id, ...labels, gestures.revision));
+  if (!known)
+    return box.append(
+      h(
+        "p",
+        { className: "dim" },
+        "The link names gestures that this language does not have, or no longer has.",
+      ),
+    );
+  const found = await attempt("Comparing the gestures", () =>
+    api.languages.contrast(gestures.id, ...labels, gestures.revision),
+  );
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
   const rates = h("ul", { className: "pair-words" });
   const warnings = h("div", { className: "pair-warnings" });
-  box.append(...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings].filter(Boolean));
+  box.append(
+    ...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings].filter(Boolean),
+  );
   fill = () => {
     const report = state.health?.id === gestures.id ? state.health.report : null;
     rates.replaceChildren(...rateLines(report, ...labels));

@@ -6,7 +6,8 @@ import { state, update } from "../core/state.js";
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
 /** Whether a report is of the language and revision on display. */
-export const isCurrent = (health) => Boolean(health && state.gestures && health.key === keyOf(state.gestures));
+export const isCurrent = (health) =>
+  Boolean(health && state.gestures && health.key === keyOf(state.gestures));
 
 /**
  * Check the revision on display. `state.health` is `{ key, id, revision, status, report, error }`; the
@@ -16,20 +17,33 @@ export async function check() {
   const language = state.gestures;
   const key = keyOf(language);
   const known = state.health?.id === language.id ? state.health : null;
-  const base = { key, id: language.id, revision: language.revision, report: known?.report ?? null, shown: known?.shown ?? null };
-  const settle = (change) => { if (state.health?.key === key) update({ health: { ...base, ...change } }); };
+  const base = {
+    key,
+    id: language.id,
+    revision: language.revision,
+    report: known?.report ?? null,
+    shown: known?.shown ?? null,
+  };
+  const settle = (change) => {
+    if (state.health?.key === key) update({ health: { ...base, ...change } });
+  };
   update({ checking: null, health: { ...base, status: "checking" } });
   try {
     const report = await api.languages.check(language.id, language.revision);
     settle({ status: "done", report, shown: language.revision });
   } catch (error) {
-    settle(error.code === "check_cancelled" ? { status: "cancelled" } : { status: "failed", error: error.message, away: api.isAway(error) });
+    settle(
+      error.code === "check_cancelled"
+        ? { status: "cancelled" }
+        : { status: "failed", error: error.message, away: api.isAway(error) },
+    );
   }
 }
 
 /** Check again where what is on display is not what was checked, or the server was away. */
 export function keepChecked({ view, gestures, health }) {
-  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health.away)) check();
+  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health.away))
+    check();
 }
 
 /** Cancel the check that runs. */
@@ -47,4 +61,5 @@ export function percent(rate) {
 }
 
 /** A forecast in words, with its interval. */
-export const told = ({ rate, low, high }) => `${percent(rate)} % (${percent(low)} to ${percent(high)})`;
+export const told = ({ rate, low, high }) =>
+  `${percent(rate)} % (${percent(low)} to ${percent(high)})`;

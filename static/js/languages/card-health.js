@@ -26,8 +26,12 @@ function write(line, report) {
   line.hidden = false;
   line.className = `health ${report.ok ? "well" : "unwell"}`;
   const below = warnings.filter((warning) => warning.below_bar);
-  if (below.length) line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
-  else line.textContent = warnings.length ? `Healthy, with ${plural(warnings.length, "remark")}` : "Healthy";
+  if (below.length)
+    line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
+  else
+    line.textContent = warnings.length
+      ? `Healthy, with ${plural(warnings.length, "remark")}`
+      : "Healthy";
   line.title = warnings.map((warning) => warning.message).join("\n");
 }
 
@@ -36,7 +40,8 @@ async function next() {
   if (!language || !offered) return;
   asking = true;
   try {
-    if (line.isConnected && !reports.has(keyOf(language))) reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
+    if (line.isConnected && !reports.has(keyOf(language)))
+      reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
     write(line, reports.get(keyOf(language)));
   } catch (error) {
     // A card without a report is no worse than before; one that is deleted is not shown any more.

@@ -4,9 +4,16 @@ import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
 
-const cancelled = () => Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
+const cancelled = () =>
+  Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
 
-const undecided = (doing) => Object.assign(new Error("Nothing was saved: the language was changed in another tab meanwhile. Save again to choose between the two."), { title: `${doing} failed`, status: 412 });
+const undecided = (doing) =>
+  Object.assign(
+    new Error(
+      "Nothing was saved: the language was changed in another tab meanwhile. Save again to choose between the two.",
+    ),
+    { title: `${doing} failed`, status: 412 },
+  );
 
 /** Compare in the page what the server has not seen: `{ gesture, kind }` each, as it compares. */
 function differences(mine, from) {
@@ -15,21 +22,44 @@ function differences(mine, from) {
   const after = mine.gestures.map((gesture) => {
     const known = before.get(gesture.thumbnail);
     before.delete(gesture.thumbnail);
-    return { gesture, kind: !known ? "added" : JSON.stringify(known) === JSON.stringify(gesture) ? "same" : "changed" };
+    return {
+      gesture,
+      kind: !known
+        ? "added"
+        : JSON.stringify(known) === JSON.stringify(gesture)
+          ? "same"
+          : "changed",
+    };
   });
   return [...after, ...[...before.values()].map((gesture) => ({ gesture, kind: "removed" }))];
 }
 
 /** One version: what was done, and the gestures with what happened to each. */
 function version(title, told, gestures, choice) {
-  return h("section", { "aria-label": title },
+  return h(
+    "section",
+    { "aria-label": title },
     h("h3", {}, title),
-    h("ul", { className: "race-told" }, told.map((line) => h("li", {}, line))),
-    h("ul", { className: "race-gestures" }, gestures.map(({ gesture, kind }) => h("li", { className: kind },
-      h("img", { src: gesture.thumbnail, alt: "", width: 56, height: 56 }),
-      h("span", {}, gesture.label),
-      kind === "same" ? null : h("small", {}, kind)))),
-    choice);
+    h(
+      "ul",
+      { className: "race-told" },
+      told.map((line) => h("li", {}, line)),
+    ),
+    h(
+      "ul",
+      { className: "race-gestures" },
+      gestures.map(({ gesture, kind }) =>
+        h(
+          "li",
+          { className: kind },
+          h("img", { src: gesture.thumbnail, alt: "", width: 56, height: 56 }),
+          h("span", {}, gesture.label),
+          kind === "same" ? null : h("small", {}, kind),
+        ),
+      ),
+    ),
+    choice,
+  );
 }
 
 const TEXTS = ["name", "author", "label", "description", "command"];
@@ -37,14 +67,23 @@ const TEXTS = ["name", "author", "label", "description", "command"];
 /** What the user typed, where it is not what it was. */
 function typed(mine, from) {
   const before = new Map(from.gestures.map((each) => [each.thumbnail, each]));
-  const pairs = [[mine, from], ...mine.gestures.map((each) => [each, before.get(each.thumbnail) ?? each])];
-  return pairs.flatMap(([now, then]) => TEXTS.filter((name) => now[name] !== then[name]).map((name) => `${name}: \u201c${now[name] ?? ""}\u201d`));
+  const pairs = [
+    [mine, from],
+    ...mine.gestures.map((each) => [each, before.get(each.thumbnail) ?? each]),
+  ];
+  return pairs.flatMap(([now, then]) =>
+    TEXTS.filter((name) => now[name] !== then[name]).map(
+      (name) => `${name}: \u201c${now[name] ?? ""}\u201d`,
+    ),
+  );
 }
 
 /** What was done since `from`, a line each. */
 async function deedsSince(from) {
   const revisions = await api.languages.revisions(from.id);
-  return revisions.filter((each) => each.revision > from.revision).reverse()
+  return revisions
+    .filter((each) => each.revision > from.revision)
+    .reverse()
     .map((each) => `${each.change} (revision ${each.revision}, ${ago(each.created)})`);
 }
 
@@ -55,11 +94,20 @@ async function deedsSince(from) {
 export async function settleRace({ doing, title, from, mine, change }) {
   const [theirs, deeds] = await Promise.all([api.languages.get(from.id), deedsSince(from)]);
   const compared = await api.languages.compare(from.id, from.revision, theirs.revision);
-  const theirGestures = compared.gestures.map(({ kind, before, after }) => ({ gesture: after ?? before, kind }));
-  const theirWords = [...compared.words, ...compared.gestures.flatMap(({ after, words }) => words.map((word) => `${after.label}: ${word}`))];
+  const theirGestures = compared.gestures.map(({ kind, before, after }) => ({
+    gesture: after ?? before,
+    kind,
+  }));
+  const theirWords = [
+    ...compared.words,
+    ...compared.gestures.flatMap(({ after, words }) =>
+      words.map((word) => `${after.label}: ${word}`),
+    ),
+  ];
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const dialog = h("dialog", { className: "race", "aria-labelledby": "race-title" });
-  const button = (text, run, className = "") => h("button", { type: "button", className, onclick: run }, text);
+  const button = (text, run, className = "") =>
+    h("button", { type: "button", className, onclick: run }, text);
   let outcome = null;
   /** Do what was picked; where that fails, say why and let the user pick again. */
   const pick = (made) => async () => {
@@ -67,26 +115,55 @@ export async function settleRace({ doing, title, from, mine, change }) {
       outcome = { before: theirs.revision, language: await made() };
       dialog.close();
     } catch (error) {
-      problem.textContent = error.status === 412 ? "The language was changed once more. Close this, and save again." : error.message;
+      problem.textContent =
+        error.status === 412
+          ? "The language was changed once more. Close this, and save again."
+          : error.message;
       problem.hidden = false;
     }
   };
   const onTop = () => change(theirs);
   const instead = async () => change(await api.languages.revert(theirs, from.revision));
-  const keepTheirs = () => { outcome = "theirs"; dialog.close(); };
+  const keepTheirs = () => {
+    outcome = "theirs";
+    dialog.close();
+  };
   dialog.append(
     h("h2", { id: "race-title" }, "Changed in two places"),
-    h("p", { className: "dim" }, `Somebody else, or another tab of yours, saved a change of ${from.name} while you made one, both from revision ${from.revision}. Theirs stays in the history whatever you pick.`),
-    h("div", { className: "race-versions" },
-      version("Theirs, saved", [...deeds, ...theirWords], theirGestures, button("Keep theirs", keepTheirs)),
-      version("Yours, not saved yet", [title, ...typed(mine, from)], differences(mine, from), button("Keep yours", pick(instead)))),
+    h(
+      "p",
+      { className: "dim" },
+      `Somebody else, or another tab of yours, saved a change of ${from.name} while you made one, both from revision ${from.revision}. Theirs stays in the history whatever you pick.`,
+    ),
+    h(
+      "div",
+      { className: "race-versions" },
+      version(
+        "Theirs, saved",
+        [...deeds, ...theirWords],
+        theirGestures,
+        button("Keep theirs", keepTheirs),
+      ),
+      version(
+        "Yours, not saved yet",
+        [title, ...typed(mine, from)],
+        differences(mine, from),
+        button("Keep yours", pick(instead)),
+      ),
+    ),
     problem,
-    h("div", { className: "dialog-actions" },
+    h(
+      "div",
+      { className: "dialog-actions" },
       button("Decide later", () => dialog.close()),
-      button("Keep both: yours on top of theirs", pick(onTop), "primary")));
+      button("Keep both: yours on top of theirs", pick(onTop), "primary"),
+    ),
+  );
   document.body.append(dialog);
   dialog.showModal();
-  await new Promise((resolve) => { dialog.onclose = resolve; });
+  await new Promise((resolve) => {
+    dialog.onclose = resolve;
+  });
   dialog.remove();
   if (outcome === "theirs") throw cancelled();
   if (outcome === null) throw undecided(doing);

@@ -16,14 +16,27 @@ export async function rename({ id }) {
     title: "Rename language",
     fields: [
       { name: "name", label: "Name", value: language.name, required: true, most: 80 },
-      { name: "author", label: "Author", value: language.author, most: 200, hint: "Who made it; written into the file and the history." },
+      {
+        name: "author",
+        label: "Author",
+        value: language.author,
+        most: 200,
+        hint: "Who made it; written into the file and the history.",
+      },
     ],
     action: "Save",
     submit: async (values) => {
-      const change = Object.fromEntries(Object.entries(values).filter(([name, value]) => value !== language[name]));
+      const change = Object.fromEntries(
+        Object.entries(values).filter(([name, value]) => value !== language[name]),
+      );
       if (!Object.keys(change).length) return language;
       const mine = { ...language, ...change };
-      return edit("Renaming the language", `Renaming of ${language.name}`, (base) => api.languages.change(base, change), { from: language, mine });
+      return edit(
+        "Renaming the language",
+        `Renaming of ${language.name}`,
+        (base) => api.languages.change(base, change),
+        { from: language, mine },
+      );
     },
   });
 }
@@ -36,7 +49,10 @@ export async function duplicate({ id, name }) {
 
 /** Delete a language, unless it changed since it was shown. */
 export async function remove(language) {
-  const done = await attempt("Deleting the language", async () => { await api.languages.remove(language); return true; });
+  const done = await attempt("Deleting the language", async () => {
+    await api.languages.remove(language);
+    return true;
+  });
   if (!done) return reloadLanguages();
   did({ title: `Deletion of ${language.name}`, kind: "language", id: language.id });
   if (state.language === language.id) update({ language: null, recognition: null });

@@ -15,27 +15,34 @@ const LAST = "osg-studio.language"; // A new tab starts with the language used l
 export async function reloadLanguages() {
   const languages = await attempt("Loading the languages", api.languages.list);
   if (!languages) return;
-  const wanted = [state.language, localStorage.getItem(LAST)].find((id) => languages.some((each) => each.id === id));
+  const wanted = [state.language, localStorage.getItem(LAST)].find((id) =>
+    languages.some((each) => each.id === id),
+  );
   update({ languages, language: wanted ?? richest(languages)?.id ?? null });
   await reloadLanguage();
 }
 
 /** Load one language that changed. */
-export const reloadOneLanguage = (id) => refresh(id, {
-  load: api.languages.get,
-  current: () => state.languages,
-  order: (one, other) => one.created.localeCompare(other.created) || one.id.localeCompare(other.id),
-  take: (languages, language) => {
-    update({ languages });
-    if (id !== state.language) return;
-    if (language) update({ gestures: language });
-    else reloadLanguages();
-  },
-});
+export const reloadOneLanguage = (id) =>
+  refresh(id, {
+    load: api.languages.get,
+    current: () => state.languages,
+    order: (one, other) =>
+      one.created.localeCompare(other.created) || one.id.localeCompare(other.id),
+    take: (languages, language) => {
+      update({ languages });
+      if (id !== state.language) return;
+      if (language) update({ gestures: language });
+      else reloadLanguages();
+    },
+  });
 
 /** The language with most gestures: on a first visit it knows what every sample clip shows. */
 function richest(languages) {
-  return languages.reduce((best, each) => (best && best.labels.length >= each.labels.length ? best : each), null);
+  return languages.reduce(
+    (best, each) => (best && best.labels.length >= each.labels.length ? best : each),
+    null,
+  );
 }
 
 /** Load the gestures of the language on display. */
@@ -79,7 +86,9 @@ export function newLanguage() {
 
 /** Import a language file, ours or the published format. */
 export async function importLanguage(file) {
-  const language = await attempt(`Importing ${file.name}`, async () => api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()));
+  const language = await attempt(`Importing ${file.name}`, async () =>
+    api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()),
+  );
   if (language) await begin(language, `Import of ${file.name}`, "Language imported");
 }
 

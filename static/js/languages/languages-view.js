@@ -11,12 +11,23 @@ import { drawSamples } from "./sample-languages.js";
 const REDRAWN_EVERY = 60000; // ms. "2 minutes ago" grows old.
 
 function importButton() {
-  const input = h("input", { type: "file", id: "language-file", multiple: true, accept: ".json,application/json", className: "visually-hidden" });
+  const input = h("input", {
+    type: "file",
+    id: "language-file",
+    multiple: true,
+    accept: ".json,application/json",
+    className: "visually-hidden",
+  });
   input.onchange = async () => {
     for (const file of [...input.files]) await importLanguage(file);
     input.value = "";
   };
-  return h("span", { className: "import" }, input, h("label", { for: "language-file", className: "button" }, "Import a file\u2026"));
+  return h(
+    "span",
+    { className: "import" },
+    input,
+    h("label", { for: "language-file", className: "button" }, "Import a file\u2026"),
+  );
 }
 
 /** Whether a language answers to what is typed: by its name, author or a gesture. */
@@ -26,33 +37,74 @@ function answers({ name, author, labels }, words) {
 }
 
 function library() {
-  const search = h("input", { type: "search", placeholder: "Name or gesture", "aria-label": "Find languages", autocomplete: "off" });
+  const search = h("input", {
+    type: "search",
+    placeholder: "Name or gesture",
+    "aria-label": "Find languages",
+    autocomplete: "off",
+  });
   const count = h("small", { className: "dim", role: "status" });
   const cards = h("ul", { className: "languages-grid", "aria-label": "Languages" });
   const empty = h("div", { className: "languages-empty", hidden: true });
-  const samples = h("section", { className: "samples-offer", "aria-label": "Sample languages", hidden: true });
+  const samples = h("section", {
+    className: "samples-offer",
+    "aria-label": "Sample languages",
+    hidden: true,
+  });
   const draw = () => {
     const { languages, loaded } = state;
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const shown = languages.filter((language) => answers(language, words)).sort((one, other) => other.updated.localeCompare(one.updated));
-    count.textContent = words.length ? `${shown.length} of ${plural(languages.length, "language")}` : plural(languages.length, "language");
+    const shown = languages
+      .filter((language) => answers(language, words))
+      .sort((one, other) => other.updated.localeCompare(one.updated));
+    count.textContent = words.length
+      ? `${shown.length} of ${plural(languages.length, "language")}`
+      : plural(languages.length, "language");
     count.hidden = !languages.length;
     search.hidden = languages.length < 2;
     empty.hidden = !loaded || shown.length > 0;
-    empty.replaceChildren(...(languages.length
-      ? [h("p", {}, `No language is called \u201c${search.value}\u201d or has such a gesture.`)]
-      : [h("p", {}, h("b", {}, "No languages yet")), h("p", { className: "dim" }, "A language is a set of gestures that one robot understands. Make an empty one, drop a language file (.json), or begin with a sample.")]));
+    empty.replaceChildren(
+      ...(languages.length
+        ? [h("p", {}, `No language is called \u201c${search.value}\u201d or has such a gesture.`)]
+        : [
+            h("p", {}, h("b", {}, "No languages yet")),
+            h(
+              "p",
+              { className: "dim" },
+              "A language is a set of gestures that one robot understands. Make an empty one, drop a language file (.json), or begin with a sample.",
+            ),
+          ]),
+    );
     reconcile(cards, shown, (language) => language.id, drawCard);
   };
   search.oninput = draw;
   follow(["languages", "language", "loaded"], draw);
-  follow(["languages", "loaded"], ({ loaded }) => { if (loaded) drawSamples(samples); });
+  follow(["languages", "loaded"], ({ loaded }) => {
+    if (loaded) drawSamples(samples);
+  });
   setInterval(draw, REDRAWN_EVERY);
-  return h("div", { className: "library-page" },
-    h("div", { className: "page-head" },
-      h("h1", {}, "Languages"), count, h("span", { className: "spacer" }), search, importButton(),
-      h("button", { type: "button", className: "primary", onclick: newLanguage }, icon("plus"), "New language")),
-    cards, empty, samples);
+  return h(
+    "div",
+    { className: "library-page" },
+    h(
+      "div",
+      { className: "page-head" },
+      h("h1", {}, "Languages"),
+      count,
+      h("span", { className: "spacer" }),
+      search,
+      importButton(),
+      h(
+        "button",
+        { type: "button", className: "primary", onclick: newLanguage },
+        icon("plus"),
+        "New language",
+      ),
+    ),
+    cards,
+    empty,
+    samples,
+  );
 }
 
 /** Build the view. */

@@ -7,18 +7,41 @@ const SIGNS = { added: "+", removed: "\u2212", changed: "\u2260", same: "=" };
 
 function picture(gesture, absent) {
   return gesture
-    ? h("figure", {}, h("img", { src: gesture.thumbnail, alt: `Trajectory of ${gesture.label}`, loading: "lazy", width: 112, height: 112 }), h("figcaption", {}, gesture.label))
+    ? h(
+        "figure",
+        {},
+        h("img", {
+          src: gesture.thumbnail,
+          alt: `Trajectory of ${gesture.label}`,
+          loading: "lazy",
+          width: 112,
+          height: 112,
+        }),
+        h("figcaption", {}, gesture.label),
+      )
     : h("figure", { className: "absent" }, h("span", {}, absent), h("figcaption", {}, "\u00a0"));
 }
 
 function row({ kind, before, after, words }) {
-  return h("li", { className: `compared ${kind}` },
+  return h(
+    "li",
+    { className: `compared ${kind}` },
     picture(before, "not there"),
     picture(after, "not there"),
-    h("div", { className: "compared-text" },
+    h(
+      "div",
+      { className: "compared-text" },
       h("span", { className: "kind" }, h("span", { "aria-hidden": "true" }, SIGNS[kind]), kind),
       h("b", {}, (after ?? before).label),
-      words.length ? h("ul", {}, words.map((word) => h("li", {}, word))) : null));
+      words.length
+        ? h(
+            "ul",
+            {},
+            words.map((word) => h("li", {}, word)),
+          )
+        : null,
+    ),
+  );
 }
 
 const heading = (revision) => (revision ? `Revision ${revision.revision}` : "Nothing");
@@ -28,11 +51,41 @@ export function drawComparison(box, { older, newer, words, gestures }) {
   const changed = gestures.filter((each) => each.kind !== "same");
   const same = gestures.filter((each) => each.kind === "same");
   const count = (kind) => gestures.filter((each) => each.kind === kind).length;
-  const told = ["added", "removed", "changed"].map((kind) => (count(kind) ? `${count(kind)} ${kind}` : null)).filter(Boolean).join(", ");
+  const told = ["added", "removed", "changed"]
+    .map((kind) => (count(kind) ? `${count(kind)} ${kind}` : null))
+    .filter(Boolean)
+    .join(", ");
   box.replaceChildren(
-    h("p", { className: "comparison-told" }, told ? `Gestures: ${told}.` : "The gestures are the same."),
-    words.length ? h("ul", { className: "comparison-words" }, words.map((word) => h("li", {}, word))) : "",
-    changed.length ? h("div", { className: "comparison-heads", "aria-hidden": "true" }, h("span", {}, heading(older)), h("span", {}, heading(newer))) : "",
-    changed.length ? h("ul", { className: "compared-list", "aria-label": "What changed" }, changed.map(row)) : "",
-    same.length ? h("details", { className: "unchanged" }, h("summary", {}, `${plural(same.length, "gesture")} unchanged`), h("ul", { className: "compared-list" }, same.map(row))) : "");
+    h(
+      "p",
+      { className: "comparison-told" },
+      told ? `Gestures: ${told}.` : "The gestures are the same.",
+    ),
+    words.length
+      ? h(
+          "ul",
+          { className: "comparison-words" },
+          words.map((word) => h("li", {}, word)),
+        )
+      : "",
+    changed.length
+      ? h(
+          "div",
+          { className: "comparison-heads", "aria-hidden": "true" },
+          h("span", {}, heading(older)),
+          h("span", {}, heading(newer)),
+        )
+      : "",
+    changed.length
+      ? h("ul", { className: "compared-list", "aria-label": "What changed" }, changed.map(row))
+      : "",
+    same.length
+      ? h(
+          "details",
+          { className: "unchanged" },
+          h("summary", {}, `${plural(same.length, "gesture")} unchanged`),
+          h("ul", { className: "compared-list" }, same.map(row)),
+        )
+      : "",
+  );
 }

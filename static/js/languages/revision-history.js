@@ -13,7 +13,11 @@ import { drawComparison } from "./revision-diff.js";
 let revisions = []; // of `of`, newest first
 let of = null;
 
-const shown = () => state.view === "languages" && state.panel === "history" && state.gestures !== null && state.gestures.id === state.language;
+const shown = () =>
+  state.view === "languages" &&
+  state.panel === "history" &&
+  state.gestures !== null &&
+  state.gestures.id === state.language;
 const before = (number) => revisions.find((each) => each.revision < number)?.revision ?? null;
 
 /** Show what a revision did: compared with the one before it, or with nothing. */
@@ -21,7 +25,9 @@ const select = (number) => update({ newer: number, older: before(number) });
 
 async function goBack({ revision }) {
   try {
-    await edit("Going back", `Going back to revision ${revision}`, (language) => api.languages.revert(language, revision));
+    await edit("Going back", `Going back to revision ${revision}`, (language) =>
+      api.languages.revert(language, revision),
+    );
     tellDone(`Went back to revision ${revision}`, "The newer ones stay in the history.");
   } catch (error) {
     complain(error, "Going back");
@@ -37,18 +43,51 @@ function drawRevision(row, element) {
   const focused = element?.contains(document.activeElement);
   item.dataset.signature = signature;
   item.classList.toggle("chosen", chosen);
-  const what = h("button", { type: "button", className: "revision-open", "aria-pressed": String(chosen), onclick: () => select(row.revision) },
+  const what = h(
+    "button",
+    {
+      type: "button",
+      className: "revision-open",
+      "aria-pressed": String(chosen),
+      onclick: () => select(row.revision),
+    },
     h("span", { className: "revision-number" }, `${row.revision}`),
-    h("span", { className: "revision-text" },
+    h(
+      "span",
+      { className: "revision-text" },
       h("b", {}, row.change),
-      h("span", { className: "dim", title: dateAndTime(row.created) }, [newest ? "newest" : null, ago(row.created), row.author].filter(Boolean).join(" \u00b7 "))));
-  item.replaceChildren(what, newest ? "" : h("button", { type: "button", className: "quiet", "aria-label": `Go back to revision ${row.revision}`, onclick: () => goBack(row) }, "Go back"));
+      h(
+        "span",
+        { className: "dim", title: dateAndTime(row.created) },
+        [newest ? "newest" : null, ago(row.created), row.author].filter(Boolean).join(" \u00b7 "),
+      ),
+    ),
+  );
+  item.replaceChildren(
+    what,
+    newest
+      ? ""
+      : h(
+          "button",
+          {
+            type: "button",
+            className: "quiet",
+            "aria-label": `Go back to revision ${row.revision}`,
+            onclick: () => goBack(row),
+          },
+          "Go back",
+        ),
+  );
   if (focused) what.focus();
   return item;
 }
 
 function options(picker, numbers, value) {
-  picker.replaceChildren(...numbers.map((number) => h("option", { value: number ?? "" }, number === null ? "nothing" : `revision ${number}`)));
+  picker.replaceChildren(
+    ...numbers.map((number) =>
+      h("option", { value: number ?? "" }, number === null ? "nothing" : `revision ${number}`),
+    ),
+  );
   picker.value = value ?? "";
 }
 
@@ -64,25 +103,59 @@ async function load() {
   const known = (number) => revisions.some((each) => each.revision === number);
   const another = earlier !== null && earlier !== id;
   const outgrown = earlier === id && state.newer === head && head !== revision;
-  if (another || outgrown || !known(state.newer) || (state.older !== null && !known(state.older))) select(revisions[0].revision);
+  if (another || outgrown || !known(state.newer) || (state.older !== null && !known(state.older)))
+    select(revisions[0].revision);
 }
 
 /** Build the panel and keep it in step. */
 export function openHistoryPanel(panel) {
   const list = h("ol", { className: "revisions", "aria-label": "Revisions" });
   const title = h("h1", {});
-  const older = h("select", { id: "older", onchange: () => update({ older: older.value ? Number(older.value) : null }) });
-  const newer = h("select", { id: "newer", onchange: () => update({ newer: Number(newer.value) }) });
+  const older = h("select", {
+    id: "older",
+    onchange: () => update({ older: older.value ? Number(older.value) : null }),
+  });
+  const newer = h("select", {
+    id: "newer",
+    onchange: () => update({ newer: Number(newer.value) }),
+  });
   const result = h("div", { className: "comparison", "aria-live": "polite" });
   panel.append(
-    h("div", { className: "page-head" },
-      h("a", { href: address("languages", { panel: null, older: null, newer: null }), className: "button quiet back", onclick: here(() => update({ panel: null, older: null, newer: null })) }, icon("chevron"), "All languages"),
-      title),
-    h("div", { className: "history-columns" },
+    h(
+      "div",
+      { className: "page-head" },
+      h(
+        "a",
+        {
+          href: address("languages", { panel: null, older: null, newer: null }),
+          className: "button quiet back",
+          onclick: here(() => update({ panel: null, older: null, newer: null })),
+        },
+        icon("chevron"),
+        "All languages",
+      ),
+      title,
+    ),
+    h(
+      "div",
+      { className: "history-columns" },
       h("section", { "aria-label": "History" }, h("h2", {}, "History"), list),
-      h("section", { "aria-label": "Comparison" },
-        h("div", { className: "compare-head" }, h("h2", {}, "Compare"), h("label", { for: "older" }, "from"), older, h("label", { for: "newer" }, "to"), newer),
-        result)));
+      h(
+        "section",
+        { "aria-label": "Comparison" },
+        h(
+          "div",
+          { className: "compare-head" },
+          h("h2", {}, "Compare"),
+          h("label", { for: "older" }, "from"),
+          older,
+          h("label", { for: "newer" }, "to"),
+          newer,
+        ),
+        result,
+      ),
+    ),
+  );
 
   let drawn = "";
   const draw = async () => {
@@ -94,7 +167,9 @@ export function openHistoryPanel(panel) {
     const wanted = `${of} ${state.older} ${state.newer}`;
     if (wanted === drawn) return;
     drawn = wanted;
-    const comparison = await attempt("Comparing", () => api.languages.compare(of, state.older, state.newer));
+    const comparison = await attempt("Comparing", () =>
+      api.languages.compare(of, state.older, state.newer),
+    );
     if (comparison && drawn === wanted) drawComparison(result, comparison);
   };
   follow(["view", "panel", "gestures", "older", "newer"], async () => {

@@ -1,7 +1,12 @@
 // What the robot should do: words, or a JSON object that it reads.
 
 /** A command as it is written in a text field. */
-export const written = (command) => (command === null || command === undefined ? "" : typeof command === "string" ? command : JSON.stringify(command, null, 2));
+export const written = (command) =>
+  command === null || command === undefined
+    ? ""
+    : typeof command === "string"
+      ? command
+      : JSON.stringify(command, null, 2);
 
 /**
  * Read what was typed: `{ command, kind }`, or `{ problem }`. What begins like an object must be
@@ -13,9 +18,12 @@ export function read(text) {
   if (!/^[{[]/.test(trimmed)) return { command: trimmed, kind: "Words" };
   try {
     const command = JSON.parse(trimmed);
-    if (Array.isArray(command)) return { problem: "A JSON command is an object: put the list in one, {\"steps\": [\u2026]}." };
+    if (Array.isArray(command))
+      return { problem: 'A JSON command is an object: put the list in one, {"steps": [\u2026]}.' };
     return { command, kind: "JSON object" };
   } catch (error) {
-    return { problem: `This begins like a JSON object but is none: ${error.message}. Mend it, or begin with a word.` };
+    return {
+      problem: `This begins like a JSON object but is none: ${error.message}. Mend it, or begin with a word.`,
+    };
   }
 }

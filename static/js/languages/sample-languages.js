@@ -9,12 +9,20 @@ import { addSample } from "./language-actions.js";
 
 let samples = null;
 
-const present = (sample) => state.languages.some((language) => language.sample && language.name === sample.title);
+const present = (sample) =>
+  state.languages.some((language) => language.sample && language.name === sample.title);
 
 function offer(sample) {
-  const button = h("button", { type: "button", className: "sample-language" },
+  const button = h(
+    "button",
+    { type: "button", className: "sample-language" },
     h("b", {}, sample.title),
-    h("span", { className: "dim" }, `${plural(sample.labels.length, "gesture")}: ${sample.labels.join(", ")}`));
+    h(
+      "span",
+      { className: "dim" },
+      `${plural(sample.labels.length, "gesture")}: ${sample.labels.join(", ")}`,
+    ),
+  );
   button.onclick = async () => {
     button.disabled = true;
     await addSample(sample);
@@ -28,5 +36,8 @@ export async function drawSamples(box) {
   samples ??= await attempt("Loading the samples", api.samples.languages);
   const missing = (samples ?? []).filter((sample) => !present(sample));
   box.hidden = !missing.length;
-  box.replaceChildren(h("h2", {}, "Sample languages"), h("ul", { className: "sample-languages" }, missing.map(offer)));
+  box.replaceChildren(
+    h("h2", {}, "Sample languages"),
+    h("ul", { className: "sample-languages" }, missing.map(offer)),
+  );
 }

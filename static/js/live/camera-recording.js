@@ -8,7 +8,11 @@ const CHUNK = 1000; // ms: what is lost at most when the tab crashes.
 export function countDown(from, show, signal) {
   return new Promise((resolve) => {
     let left = from;
-    const finish = (whole) => { clearInterval(timer); show(null); resolve(whole); };
+    const finish = (whole) => {
+      clearInterval(timer);
+      show(null);
+      resolve(whole);
+    };
     const timer = setInterval(() => {
       left -= 1;
       if (left) show(left);
@@ -33,8 +37,12 @@ export function record(stream) {
   const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: BITS_PER_SECOND });
   const began = new Date();
   const parts = [];
-  recorder.ondataavailable = ({ data }) => { if (data.size) parts.push(data); };
-  const stopped = new Promise((resolve) => { recorder.onstop = resolve; });
+  recorder.ondataavailable = ({ data }) => {
+    if (data.size) parts.push(data);
+  };
+  const stopped = new Promise((resolve) => {
+    recorder.onstop = resolve;
+  });
   recorder.start(CHUNK);
   return {
     began,
@@ -42,7 +50,9 @@ export function record(stream) {
       if (recorder.state !== "inactive") recorder.stop();
       await stopped;
       const type = recorder.mimeType || mimeType;
-      return parts.length ? new File(parts, nameAt(began, type), { type: type.split(";")[0] }) : null;
+      return parts.length
+        ? new File(parts, nameAt(began, type), { type: type.split(";")[0] })
+        : null;
     },
   };
 }

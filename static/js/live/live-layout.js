@@ -4,47 +4,123 @@ import { h } from "../core/dom.js";
 import { SALUTE } from "../core/salute-threshold.js";
 
 const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "false" }, text);
-const check = (id, text, title, checked) => h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
+const check = (id, text, title, checked) =>
+  h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
 
-const STEPS = [["salute", "Salute"], ["gesture", "Gesture"], ["closing", "Salute"]];
+const STEPS = [
+  ["salute", "Salute"],
+  ["gesture", "Gesture"],
+  ["closing", "Salute"],
+];
 
 function picture() {
-  return h("div", { className: "live-picture", id: "live-picture" },
-    h("video", { id: "live-video", muted: true, playsInline: true, "aria-label": "What the camera sees" }),
+  return h(
+    "div",
+    { className: "live-picture", id: "live-picture" },
+    h("video", {
+      id: "live-video",
+      muted: true,
+      playsInline: true,
+      "aria-label": "What the camera sees",
+    }),
     h("p", { className: "live-idle", id: "live-idle" }, "Nothing is watched yet"),
-    h("p", { className: "live-count", id: "live-count", role: "timer", "aria-live": "assertive", hidden: true }),
-    h("div", { className: "live-problem", id: "live-problem", role: "alert", hidden: true }));
+    h("p", {
+      className: "live-count",
+      id: "live-count",
+      role: "timer",
+      "aria-live": "assertive",
+      hidden: true,
+    }),
+    h("div", { className: "live-problem", id: "live-problem", role: "alert", hidden: true }),
+  );
 }
 
 function controls() {
-  return h("div", { className: "live-controls" },
-    h("div", { className: "segments", role: "group", "aria-label": "Source" }, choice("live-from-camera", "Camera"), choice("live-from-clip", "Clip")),
+  return h(
+    "div",
+    { className: "live-controls" },
+    h(
+      "div",
+      { className: "segments", role: "group", "aria-label": "Source" },
+      choice("live-from-camera", "Camera"),
+      choice("live-from-clip", "Clip"),
+    ),
     h("select", { id: "live-cameras", "aria-label": "Camera", hidden: true }),
     h("select", { id: "live-clips", "aria-label": "Clip", hidden: true }),
-    check("live-every", "Every frame", "Waits for each frame instead of leaving out what this machine cannot look at in time", false),
-    check("live-autostop", "Stop after the closing salute", "Ends a recording by itself, since hands that salute cannot click", true),
+    check(
+      "live-every",
+      "Every frame",
+      "Waits for each frame instead of leaving out what this machine cannot look at in time",
+      false,
+    ),
+    check(
+      "live-autostop",
+      "Stop after the closing salute",
+      "Ends a recording by itself, since hands that salute cannot click",
+      true,
+    ),
     h("span", { className: "spacer" }),
-    h("button", { type: "button", id: "live-record", title: "Record a clip, after a countdown (R)" }),
-    h("button", { type: "button", id: "live-start", className: "primary", title: "Start or stop watching (Space)" }));
+    h("button", {
+      type: "button",
+      id: "live-record",
+      title: "Record a clip, after a countdown (R)",
+    }),
+    h("button", {
+      type: "button",
+      id: "live-start",
+      className: "primary",
+      title: "Start or stop watching (Space)",
+    }),
+  );
 }
 
 /** Make what the view holds. */
 export function panel() {
   return [
-    h("section", { className: "live-stage", "aria-label": "Live picture" },
+    h(
+      "section",
+      { className: "live-stage", "aria-label": "Live picture" },
       picture(),
-      h("div", { className: "live-state" },
-        h("ol", { className: "live-steps", id: "live-steps" }, STEPS.map(([name, text]) => h("li", { id: `live-step-${name}` }, text))),
+      h(
+        "div",
+        { className: "live-state" },
+        h(
+          "ol",
+          { className: "live-steps", id: "live-steps" },
+          STEPS.map(([name, text]) => h("li", { id: `live-step-${name}` }, text)),
+        ),
         h("p", { id: "live-saying", role: "status" }),
-        h("label", { className: "live-salute" }, "Salute",
-          h("meter", { id: "live-salute", min: 0, max: 1, low: SALUTE, value: 0 }))),
-      controls()),
-    h("aside", { className: "live-side", "aria-label": "Recognised live" },
+        h(
+          "label",
+          { className: "live-salute" },
+          "Salute",
+          h("meter", { id: "live-salute", min: 0, max: 1, low: SALUTE, value: 0 }),
+        ),
+      ),
+      controls(),
+    ),
+    h(
+      "aside",
+      { className: "live-side", "aria-label": "Recognised live" },
       h("div", { id: "live-result", "aria-live": "polite" }),
       h("p", { className: "dim", id: "live-language" }),
-      h("div", { className: "live-head" }, h("h2", {}, "Recognised"), h("button", { type: "button", className: "link", id: "live-clear", hidden: true }, "Clear")),
-      h("ol", { className: "live-heard", id: "live-heard", "aria-label": "Recognised, newest first" }),
-      h("p", { className: "live-slow", id: "live-slow", hidden: true }, "Too few frames to tell gestures apart. Close what else keeps this machine busy, or record a clip: it is read without hurry."),
-      h("dl", { className: "live-speed", id: "live-speed" })),
+      h(
+        "div",
+        { className: "live-head" },
+        h("h2", {}, "Recognised"),
+        h("button", { type: "button", className: "link", id: "live-clear", hidden: true }, "Clear"),
+      ),
+      h("ol", {
+        className: "live-heard",
+        id: "live-heard",
+        "aria-label": "Recognised, newest first",
+      }),
+      h(
+        "p",
+        { className: "live-slow", id: "live-slow", hidden: true },
+        "Too few frames to tell gestures apart. Close what else keeps this machine busy, or record a clip: it is read without hurry.",
+      ),
+      h("dl", { className: "live-speed", id: "live-speed" }),
+    ),
   ];
 }

@@ -31,7 +31,9 @@ export function openLink(heard) {
     for (const resolve of waiting.splice(0)) resolve();
   }
 
-  const ask = () => { if (socket.readyState === WebSocket.OPEN && wanted) socket.send(JSON.stringify(wanted)); };
+  const ask = () => {
+    if (socket.readyState === WebSocket.OPEN && wanted) socket.send(JSON.stringify(wanted));
+  };
 
   socket.onopen = ask;
   socket.onmessage = ({ data }) => {
@@ -41,7 +43,12 @@ export function openLink(heard) {
   };
   socket.onclose = ({ code, reason }) => {
     for (const resolve of waiting.splice(0)) resolve();
-    if (!closing) heard.ended(reason ? `${reason[0].toUpperCase()}${reason.slice(1)}` : CLOSED[code] ?? `The connection was closed (${code}).`);
+    if (!closing)
+      heard.ended(
+        reason
+          ? `${reason[0].toUpperCase()}${reason.slice(1)}`
+          : (CLOSED[code] ?? `The connection was closed (${code}).`),
+      );
   };
 
   return {
@@ -65,8 +72,16 @@ export function openLink(heard) {
       if (socket.readyState === WebSocket.OPEN) socket.send(bytes);
     },
     /** Resolves with the next answer, or the end. */
-    answered: () => (socket.readyState > WebSocket.OPEN ? Promise.resolve() : new Promise((resolve) => { waiting.push(resolve); })),
-    opened: new Promise((resolve) => { socket.addEventListener("open", resolve); socket.addEventListener("close", resolve); }),
+    answered: () =>
+      socket.readyState > WebSocket.OPEN
+        ? Promise.resolve()
+        : new Promise((resolve) => {
+            waiting.push(resolve);
+          }),
+    opened: new Promise((resolve) => {
+      socket.addEventListener("open", resolve);
+      socket.addEventListener("close", resolve);
+    }),
     close() {
       closing = true;
       socket.close(1000);

@@ -9,15 +9,21 @@ const FEW = 6; // frames a second: below, a stroke of a second is five points, a
 /** Which step the diver is in, and what to do, from an answer of the server. */
 function situation({ pose, salute, held, state }) {
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
-  if (state === "recording" && held) return ["salute", "Salute held. Let it go and show the gesture."];
-  if (state === "recording") return salute > SALUTE ? ["closing", "Closing salute seen. Hold it."] : ["gesture", "Show the gesture, then salute again."];
+  if (state === "recording" && held)
+    return ["salute", "Salute held. Let it go and show the gesture."];
+  if (state === "recording")
+    return salute > SALUTE
+      ? ["closing", "Closing salute seen. Hold it."]
+      : ["gesture", "Show the gesture, then salute again."];
   if (salute > SALUTE) return ["salute", "Salute seen. Hold it."];
   return pose ? ["", "Waiting for a Vulcan salute."] : ["", "Nobody is in the picture."];
 }
 
 /** Show where the diver is between the salutes; null while nothing is watched. */
 export function sayState(answer) {
-  const [step, text] = answer ? situation(answer) : ["", "Hold a Vulcan salute, show the gesture, salute again."];
+  const [step, text] = answer
+    ? situation(answer)
+    : ["", "Hold a Vulcan salute, show the gesture, salute again."];
   const words = byId("live-saying");
   if (words.textContent !== text) words.textContent = text;
   for (const each of byId("live-steps").children) {
@@ -29,12 +35,17 @@ export function sayState(answer) {
 
 /** Show frames per second, and the seconds from the camera to the answer. */
 export function saySpeed(answer, seconds) {
-  const rows = answer === null ? [] : [
-    ["Frames a second", answer.frames_per_second.toFixed(1)],
-    ["Latency", `${Math.round(1000 * seconds)} ms`],
-    ["of which the models", `${Math.round(1000 * answer.seconds)} ms`],
-  ];
+  const rows =
+    answer === null
+      ? []
+      : [
+          ["Frames a second", answer.frames_per_second.toFixed(1)],
+          ["Latency", `${Math.round(1000 * seconds)} ms`],
+          ["of which the models", `${Math.round(1000 * answer.seconds)} ms`],
+        ];
   const unhurried = page.source === "clip" && byId("live-every").checked;
   byId("live-slow").hidden = !answer || unhurried || answer.frames_per_second >= FEW;
-  byId("live-speed").replaceChildren(...rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))));
+  byId("live-speed").replaceChildren(
+    ...rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+  );
 }

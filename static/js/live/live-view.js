@@ -13,7 +13,18 @@ import { drawSeen, overlay } from "./pose-overlay.js";
 import { countDown, record } from "./camera-recording.js";
 import { addResult, clearResults, nothingHeard } from "./live-results.js";
 import { sayState, saySpeed } from "./live-status.js";
-import { CAMERA_LOST, cameraPossible, cameras, grab, release, showCamera, showClip, stepFrames, watchFrames, whyNoCamera } from "./video-source.js";
+import {
+  CAMERA_LOST,
+  cameraPossible,
+  cameras,
+  grab,
+  release,
+  showCamera,
+  showClip,
+  stepFrames,
+  watchFrames,
+  whyNoCamera,
+} from "./video-source.js";
 
 const COUNT = 3; // s: from the button to where the diver stands.
 const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
@@ -38,7 +49,12 @@ const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pi
 function problem(trouble) {
   const box = byId("live-problem");
   box.hidden = !trouble;
-  if (trouble) box.replaceChildren(h("b", {}, trouble.title), h("p", {}, trouble.text), h("button", { type: "button", onclick: start }, "Try again"));
+  if (trouble)
+    box.replaceChildren(
+      h("b", {}, trouble.title),
+      h("p", {}, trouble.text),
+      h("button", { type: "button", onclick: start }, "Try again"),
+    );
 }
 
 /** Bring the buttons in line with what goes on. */
@@ -50,18 +66,29 @@ function drawControls() {
   begin.disabled = !watching && fromClip() && !chosenClip();
   const take = byId("live-record");
   take.hidden = fromClip();
-  take.replaceChildren(h("i", { className: "dot", "aria-hidden": "true" }), recording ? "Stop recording" : counting ? "Cancel" : "Record a clip");
+  take.replaceChildren(
+    h("i", { className: "dot", "aria-hidden": "true" }),
+    recording ? "Stop recording" : counting ? "Cancel" : "Record a clip",
+  );
   take.classList.toggle("recording", recording !== null);
   byId("live-clips").hidden = byId("live-every").parentElement.hidden = !fromClip();
   byId("live-autostop").parentElement.hidden = fromClip();
   byId("live-idle").hidden = watching;
-  for (const name of ["camera", "clip"]) byId(`live-from-${name}`).setAttribute("aria-pressed", String((name === "clip") === fromClip()));
+  for (const name of ["camera", "clip"])
+    byId(`live-from-${name}`).setAttribute(
+      "aria-pressed",
+      String((name === "clip") === fromClip()),
+    );
 }
 
 function drawClipChoice() {
   const choice = byId("live-clips");
   const chosen = chosenClip();
-  choice.replaceChildren(...pictured().map((clip) => h("option", { value: clip.id, selected: clip === chosen }, clip.name)));
+  choice.replaceChildren(
+    ...pictured().map((clip) =>
+      h("option", { value: clip.id, selected: clip === chosen }, clip.name),
+    ),
+  );
   drawControls();
 }
 
@@ -70,7 +97,11 @@ async function drawCameraChoice() {
   const found = await cameras();
   choice.hidden = fromClip() || found.length < 2;
   const current = video().srcObject?.getVideoTracks()[0]?.getSettings().deviceId;
-  choice.replaceChildren(...found.map(({ deviceId, label }) => h("option", { value: deviceId, selected: deviceId === current }, label || "Camera")));
+  choice.replaceChildren(
+    ...found.map(({ deviceId, label }) =>
+      h("option", { value: deviceId, selected: deviceId === current }, label || "Camera"),
+    ),
+  );
 }
 
 function stop() {
@@ -108,7 +139,8 @@ function seen(answer, seconds) {
   sayState(answer);
   saySpeed(answer, seconds);
   rate = answer.frames_per_second;
-  if (recording && answer.state === "done" && byId("live-autostop").checked && !ending) ending = setTimeout(endRecording, AFTER_SALUTE);
+  if (recording && answer.state === "done" && byId("live-autostop").checked && !ending)
+    ending = setTimeout(endRecording, AFTER_SALUTE);
 }
 
 function lost(trouble) {
@@ -125,8 +157,10 @@ function clipEnded(clip) {
 const ended = (reason) => lost({ title: "The live view ended", text: reason });
 
 function listening({ language, gestures, problem: trouble }) {
-  const text = trouble ? `Takes are found, but none is recognised: ${trouble}.`
-    : language ? `Between two salutes: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
+  const text = trouble
+    ? `Takes are found, but none is recognised: ${trouble}.`
+    : language
+      ? `Between two salutes: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
       : "Takes are found, but no language is chosen to recognise them.";
   byId("live-language").textContent = text;
 }
@@ -152,7 +186,9 @@ async function start() {
     await showSource();
   } catch (error) {
     release(video());
-    problem(clip ? { title: "The clip cannot be played", text: error.message } : whyNoCamera(error));
+    problem(
+      clip ? { title: "The clip cannot be played", text: error.message } : whyNoCamera(error),
+    );
     if (cameraPossible()) drawCameraChoice(); // The one that was chosen may be gone.
     return false;
   } finally {
@@ -163,7 +199,15 @@ async function start() {
     stop();
     return false;
   }
-  const opened = openLink({ seen, listening, ended, recognized: (result) => { heard += 1; addResult(result, clip); } });
+  const opened = openLink({
+    seen,
+    listening,
+    ended,
+    recognized: (result) => {
+      heard += 1;
+      addResult(result, clip);
+    },
+  });
   link = opened;
   link.listen(state.language);
   drawControls();
@@ -171,7 +215,9 @@ async function start() {
   await opened.opened;
   if (link !== opened) return false;
   const every = clip && byId("live-every").checked;
-  video().onended = () => { if (clip) clipEnded(clip); };
+  video().onended = () => {
+    if (clip) clipEnded(clip);
+  };
   if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
   stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
   if (clip && !every) await video().play();
@@ -192,7 +238,13 @@ async function beginRecording() {
   counting = null;
   if (whole && video().srcObject) {
     recording = record(video().srcObject);
-    setTimeout((it) => { if (recording === it) endRecording(); }, LONGEST, recording);
+    setTimeout(
+      (it) => {
+        if (recording === it) endRecording();
+      },
+      LONGEST,
+      recording,
+    );
   }
   byId("live-picture").classList.toggle("recording", recording !== null);
   drawControls();
@@ -209,11 +261,14 @@ async function endRecording() {
   const file = await ended.stop();
   if (!file) return;
   addFiles([file]);
-  toast("Clip recorded", `${file.name} is read for poses now.`, { action: { label: "Show it", run: () => go("studio") } });
+  toast("Clip recorded", `${file.name} is read for poses now.`, {
+    action: { label: "Show it", run: () => go("studio") },
+  });
 }
 
 const toggle = () => (link ? stop() : start());
-const toggleRecording = () => (recording ? endRecording() : counting ? counting.abort() : beginRecording());
+const toggleRecording = () =>
+  recording ? endRecording() : counting ? counting.abort() : beginRecording();
 
 /** Choose between camera and clip. */
 function chooseSource(source) {
@@ -228,13 +283,31 @@ function wire() {
   byId("live-from-camera").onclick = () => chooseSource(null);
   byId("live-from-clip").onclick = () => chooseSource("clip");
   byId("live-cameras").onchange = start;
-  byId("live-clips").onchange = ({ target }) => { stop(); update({ clip: target.value, take: null, start: null, end: null, frame: null, recognition: null }); };
+  byId("live-clips").onchange = ({ target }) => {
+    stop();
+    update({
+      clip: target.value,
+      take: null,
+      start: null,
+      end: null,
+      frame: null,
+      recognition: null,
+    });
+  };
   byId("live-clear").onclick = () => clearResults("Show a gesture between two salutes.");
 }
 
 const when = () => state.view === "live";
 bind({ keys: ["Space"], text: "Start or stop watching", group: "Live", run: toggle, when });
-bind({ keys: ["R"], text: "Record a clip from the camera, or stop", group: "Live", run: () => { if (!fromClip()) toggleRecording(); }, when });
+bind({
+  keys: ["R"],
+  text: "Record a clip from the camera, or stop",
+  group: "Live",
+  run: () => {
+    if (!fromClip()) toggleRecording();
+  },
+  when,
+});
 
 /** Called once, when the view is first shown. */
 export function open(section) {
@@ -243,7 +316,9 @@ export function open(section) {
   wire();
   follow(["clips", "clip", "source"], drawClipChoice);
   follow(["language"], ({ language }) => link?.listen(language));
-  follow(["view"], ({ view }) => { if (view !== "live") stop(); });
+  follow(["view"], ({ view }) => {
+    if (view !== "live") stop();
+  });
   addEventListener("pagehide", stop);
   navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
   sayState(null);

@@ -10,15 +10,33 @@ export const cameraPossible = () => Boolean(navigator.mediaDevices?.getUserMedia
 const INSTEAD = "Without a camera, play a clip as if live.";
 
 const REASONS = {
-  NotAllowedError: ["The camera was not allowed", "Allow it for this page, beside its address, and for the browser in the system\u2019s privacy settings. Then try again."],
-  NotFoundError: ["No camera found", "Plug one in, and see that it is switched on. Then try again."],
-  NotReadableError: ["The camera does not answer", "Another program or tab may be using it. Close that one, then try again."],
-  AbortError: ["The camera does not answer", "It failed while it was started. Unplug it and plug it in again, then try again."],
-  OverconstrainedError: ["That camera is gone", "Choose another one, or plug it in again. Then try again."],
+  NotAllowedError: [
+    "The camera was not allowed",
+    "Allow it for this page, beside its address, and for the browser in the system\u2019s privacy settings. Then try again.",
+  ],
+  NotFoundError: [
+    "No camera found",
+    "Plug one in, and see that it is switched on. Then try again.",
+  ],
+  NotReadableError: [
+    "The camera does not answer",
+    "Another program or tab may be using it. Close that one, then try again.",
+  ],
+  AbortError: [
+    "The camera does not answer",
+    "It failed while it was started. Unplug it and plug it in again, then try again.",
+  ],
+  OverconstrainedError: [
+    "That camera is gone",
+    "Choose another one, or plug it in again. Then try again.",
+  ],
 };
 
 /** Why a camera that was watched sends nothing any more. */
-export const CAMERA_LOST = { title: "The camera was lost", text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}` };
+export const CAMERA_LOST = {
+  title: "The camera was lost",
+  text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}`,
+};
 
 /** Say in words why there is no camera: `{ title, text }`. */
 export function whyNoCamera(error) {
@@ -36,7 +54,10 @@ export function whyNoCamera(error) {
 export async function showCamera(video, deviceId, lost) {
   if (!cameraPossible()) throw new TypeError("no camera");
   const wanted = { width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } };
-  const stream = await navigator.mediaDevices.getUserMedia({ video: deviceId ? { ...wanted, deviceId: { exact: deviceId } } : wanted, audio: false });
+  const stream = await navigator.mediaDevices.getUserMedia({
+    video: deviceId ? { ...wanted, deviceId: { exact: deviceId } } : wanted,
+    audio: false,
+  });
   for (const track of stream.getTracks()) track.onended = lost;
   video.srcObject = stream;
   await video.play();
@@ -52,7 +73,12 @@ export async function cameras() {
 export async function showClip(video, url) {
   const loaded = new Promise((resolve, reject) => {
     video.onloadeddata = resolve;
-    video.onerror = () => reject(new Error("This browser cannot play the clip\u2019s codec. Convert it to an MP4 with H.264, or recognise it in the studio."));
+    video.onerror = () =>
+      reject(
+        new Error(
+          "This browser cannot play the clip\u2019s codec. Convert it to an MP4 with H.264, or recognise it in the studio.",
+        ),
+      );
   });
   video.src = url;
   await loaded;
@@ -77,7 +103,9 @@ export function grab(video) {
   canvas.width = Math.round(width * scale);
   canvas.height = Math.round(height * scale);
   canvas.getContext("2d", { alpha: false }).drawImage(video, 0, 0, canvas.width, canvas.height);
-  return new Promise((resolve) => { canvas.toBlob(resolve, "image/jpeg", QUALITY); });
+  return new Promise((resolve) => {
+    canvas.toBlob(resolve, "image/jpeg", QUALITY);
+  });
 }
 
 /**
@@ -96,20 +124,23 @@ export function watchFrames(video, seen) {
   const frame = (now, { captureTime, mediaTime }) => {
     if (!running) return;
     const captured = (captureTime ?? now) / 1000;
-    seen(live ? captured : mediaTime ?? video.currentTime, captured);
+    seen(live ? captured : (mediaTime ?? video.currentTime), captured);
     next();
   };
   next();
-  return () => { running = false; };
+  return () => {
+    running = false;
+  };
 }
 
 /** Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next. */
 export function stepFrames(video, seen) {
   let running = true;
-  const shown = (time) => new Promise((resolve) => {
-    video.onseeked = resolve;
-    video.currentTime = time;
-  });
+  const shown = (time) =>
+    new Promise((resolve) => {
+      video.onseeked = resolve;
+      video.currentTime = time;
+    });
   const run = async () => {
     for (let time = 0; running && time < video.duration; time += CLIP_STEP) {
       await shown(time);
@@ -118,5 +149,7 @@ export function stepFrames(video, seen) {
     if (running) video.onended?.();
   };
   run();
-  return () => { running = false; };
+  return () => {
+    running = false;
+  };
 }

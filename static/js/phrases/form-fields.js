@@ -7,7 +7,13 @@ let drawing = false;
 /** Replace the content of `root`, and leave the focus, and what is being typed, where it is. */
 export function redraw(root, ...content) {
   const active = root.contains(document.activeElement) ? document.activeElement : null;
-  const typing = active && "defaultValue" in active && active.type !== "checkbox" && active.value !== active.defaultValue ? active.value : null;
+  const typing =
+    active &&
+    "defaultValue" in active &&
+    active.type !== "checkbox" &&
+    active.value !== active.defaultValue
+      ? active.value
+      : null;
   const caret = typing === null ? null : active.selectionStart;
   drawing = true;
   root.replaceChildren(...content.filter(Boolean));
@@ -20,8 +26,24 @@ export function redraw(root, ...content) {
 }
 
 /** A labelled text field; `commit(text)` saves what was typed and resolves to whether it could be. */
-export function textField({ id, label, value, commit, multiline = false, hidden = false, ...more }) {
-  const input = h(multiline ? "textarea" : "input", { id, defaultValue: value, autocomplete: "off", ...(multiline ? { rows: Math.min(8, Math.max(2, value.split("\n").length)) } : { type: "text" }), ...more });
+export function textField({
+  id,
+  label,
+  value,
+  commit,
+  multiline = false,
+  hidden = false,
+  ...more
+}) {
+  const input = h(multiline ? "textarea" : "input", {
+    id,
+    defaultValue: value,
+    autocomplete: "off",
+    ...(multiline
+      ? { rows: Math.min(8, Math.max(2, value.split("\n").length)) }
+      : { type: "text" }),
+    ...more,
+  });
   const leave = async () => {
     if (drawing || input.value === input.defaultValue) return;
     const before = input.defaultValue;
@@ -39,24 +61,63 @@ export function textField({ id, label, value, commit, multiline = false, hidden 
       event.stopPropagation();
     }
   };
-  return h("div", { className: "field-line" }, h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label), input);
+  return h(
+    "div",
+    { className: "field-line" },
+    h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label),
+    input,
+  );
 }
 
-export const numberField = ({ min, max, step = 1, ...rest }) => textField({ ...rest, type: "number", min, max, step, inputMode: step === 1 ? "numeric" : "decimal" });
+export const numberField = ({ min, max, step = 1, ...rest }) =>
+  textField({
+    ...rest,
+    type: "number",
+    min,
+    max,
+    step,
+    inputMode: step === 1 ? "numeric" : "decimal",
+  });
 
 /** A labelled choice among `options`, each `[value, text]`. */
 export function choice({ id, label, value, options, commit, hidden = false }) {
-  const select = h("select", { id, onchange: () => commit(select.value) }, options.map(([key, text]) => h("option", { value: key }, text)));
+  const select = h(
+    "select",
+    { id, onchange: () => commit(select.value) },
+    options.map(([key, text]) => h("option", { value: key }, text)),
+  );
   select.value = value;
-  return h("div", { className: "field-line" }, h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label), select);
+  return h(
+    "div",
+    { className: "field-line" },
+    h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label),
+    select,
+  );
 }
 
 export function checkbox({ id, label, checked, commit }) {
-  const input = h("input", { type: "checkbox", id, checked, onchange: () => commit(input.checked) });
+  const input = h("input", {
+    type: "checkbox",
+    id,
+    checked,
+    onchange: () => commit(input.checked),
+  });
   return h("label", { className: "tick" }, input, label);
 }
 
 /** A small button that shows only an icon; disabled where it can do nothing. */
 export function tool(id, name, label, run, disabled = false) {
-  return h("button", { type: "button", className: "quiet icon", id, title: label, "aria-label": label, onclick: run, disabled }, icon(name));
+  return h(
+    "button",
+    {
+      type: "button",
+      className: "quiet icon",
+      id,
+      title: label,
+      "aria-label": label,
+      onclick: run,
+      disabled,
+    },
+    icon(name),
+  );
 }

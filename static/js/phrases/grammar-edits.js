@@ -6,7 +6,15 @@ import { edit } from "../studio/gesture-cards.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 
-const EMPTY = { start: null, end: null, cancel: null, timeout: 10, most_phrases: 1, slot_types: [], phrases: [] };
+const EMPTY = {
+  start: null,
+  end: null,
+  cancel: null,
+  timeout: 10,
+  most_phrases: 1,
+  slot_types: [],
+  phrases: [],
+};
 
 export const ROLES = ["start", "end", "cancel"];
 
@@ -16,7 +24,9 @@ export const labels = () => state.gestures?.gestures.map(({ label }) => label) ?
 let drawAgain = () => {};
 
 /** Call `react` when a step was refused: the form then shows what is not. */
-export const followRefusals = (react) => { drawAgain = react; };
+export const followRefusals = (react) => {
+  drawAgain = react;
+};
 
 // One after the other: a field may be left by pressing the next button.
 let working = Promise.resolve();
@@ -25,7 +35,9 @@ let working = Promise.resolve();
 export function save(title, step) {
   working = working.then(async () => {
     try {
-      await edit("Changing the phrases", title, (base) => api.languages.change(base, { grammar: step(base.grammar ?? EMPTY) }));
+      await edit("Changing the phrases", title, (base) =>
+        api.languages.change(base, { grammar: step(base.grammar ?? EMPTY) }),
+      );
       return true;
     } catch (error) {
       complain(error, "Changing the phrases");
@@ -44,7 +56,8 @@ export function free(stem, taken, joint = " ") {
   return `${stem}${joint}${number}`;
 }
 
-const at = (list, index, change) => list.map((each, place) => (place === index ? change(each) : each));
+const at = (list, index, change) =>
+  list.map((each, place) => (place === index ? change(each) : each));
 export const without = (list, index) => list.filter((_, place) => place !== index);
 
 /** Exchange an entry with its neighbour. */
@@ -78,41 +91,80 @@ export const inPhrase = inEntry("phrases");
 export const inSlotType = inEntry("slot_types");
 
 /** Change the list of parts that `path` leads to: [] the phrase's own, [2] that of the group in third place. */
-export const inParts = (path, change) => (phrase) => (path.length
-  ? { ...phrase, parts: at(phrase.parts, path[0], inParts(path.slice(1), change)) }
-  : { ...phrase, parts: change(phrase.parts) });
+export const inParts = (path, change) => (phrase) =>
+  path.length
+    ? { ...phrase, parts: at(phrase.parts, path[0], inParts(path.slice(1), change)) }
+    : { ...phrase, parts: change(phrase.parts) };
 
-export const inPart = (path, change) => inParts(path.slice(0, -1), (parts) => at(parts, path.at(-1), change));
+export const inPart = (path, change) =>
+  inParts(path.slice(0, -1), (parts) => at(parts, path.at(-1), change));
 
-export const everyPart = (parts) => parts.flatMap((part) => (part.parts ? [part, ...everyPart(part.parts)] : [part]));
+export const everyPart = (parts) =>
+  parts.flatMap((part) => (part.parts ? [part, ...everyPart(part.parts)] : [part]));
 export const slotsOf = (phrase) => everyPart(phrase.parts).filter((part) => part.slot);
 
 const framing = (whole) => ROLES.map((role) => whole[role]);
 
 /** The gesture to begin with: one that nothing uses yet, if there is one. */
 function fresh(whole) {
-  const used = new Set([...framing(whole), ...whole.phrases.flatMap(({ parts }) => everyPart(parts).flatMap((part) => part.gestures ?? [])), ...whole.slot_types.flatMap(({ values }) => values.map(({ gesture }) => gesture))]);
-  return labels().find((label) => !used.has(label)) ?? labels().find((label) => label !== whole.cancel) ?? labels()[0];
+  const used = new Set([
+    ...framing(whole),
+    ...whole.phrases.flatMap(({ parts }) =>
+      everyPart(parts).flatMap((part) => part.gestures ?? []),
+    ),
+    ...whole.slot_types.flatMap(({ values }) => values.map(({ gesture }) => gesture)),
+  ]);
+  return (
+    labels().find((label) => !used.has(label)) ??
+    labels().find((label) => label !== whole.cancel) ??
+    labels()[0]
+  );
 }
 
 export const gesturePart = (whole) => ({ gestures: [fresh(whole)], least: 1, most: 1 });
 
 export function withPhrase(whole, name) {
-  return { ...whole, phrases: [...whole.phrases, { name, parts: [gesturePart(whole)], command: null, says: "" }] };
+  return {
+    ...whole,
+    phrases: [...whole.phrases, { name, parts: [gesturePart(whole)], command: null, says: "" }],
+  };
 }
 
 export function withSlotType(whole) {
-  const name = free("number", whole.slot_types.map((each) => each.name));
-  return { ...whole, slot_types: [...whole.slot_types, { name, reads_as: "number", values: [{ gesture: fresh(whole), value: 1 }] }] };
+  const name = free(
+    "number",
+    whole.slot_types.map((each) => each.name),
+  );
+  return {
+    ...whole,
+    slot_types: [
+      ...whole.slot_types,
+      { name, reads_as: "number", values: [{ gesture: fresh(whole), value: 1 }] },
+    ],
+  };
 }
 
 /** Add a slot to the parts at `path` of a phrase, and something to fill it with where there is nothing yet. */
 export function withSlot(whole, phraseName, path) {
   const ready = whole.slot_types.length ? whole : withSlotType(whole);
   const type = ready.slot_types[0].name;
-  const slug = type.toLowerCase().replace(/[^a-z0-9_]+/g, "_").replace(/^[^a-z]+/, "") || "value";
+  const slug =
+    type
+      .toLowerCase()
+      .replace(/[^a-z0-9_]+/g, "_")
+      .replace(/^[^a-z]+/, "") || "value";
   return inPhrase(phraseName, (phrase) => {
-    const slot = { slot: free(slug.slice(0, 36), slotsOf(phrase).map((each) => each.slot), "_"), type, least: 1, most: 1, default: null };
+    const slot = {
+      slot: free(
+        slug.slice(0, 36),
+        slotsOf(phrase).map((each) => each.slot),
+        "_",
+      ),
+      type,
+      least: 1,
+      most: 1,
+      default: null,
+    };
     return inParts(path, (parts) => [...parts, slot])(phrase);
   })(ready);
 }
@@ -122,19 +174,37 @@ export function withSlotRenamed(phrase, before, after) {
   const texts = (value) => {
     if (typeof value === "string") return value.replaceAll(`{${before}}`, `{${after}}`);
     if (Array.isArray(value)) return value.map(texts);
-    if (value && typeof value === "object") return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, texts(each)]));
+    if (value && typeof value === "object")
+      return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, texts(each)]));
     return value;
   };
-  const part = (each) => (each.parts ? { ...each, parts: each.parts.map(part) } : each.slot === before ? { ...each, slot: after } : each);
-  return { ...phrase, parts: phrase.parts.map(part), says: texts(phrase.says), command: texts(phrase.command) };
+  const part = (each) =>
+    each.parts
+      ? { ...each, parts: each.parts.map(part) }
+      : each.slot === before
+        ? { ...each, slot: after }
+        : each;
+  return {
+    ...phrase,
+    parts: phrase.parts.map(part),
+    says: texts(phrase.says),
+    command: texts(phrase.command),
+  };
 }
 
 /** Rename a slot type, also where slots refer to it. */
 export function withSlotTypeRenamed(whole, before, after) {
-  const part = (each) => (each.parts ? { ...each, parts: each.parts.map(part) } : each.type === before ? { ...each, type: after } : each);
+  const part = (each) =>
+    each.parts
+      ? { ...each, parts: each.parts.map(part) }
+      : each.type === before
+        ? { ...each, type: after }
+        : each;
   return {
     ...whole,
-    slot_types: whole.slot_types.map((each) => (each.name === before ? { ...each, name: after } : each)),
+    slot_types: whole.slot_types.map((each) =>
+      each.name === before ? { ...each, name: after } : each,
+    ),
     phrases: whole.phrases.map((phrase) => ({ ...phrase, parts: phrase.parts.map(part) })),
   };
 }

@@ -4,24 +4,68 @@ import { h } from "../core/dom.js";
 import { choice, numberField } from "./form-fields.js";
 import { grammar, labels, save } from "./grammar-edits.js";
 
-const TEXTS = { start: ["Starts with", "none: any phrase may begin"], end: ["Ends with", "none: a pause ends it"], cancel: ["Cancelled by", "none"] };
+const TEXTS = {
+  start: ["Starts with", "none: any phrase may begin"],
+  end: ["Ends with", "none: a pause ends it"],
+  cancel: ["Cancelled by", "none"],
+};
 
 function role(name) {
   const whole = grammar();
   const [label, none] = TEXTS[name];
   const others = name === "cancel" ? [whole.start, whole.end] : [whole.cancel];
-  const options = [["", none], ...labels().filter((each) => !others.includes(each)).map((each) => [each, each])];
-  return choice({ id: `frame-${name}`, label, value: whole[name] ?? "", options, commit: (value) => save(`${label} ${value || "none"}`, (base) => ({ ...base, [name]: value || null })) });
+  const options = [
+    ["", none],
+    ...labels()
+      .filter((each) => !others.includes(each))
+      .map((each) => [each, each]),
+  ];
+  return choice({
+    id: `frame-${name}`,
+    label,
+    value: whole[name] ?? "",
+    options,
+    commit: (value) =>
+      save(`${label} ${value || "none"}`, (base) => ({ ...base, [name]: value || null })),
+  });
 }
 
 /** Draw the panel. */
 export function framePanel() {
   const { timeout, most_phrases: most } = grammar();
-  return h("section", { className: "panel", "aria-labelledby": "frame-title" },
+  return h(
+    "section",
+    { className: "panel", "aria-labelledby": "frame-title" },
     h("h2", { id: "frame-title" }, "Around a message"),
-    h("p", { className: "dim" }, "An opening and a closing gesture keep accidents out: what is shown outside a message is not obeyed. A message may hold several phrases, each opened anew."),
-    h("div", { className: "frame-fields" },
-      role("start"), role("end"), role("cancel"),
-      numberField({ id: "frame-timeout", label: "Longest pause (s)", value: String(timeout), min: 1, max: 600, step: "any", commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })) }),
-      numberField({ id: "frame-most", label: "Phrases, at most", value: String(most), min: 1, max: 8, commit: (text) => save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })) })));
+    h(
+      "p",
+      { className: "dim" },
+      "An opening and a closing gesture keep accidents out: what is shown outside a message is not obeyed. A message may hold several phrases, each opened anew.",
+    ),
+    h(
+      "div",
+      { className: "frame-fields" },
+      role("start"),
+      role("end"),
+      role("cancel"),
+      numberField({
+        id: "frame-timeout",
+        label: "Longest pause (s)",
+        value: String(timeout),
+        min: 1,
+        max: 600,
+        step: "any",
+        commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })),
+      }),
+      numberField({
+        id: "frame-most",
+        label: "Phrases, at most",
+        value: String(most),
+        min: 1,
+        max: 8,
+        commit: (text) =>
+          save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })),
+      }),
+    ),
+  );
 }

@@ -12,7 +12,11 @@ import { inPhrase, rememberName, save, slotsOf } from "./grammar-edits.js";
 import { addButtons, partList } from "./phrase-parts.js";
 import { found, showExample } from "./phrase-trial.js";
 
-const put = (phrase, title, change) => save(title, inPhrase(phrase.name, (whole) => ({ ...whole, ...change })));
+const put = (phrase, title, change) =>
+  save(
+    title,
+    inPhrase(phrase.name, (whole) => ({ ...whole, ...change })),
+  );
 
 async function rename(phrase, text) {
   const name = text.trim();
@@ -26,7 +30,13 @@ async function rename(phrase, text) {
 
 async function remove(phrase) {
   const title = `Deletion of ${phrase.name}`;
-  if (!await save(title, (base) => ({ ...base, phrases: base.phrases.filter(({ name }) => name !== phrase.name) }))) return;
+  if (
+    !(await save(title, (base) => ({
+      ...base,
+      phrases: base.phrases.filter(({ name }) => name !== phrase.name),
+    })))
+  )
+    return;
   if (state.phrase === phrase.name) update({ phrase: null });
   tellDone("Phrase deleted", phrase.name);
 }
@@ -44,12 +54,41 @@ function form(phrase, place) {
     ? `${slots.join(" and ")} ${slots.length > 1 ? "stand for the values" : "stands for the value"} shown. In the spoken text, put what is left out with a slot in [ ].`
     : "Add a slot to tell the robot how often, how deep or which way.";
   const id = `phrase-${place}`;
-  return h("div", { className: "phrase-form" },
-    textField({ id: `${id}-name`, label: "Name", value: phrase.name, maxLength: 80, commit: (text) => rename(phrase, text) }),
-    h("div", { className: "phrase-parts" }, h("h3", {}, "What is shown"), partList(phrase, [], phrase.parts), addButtons(phrase)),
-    textField({ id: `${id}-says`, label: "Spoken back", value: phrase.says, placeholder: "the name and the values", maxLength: 2000, commit: (text) => put(phrase, "Spoken text", { says: text.trim() }) }),
-    textField({ id: `${id}-command`, label: "Command for the robot", value: written(phrase.command), placeholder: "words, or a JSON object", multiline: true, commit: (text) => command(phrase, text) }),
-    h("p", { className: "dim" }, hint));
+  return h(
+    "div",
+    { className: "phrase-form" },
+    textField({
+      id: `${id}-name`,
+      label: "Name",
+      value: phrase.name,
+      maxLength: 80,
+      commit: (text) => rename(phrase, text),
+    }),
+    h(
+      "div",
+      { className: "phrase-parts" },
+      h("h3", {}, "What is shown"),
+      partList(phrase, [], phrase.parts),
+      addButtons(phrase),
+    ),
+    textField({
+      id: `${id}-says`,
+      label: "Spoken back",
+      value: phrase.says,
+      placeholder: "the name and the values",
+      maxLength: 2000,
+      commit: (text) => put(phrase, "Spoken text", { says: text.trim() }),
+    }),
+    textField({
+      id: `${id}-command`,
+      label: "Command for the robot",
+      value: written(phrase.command),
+      placeholder: "words, or a JSON object",
+      multiline: true,
+      commit: (text) => command(phrase, text),
+    }),
+    h("p", { className: "dim" }, hint),
+  );
 }
 
 /** Draw a phrase. */
@@ -57,14 +96,45 @@ export function phraseCard(phrase, place) {
   const open = state.phrase === phrase.name;
   const doubts = found()?.ambiguities.filter(({ phrases }) => phrases.includes(phrase.name)) ?? [];
   const id = `phrase-${place}`;
-  return h("li", { className: `phrase${open ? " open" : ""}` },
-    h("div", { className: "phrase-head" },
-      h("button", { type: "button", className: "phrase-open", id: `${id}-open`, "aria-expanded": String(open), onclick: () => update({ phrase: open ? null : phrase.name }) },
-        icon("chevron"), h("b", {}, phrase.name)),
+  return h(
+    "li",
+    { className: `phrase${open ? " open" : ""}` },
+    h(
+      "div",
+      { className: "phrase-head" },
+      h(
+        "button",
+        {
+          type: "button",
+          className: "phrase-open",
+          id: `${id}-open`,
+          "aria-expanded": String(open),
+          onclick: () => update({ phrase: open ? null : phrase.name }),
+        },
+        icon("chevron"),
+        h("b", {}, phrase.name),
+      ),
       sequence(phrase),
-      doubts.length ? h("span", { className: "doubt" }, h("span", { className: "mark", "aria-hidden": "true" }, "!"), plural(doubts.length, "ambiguity").replace("ambiguitys", "ambiguities")) : null,
-      h("button", { type: "button", id: `${id}-try`, "aria-label": `Try ${phrase.name}`, onclick: () => showExample(phrase.name) }, "Try"),
-      tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase))),
-    open ? form(phrase, place) : null);
+      doubts.length
+        ? h(
+            "span",
+            { className: "doubt" },
+            h("span", { className: "mark", "aria-hidden": "true" }, "!"),
+            plural(doubts.length, "ambiguity").replace("ambiguitys", "ambiguities"),
+          )
+        : null,
+      h(
+        "button",
+        {
+          type: "button",
+          id: `${id}-try`,
+          "aria-label": `Try ${phrase.name}`,
+          onclick: () => showExample(phrase.name),
+        },
+        "Try",
+      ),
+      tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase)),
+    ),
+    open ? form(phrase, place) : null,
+  );
 }
-

@@ -22,7 +22,8 @@ export const followFound = (react) => listeners.push(react);
 /** The gestures shown, "" for one that was not recognised. In the URL a line each: no label has two. */
 const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
-export const show = (gestures) => update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
+export const show = (gestures) =>
+  update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
 
 let loading = Promise.resolve(); // what is asked of the server now
 
@@ -47,7 +48,9 @@ async function load() {
   const key = JSON.stringify([language.id, language.revision, gestures, paused]);
   if (answer?.key === key) return;
   answer = { key, view: answer?.view ?? null, settled: false };
-  const loaded = await attempt("Trying the phrases", () => api.languages.phrases(language, shown(), paused !== null));
+  const loaded = await attempt("Trying the phrases", () =>
+    api.languages.phrases(language, shown(), paused !== null),
+  );
   if (!loaded || answer.key !== key) return;
   answer = { key, view: loaded, settled: true };
   for (const react of listeners) react();
@@ -64,37 +67,77 @@ function said(event) {
   const over = event && OVER.has(event.kind);
   const kind = event?.kind ?? "nothing";
   const words = event ? event.text : "Show a gesture: click it below.";
-  return h("div", { className: `said ${kind === "complete" ? "well" : over ? "unwell" : ""}` },
-    h("span", { className: "mark", "aria-hidden": "true" }, MARKS[kind] ?? (event ? "!" : "\u2026")),
+  return h(
+    "div",
+    { className: `said ${kind === "complete" ? "well" : over ? "unwell" : ""}` },
+    h(
+      "span",
+      { className: "mark", "aria-hidden": "true" },
+      MARKS[kind] ?? (event ? "!" : "\u2026"),
+    ),
     h("p", { id: "said" }, words),
-    canSpeak() && event ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak") : null);
+    canSpeak() && event
+      ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak")
+      : null,
+  );
 }
 
 function commands(event) {
   if (!event?.mission) return null;
-  return h("div", { className: "obeyed" }, h("h3", {}, "The robot is told"),
-    h("ol", {}, event.mission.map(({ phrase, command }) => h("li", {}, h("b", {}, phrase), command === null ? h("span", { className: "dim" }, "no command") : h("code", {}, typeof command === "string" ? command : JSON.stringify(command))))));
+  return h(
+    "div",
+    { className: "obeyed" },
+    h("h3", {}, "The robot is told"),
+    h(
+      "ol",
+      {},
+      event.mission.map(({ phrase, command }) =>
+        h(
+          "li",
+          {},
+          h("b", {}, phrase),
+          command === null
+            ? h("span", { className: "dim" }, "no command")
+            : h("code", {}, typeof command === "string" ? command : JSON.stringify(command)),
+        ),
+      ),
+    ),
+  );
 }
 
 /** A gesture to click; one that is drawn stays the same button, so that no click on it gets lost. */
 function gestureButton({ label, thumbnail }, next, item) {
   if (!item) {
-    item = h("li", {}, h("button", { type: "button", className: "try-gesture", onclick: () => add(label) },
-      h("img", { alt: "", width: 56, height: 56 }), h("span", {}, label), h("small")));
+    item = h(
+      "li",
+      {},
+      h(
+        "button",
+        { type: "button", className: "try-gesture", onclick: () => add(label) },
+        h("img", { alt: "", width: 56, height: 56 }),
+        h("span", {}, label),
+        h("small"),
+      ),
+    );
   }
   const [button, picture] = [item.firstChild, item.querySelector("img")];
   button.classList.toggle("next", next);
   button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
   if (picture.getAttribute("src") !== thumbnail) picture.src = thumbnail;
-  item.querySelector("small").textContent = next ? "next" : ROLES.filter((role) => grammar()[role] === label).join(", ");
+  item.querySelector("small").textContent = next
+    ? "next"
+    : ROLES.filter((role) => grammar()[role] === label).join(", ");
   return item;
 }
 
-const chip = (label) => h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+const chip = (label) =>
+  h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
 
 function hint() {
   const { timeout } = grammar();
-  return found()?.may_end ? `The message may be over: after ${timeout} s without a gesture it is obeyed.` : "Framed and marked \u201cnext\u201d: what may come next.";
+  return found()?.may_end
+    ? `The message may be over: after ${timeout} s without a gesture it is obeyed.`
+    : "Framed and marked \u201cnext\u201d: what may come next.";
 }
 
 /** Build the panel; it follows what is shown. */
@@ -102,23 +145,51 @@ export function trialPanel() {
   const sequence = h("ol", { className: "shown", "aria-label": "Gestures shown" });
   const result = h("div", { className: "trial-result", role: "status" });
   const gestures = h("ul", { className: "try-gestures", "aria-label": "Gestures to show" });
-  const pause = h("button", { type: "button", onclick: () => update({ paused: "yes" }) }, "Pause too long");
+  const pause = h(
+    "button",
+    { type: "button", onclick: () => update({ paused: "yes" }) },
+    "Pause too long",
+  );
   const clear = h("button", { type: "button", onclick: () => show([]) }, "Clear");
   const note = h("p", { className: "dim" });
   const draw = () => {
     if (state.view !== "phrases" || !state.gestures) return;
     const event = state.shown === null ? null : last();
     const expected = new Set(found()?.expected ?? []);
-    sequence.replaceChildren(...shown().map(chip), ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]));
+    sequence.replaceChildren(
+      ...shown().map(chip),
+      ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]),
+    );
     result.replaceChildren(...[said(event), commands(event)].filter(Boolean));
-    reconcile(gestures, state.gestures.gestures, ({ label }) => label, (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item));
+    reconcile(
+      gestures,
+      state.gestures.gestures,
+      ({ label }) => label,
+      (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item),
+    );
     pause.disabled = !event || OVER.has(event.kind) || state.paused !== null;
     clear.disabled = state.shown === null;
     note.textContent = hint();
   };
   followFound(draw);
-  follow(["view", "gestures", "shown", "paused"], () => { loading = load(); draw(); });
-  return h("section", { className: "panel trial", "aria-labelledby": "trial-title" },
-    h("h2", { id: "trial-title" }, "Try it"), sequence, result, gestures,
-    h("div", { className: "trial-actions" }, h("button", { type: "button", onclick: () => add("") }, "Not recognised"), pause, clear), note);
+  follow(["view", "gestures", "shown", "paused"], () => {
+    loading = load();
+    draw();
+  });
+  return h(
+    "section",
+    { className: "panel trial", "aria-labelledby": "trial-title" },
+    h("h2", { id: "trial-title" }, "Try it"),
+    sequence,
+    result,
+    gestures,
+    h(
+      "div",
+      { className: "trial-actions" },
+      h("button", { type: "button", onclick: () => add("") }, "Not recognised"),
+      pause,
+      clear,
+    ),
+    note,
+  );
 }

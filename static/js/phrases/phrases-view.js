@@ -13,7 +13,10 @@ import { slotTypesPanel } from "./slot-types.js";
 import { followFound, found, show, trialPanel } from "./phrase-trial.js";
 
 async function addPhrase() {
-  const name = free("phrase", grammar().phrases.map((each) => each.name));
+  const name = free(
+    "phrase",
+    grammar().phrases.map((each) => each.name),
+  );
   if (await save(`New ${name}`, (base) => withPhrase(base, name))) {
     update({ phrase: name });
     document.getElementById(`phrase-${grammar().phrases.length - 1}-name`)?.select();
@@ -21,7 +24,7 @@ async function addPhrase() {
 }
 
 async function takeOut() {
-  if (!await save("Phrases taken out", () => null)) return;
+  if (!(await save("Phrases taken out", () => null))) return;
   update({ phrase: null, shown: null, paused: null });
   tellDone("Phrases taken out", "Every gesture stands for itself.");
 }
@@ -30,41 +33,99 @@ async function takeOut() {
 function ambiguities() {
   const told = found()?.ambiguities ?? [];
   if (!told.length) return null;
-  return h("ul", { className: "findings", "aria-label": "Ambiguities" }, told.map(({ message, gestures }, index) => h("li", { className: "finding below" },
-    h("span", { className: "mark", "aria-hidden": "true" }, "!"),
-    h("div", { className: "finding-text" }, h("p", {}, message)),
-    h("button", { type: "button", id: `ambiguity-${index}-try`, "aria-label": `Try: ${gestures.join(", ")}`, onclick: () => show(gestures) }, "Try"))));
+  return h(
+    "ul",
+    { className: "findings", "aria-label": "Ambiguities" },
+    told.map(({ message, gestures }, index) =>
+      h(
+        "li",
+        { className: "finding below" },
+        h("span", { className: "mark", "aria-hidden": "true" }, "!"),
+        h("div", { className: "finding-text" }, h("p", {}, message)),
+        h(
+          "button",
+          {
+            type: "button",
+            id: `ambiguity-${index}-try`,
+            "aria-label": `Try: ${gestures.join(", ")}`,
+            onclick: () => show(gestures),
+          },
+          "Try",
+        ),
+      ),
+    ),
+  );
 }
 
 function verdict() {
   const view = found();
   if (!view || !grammar().phrases.length) return null;
   const count = view.ambiguities.length;
-  return h("p", { className: `verdict ${count ? "unwell" : "well"}`, role: "status" },
+  return h(
+    "p",
+    { className: `verdict ${count ? "unwell" : "well"}`, role: "status" },
     h("span", { className: "mark", "aria-hidden": "true" }, count ? "!" : "\u2713"),
-    h("b", {}, count ? `${count} ${count === 1 ? "ambiguity" : "ambiguities"}` : "Nothing ambiguous"));
+    h(
+      "b",
+      {},
+      count ? `${count} ${count === 1 ? "ambiguity" : "ambiguities"}` : "Nothing ambiguous",
+    ),
+  );
 }
 
 function beginning() {
-  return h("div", { className: "phrases-empty" },
+  return h(
+    "div",
+    { className: "phrases-empty" },
     h("p", {}, h("b", {}, "No phrases yet")),
-    h("p", { className: "dim" }, "Without phrases every gesture stands for itself. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. It is opened and closed by a gesture of your choice, so that the robot obeys nothing by accident."),
-    h("button", { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase }, icon("plus"), "Add the first phrase"));
+    h(
+      "p",
+      { className: "dim" },
+      "Without phrases every gesture stands for itself. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. It is opened and closed by a gesture of your choice, so that the robot obeys nothing by accident.",
+    ),
+    h(
+      "button",
+      { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+      icon("plus"),
+      "Add the first phrase",
+    ),
+  );
 }
 
 function noGestures() {
-  return h("div", { className: "phrases-empty" },
+  return h(
+    "div",
+    { className: "phrases-empty" },
     h("p", {}, h("b", {}, state.gestures ? "No gestures to make phrases of" : "No language yet")),
     h("p", { className: "dim" }, "Save a gesture from a clip first."),
-    h("button", { type: "button", className: "primary", onclick: () => go("studio") }, "To the clips"));
+    h(
+      "button",
+      { type: "button", className: "primary", onclick: () => go("studio") },
+      "To the clips",
+    ),
+  );
 }
 
 function list() {
   const { phrases } = grammar();
-  return h("section", { className: "phrase-section", "aria-labelledby": "phrases-title" },
-    h("div", { className: "panel-head" }, h("h2", { id: "phrases-title" }, "Phrases"), h("small", { className: "dim" }, plural(phrases.length, "phrase")),
-      h("span", { className: "spacer" }), h("button", { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase }, icon("plus"), "New phrase")),
-    h("ul", { className: "phrase-list", "aria-label": "Phrases" }, phrases.map(phraseCard)));
+  return h(
+    "section",
+    { className: "phrase-section", "aria-labelledby": "phrases-title" },
+    h(
+      "div",
+      { className: "panel-head" },
+      h("h2", { id: "phrases-title" }, "Phrases"),
+      h("small", { className: "dim" }, plural(phrases.length, "phrase")),
+      h("span", { className: "spacer" }),
+      h(
+        "button",
+        { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+        icon("plus"),
+        "New phrase",
+      ),
+    ),
+    h("ul", { className: "phrase-list", "aria-label": "Phrases" }, phrases.map(phraseCard)),
+  );
 }
 
 /** Build the view. */
@@ -79,7 +140,14 @@ export function open(section) {
   const draw = () => {
     const { gestures, loaded, view, phrase } = state;
     if (view !== "phrases" || (!gestures && !loaded)) return;
-    const now = JSON.stringify([gestures?.id, gestures?.name, labels(), gestures?.grammar, phrase, found()?.ambiguities]);
+    const now = JSON.stringify([
+      gestures?.id,
+      gestures?.name,
+      labels(),
+      gestures?.grammar,
+      phrase,
+      found()?.ambiguities,
+    ]);
     if (now === drawn) return; // a button that is just being pressed stays where it is
     drawn = now;
     title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
@@ -93,12 +161,37 @@ export function open(section) {
     columns.classList.toggle("alone", trial.hidden);
     if (trial.hidden) redraw(form, beginning(), state.gestures.grammar ? slotTypesPanel() : null);
     else {
-      redraw(form, ambiguities(), list(), framePanel(), slotTypesPanel(),
-        h("div", {}, h("button", { type: "button", className: "quiet", id: "take-out", onclick: takeOut }, "Take all phrases out")));
+      redraw(
+        form,
+        ambiguities(),
+        list(),
+        framePanel(),
+        slotTypesPanel(),
+        h(
+          "div",
+          {},
+          h(
+            "button",
+            { type: "button", className: "quiet", id: "take-out", onclick: takeOut },
+            "Take all phrases out",
+          ),
+        ),
+      );
     }
   };
-  section.append(h("div", { className: "phrases-page" }, h("div", { className: "page-head" }, title, h("span", { className: "spacer" }), says), none, columns));
+  section.append(
+    h(
+      "div",
+      { className: "phrases-page" },
+      h("div", { className: "page-head" }, title, h("span", { className: "spacer" }), says),
+      none,
+      columns,
+    ),
+  );
   followFound(draw);
-  followRefusals(() => { drawn = ""; draw(); });
+  followRefusals(() => {
+    drawn = "";
+    draw();
+  });
   follow(["view", "gestures", "phrase", "loaded"], draw);
 }

@@ -34,7 +34,12 @@ async function remove(gesture) {
   const from = state.gestures;
   const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
   try {
-    await edit("Deleting the gesture", `Deletion of ${gesture.label}`, (language) => api.languages.removeGesture(language, gesture.label), { from, mine });
+    await edit(
+      "Deleting the gesture",
+      `Deletion of ${gesture.label}`,
+      (language) => api.languages.removeGesture(language, gesture.label),
+      { from, mine },
+    );
     tellDone("Gesture deleted", gesture.label);
   } catch (error) {
     complain(error, "Deleting the gesture");
@@ -43,19 +48,42 @@ async function remove(gesture) {
 
 function draw(gesture, element) {
   const { revision } = state.gestures;
-  const mark = state.result && (gesture.label === state.result.label ? "chosen" : gesture.label === state.result.expected ? "expected" : null);
+  const mark =
+    state.result &&
+    (gesture.label === state.result.label
+      ? "chosen"
+      : gesture.label === state.result.expected
+        ? "expected"
+        : null);
   const signature = JSON.stringify([gesture, mark]);
   if (element?.dataset.signature === signature) return element;
   const image = `${gesture.thumbnail}${gesture.thumbnail.includes("revision=") ? "" : `?revision=${revision}`}`;
-  const card = h("li", { className: `card${mark ? ` ${mark}` : ""}` },
-    h("img", { src: image, alt: `Trajectory of ${gesture.label}`, loading: "lazy", width: 112, height: 112 }),
-    h("div", { className: "card-text" },
+  const card = h(
+    "li",
+    { className: `card${mark ? ` ${mark}` : ""}` },
+    h("img", {
+      src: image,
+      alt: `Trajectory of ${gesture.label}`,
+      loading: "lazy",
+      width: 112,
+      height: 112,
+    }),
+    h(
+      "div",
+      { className: "card-text" },
       h("b", { title: gesture.label }, gesture.label),
       h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
-      mark ? h("span", { className: `tag ${mark}` }, mark) : null),
-    h("div", { className: "card-buttons" },
-      iconButton("rename", `Change ${gesture.label}`, () => go("gesture", { gesture: gesture.label })),
-      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture))));
+      mark ? h("span", { className: `tag ${mark}` }, mark) : null,
+    ),
+    h(
+      "div",
+      { className: "card-buttons" },
+      iconButton("rename", `Change ${gesture.label}`, () =>
+        go("gesture", { gesture: gesture.label }),
+      ),
+      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture)),
+    ),
+  );
   card.dataset.signature = signature;
   return card;
 }
@@ -83,8 +111,13 @@ const words = (name) => ` ${(name.toLowerCase().match(/\p{L}+|\p{N}+/gu) ?? []).
  */
 export function proposed(clip, members) {
   const name = words(clip?.name ?? "");
-  const named = members.map(({ label }) => ({ label, at: words(label).trim() ? name.indexOf(words(label)) : -1 })).filter(({ at }) => at >= 0);
-  return named.sort((one, other) => one.at - other.at || other.label.length - one.label.length)[0]?.label ?? "";
+  const named = members
+    .map(({ label }) => ({ label, at: words(label).trim() ? name.indexOf(words(label)) : -1 }))
+    .filter(({ at }) => at >= 0);
+  return (
+    named.sort((one, other) => one.at - other.at || other.label.length - one.label.length)[0]
+      ?.label ?? ""
+  );
 }
 
 /** Offer the labels as what was meant; a recognition that is opened says it itself. */
@@ -95,6 +128,9 @@ function drawExpected(members, result) {
   if (result && result.id !== shown.result) told = result.expected ?? "";
   else if (clip?.id !== shown.clip) told = proposed(clip, members);
   shown = { result: result?.id ?? null, clip: clip?.id };
-  expected.replaceChildren(h("option", { value: "" }, "not told"), ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)));
+  expected.replaceChildren(
+    h("option", { value: "" }, "not told"),
+    ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),
+  );
   expected.value = members.some((gesture) => gesture.label === told) ? told : "";
 }

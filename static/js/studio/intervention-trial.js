@@ -15,7 +15,10 @@ const tuning = () => state.result.tuning ?? state.gestures.tuning ?? { weights: 
 const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
 
 const APPLY = {
-  trim: (change) => { update({ take: null, start: change.start, end: change.end }); return {}; },
+  trim: (change) => {
+    update({ take: null, start: change.start, end: change.end });
+    return {};
+  },
   voter_weight: ({ voter, factor }) => {
     const { weights } = tuning();
     return tuned({ weights: { ...weights, [voter]: (weights[voter] ?? 1) * factor } });
@@ -33,7 +36,9 @@ const APPLY = {
 const TUNING = new Set(["voter_weight", "simplification", "keypoint_repair", "profile"]);
 
 async function changeGesture(change, body) {
-  await edit("Trying the change", `Change of ${change.label}`, (language) => api.languages.changeGesture(language, change.label, body));
+  await edit("Trying the change", `Change of ${change.label}`, (language) =>
+    api.languages.changeGesture(language, change.label, body),
+  );
   return { edited: true };
 }
 
@@ -44,7 +49,15 @@ export async function tryOut({ change }) {
   try {
     const { edited = false, ...extra } = await APPLY[change.kind](change);
     const result = await recogniseWith({ profile, tuning: before, ...extra });
-    if (result) update({ trial: { change, base: { recognition, take, start, end, trial }, edited, result: result.id } });
+    if (result)
+      update({
+        trial: {
+          change,
+          base: { recognition, take, start, end, trial },
+          edited,
+          result: result.id,
+        },
+      });
   } catch (error) {
     complain(error, "Trying the change");
   }
@@ -73,15 +86,22 @@ async function keep({ change, edited }) {
     await recogniseWith();
     tellDone("Change kept", where);
   } else if (edited) toast("Change kept", where);
-  else toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
+  else
+    toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
 }
 
 /** Say what is on trial and what came of it, with both ways on. */
 export function trialBar(trial, result) {
   const read = result.label ?? `nothing; nearest is ${result.nearest}`;
-  return h("div", { className: "trial", role: "status" },
+  return h(
+    "div",
+    { className: "trial", role: "status" },
     h("p", {}, h("b", {}, "On trial: "), `${trial.change.words}. It is read as ${read}.`),
-    h("span", { className: "joined" },
+    h(
+      "span",
+      { className: "joined" },
       h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep"),
-      h("button", { type: "button", onclick: () => discard(trial) }, "Discard")));
+      h("button", { type: "button", onclick: () => discard(trial) }, "Discard"),
+    ),
+  );
 }

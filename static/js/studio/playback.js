@@ -19,12 +19,21 @@ export function followClock(id) {
 
 function connect(id) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const opened = new WebSocket(`${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`);
+  const opened = new WebSocket(
+    `${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`,
+  );
   socket = opened;
-  opened.onopen = () => { for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish)); };
+  opened.onopen = () => {
+    for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish));
+  };
   opened.onmessage = ({ data }) => told(JSON.parse(data));
   // A workspace that is gone is opened anew by whoever shows something next.
-  opened.onclose = () => { if (socket === opened && workspace === id) setTimeout(() => { if (socket === opened) connect(id); }, RETRY); };
+  opened.onclose = () => {
+    if (socket === opened && workspace === id)
+      setTimeout(() => {
+        if (socket === opened) connect(id);
+      }, RETRY);
+  };
 }
 
 function told(position) {

@@ -22,7 +22,9 @@ export async function loadTakes() {
   // Those of the clip before must not be taken for this one's while its own are on their way.
   update({ takes: null, timeline: null });
   if (!clip || clip.status !== "done") return undefined;
-  const loaded = await attempt("Loading the takes", () => Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]));
+  const loaded = await attempt("Loading the takes", () =>
+    Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]),
+  );
   if (!loaded || state.clip !== clip.id) return undefined;
   const [takes, timeline] = loaded;
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
@@ -43,13 +45,21 @@ export function showSelection() {
   if (state.recognition) view.recognition_id = state.recognition;
   const text = JSON.stringify(view);
   if (text === shownView) return;
-  viewTimer = setTimeout(() => { shownView = text; show(view).then(frameShown); }, state.take === null && state.start !== null ? SETTLED : 0);
+  viewTimer = setTimeout(
+    () => {
+      shownView = text;
+      show(view).then(frameShown);
+    },
+    state.take === null && state.start !== null ? SETTLED : 0,
+  );
 }
 
 function query() {
   const { start, end } = selectedRange();
   const whole = state.take === null && state.start === null && state.end === null;
-  return whole && !state.takes?.length ? { clip_id: state.clip } : { clip_id: state.clip, start, end };
+  return whole && !state.takes?.length
+    ? { clip_id: state.clip }
+    : { clip_id: state.clip, start, end };
 }
 
 /** Make a gesture of what is selected, in its own view. */
@@ -63,7 +73,12 @@ export const rangeOf = () => query();
 
 /** Recognise what is selected; `extra` says what is done otherwise. */
 export async function recogniseWith(extra = {}) {
-  const body = { ...query(), language_id: state.language, expected: byId("expected").value || null, ...extra };
+  const body = {
+    ...query(),
+    language_id: state.language,
+    expected: byId("expected").value || null,
+    ...extra,
+  };
   const result = await attempt("Recognition", () => api.recognitions.create(body));
   if (!result || result.clip_id !== state.clip) return null; // Another clip is on display by now.
   update({ result, recognition: result.id });
@@ -72,7 +87,11 @@ export async function recogniseWith(extra = {}) {
 
 async function recognise() {
   if (!state.gestures?.gestures.length) {
-    toast("Nothing to compare with", "The language has no gestures yet. Save one from a take, or choose another language above.", { kind: "error" });
+    toast(
+      "Nothing to compare with",
+      "The language has no gestures yet. Save one from a take, or choose another language above.",
+      { kind: "error" },
+    );
     return;
   }
   const button = byId("recognise");
@@ -109,18 +128,34 @@ export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
   const { label, nearest, expected, votes, weights, fault } = result;
-  const voters = Object.keys(votes).filter((voter) => weights[voter] !== 0).map((voter) => votes[voter]);
+  const voters = Object.keys(votes)
+    .filter((voter) => weights[voter] !== 0)
+    .map((voter) => votes[voter]);
   const count = voters.filter((vote) => vote === nearest).length;
   const wrong = label === null || (expected !== null && expected !== label);
-  const parts = label === null
-    ? [fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ", h("b", {}, nearest)]
-    : expected === null || expected === label
-      ? ["Recognised as ", h("b", { className: "chosen" }, label), expected === label ? ", as expected" : ""]
-      : ["Taken for ", h("b", { className: "chosen" }, label), ", expected ", h("b", { className: "expected" }, expected)];
+  const parts =
+    label === null
+      ? [
+          fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
+          h("b", {}, nearest),
+        ]
+      : expected === null || expected === label
+        ? [
+            "Recognised as ",
+            h("b", { className: "chosen" }, label),
+            expected === label ? ", as expected" : "",
+          ]
+        : [
+            "Taken for ",
+            h("b", { className: "chosen" }, label),
+            ", expected ",
+            h("b", { className: "expected" }, expected),
+          ];
   box.className = `outcome ${wrong ? "wrong" : "right"}`;
   return box.replaceChildren(
     h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
-    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)));
+    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)),
+  );
 }
 
 /** Draw the bar above the frame. */
@@ -131,16 +166,24 @@ export function drawStage() {
   if (!clip) return;
   const ready = clip.status === "done";
   byId("clip-name").textContent = clip.name;
-  byId("clip-meta").textContent = ready ? "" : clip.status === "failed" ? (clip.error ?? "") : "Its takes appear as soon as the poses are found.";
-  for (const id of ["save-gesture", "recognise", "expected"]) byId(id).disabled = !ready || !state.takes;
-  byId("clip-warnings").replaceChildren(...(clip.warnings ?? []).map((warning) => h("li", {}, warning)));
+  byId("clip-meta").textContent = ready
+    ? ""
+    : clip.status === "failed"
+      ? (clip.error ?? "")
+      : "Its takes appear as soon as the poses are found.";
+  for (const id of ["save-gesture", "recognise", "expected"])
+    byId(id).disabled = !ready || !state.takes;
+  byId("clip-warnings").replaceChildren(
+    ...(clip.warnings ?? []).map((warning) => h("li", {}, warning)),
+  );
   byId("range-text").replaceChildren();
   drawTimeline();
 }
 
 /** Wire the buttons. */
 export function stageButtons() {
-  byId("save-gesture").onclick = () => saveGesture().catch((error) => complain(error, "Saving the gesture"));
+  byId("save-gesture").onclick = () =>
+    saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
   buildTransport();
 }

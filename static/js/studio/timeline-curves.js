@@ -17,30 +17,48 @@ export function filmstrip(clip, { thumbnails }, width, height) {
   const each = height * (clip.width / clip.height);
   const count = Math.max(1, Math.ceil(width / each));
   const source = `url(${api.clips.filmstrip(clip.id)})`;
-  return h("div", { className: "filmstrip", "aria-hidden": "true" }, Array.from({ length: count }, (_, place) => {
-    const index = Math.min(thumbnails - 1, Math.round(((place + 0.5) * each / width) * (thumbnails - 1)));
-    return h("i", { style: {
-      left: `${(100 * place * each) / width}%`, width: `${(100 * each) / width}%`,
-      "background-image": source, "background-size": `${thumbnails * 100}% 100%`,
-      "background-position": `${thumbnails > 1 ? (100 * index) / (thumbnails - 1) : 0}% 0`,
-    } });
-  }));
+  return h(
+    "div",
+    { className: "filmstrip", "aria-hidden": "true" },
+    Array.from({ length: count }, (_, place) => {
+      const index = Math.min(
+        thumbnails - 1,
+        Math.round((((place + 0.5) * each) / width) * (thumbnails - 1)),
+      );
+      return h("i", {
+        style: {
+          left: `${(100 * place * each) / width}%`,
+          width: `${(100 * each) / width}%`,
+          "background-image": source,
+          "background-size": `${thumbnails * 100}% 100%`,
+          "background-position": `${thumbnails > 1 ? (100 * index) / (thumbnails - 1) : 0}% 0`,
+        },
+      });
+    }),
+  );
 }
 
 /** A line through `values`, interrupted where there is none. */
 function line(values, top, share) {
   let down = false;
-  return values.map((value, index) => {
-    if (value === null) { down = false; return ""; }
-    const command = `${down ? "L" : "M"}${share(index)} ${(HEIGHT * (1 - Math.min(1, value / top))).toFixed(2)}`;
-    down = true;
-    return command;
-  }).join("");
+  return values
+    .map((value, index) => {
+      if (value === null) {
+        down = false;
+        return "";
+      }
+      const command = `${down ? "L" : "M"}${share(index)} ${(HEIGHT * (1 - Math.min(1, value / top))).toFixed(2)}`;
+      down = true;
+      return command;
+    })
+    .join("");
 }
 
 /** The largest of what ordinary frames show: a landmark that jumps must not flatten the rest. */
 function topOf(timeline) {
-  const values = CURVES.flatMap(({ name }) => timeline.speed[name]).filter((value) => value !== null).sort((one, other) => one - other);
+  const values = CURVES.flatMap(({ name }) => timeline.speed[name])
+    .filter((value) => value !== null)
+    .sort((one, other) => one - other);
   return Math.max(0.5, values[Math.floor(0.98 * (values.length - 1))] ?? 0);
 }
 
@@ -51,17 +69,34 @@ export function curves(timeline) {
   const share = (index) => ((1000 * time[index]) / last).toFixed(1);
   const top = topOf(timeline);
   const area = `M0 ${HEIGHT}${salute.map((value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`).join("")}L1000 ${HEIGHT}Z`;
-  const drawing = svg("svg", { viewBox: `0 0 1000 ${HEIGHT}`, preserveAspectRatio: "none", role: "img", "aria-label": "Salute\u2019s confidence and the wrists\u2019 speed along the clip" },
+  const drawing = svg(
+    "svg",
+    {
+      viewBox: `0 0 1000 ${HEIGHT}`,
+      preserveAspectRatio: "none",
+      role: "img",
+      "aria-label": "Salute\u2019s confidence and the wrists\u2019 speed along the clip",
+    },
     svg("path", { class: "salute-area", d: area }),
     svg("path", { class: "salute-bar", d: `M0 ${HEIGHT * (1 - SALUTE)}H1000` }),
-    ...CURVES.map(({ name, className }) => svg("path", { class: className, d: line(speed[name], top, share) })));
+    ...CURVES.map(({ name, className }) =>
+      svg("path", { class: className, d: line(speed[name], top, share) }),
+    ),
+  );
   const length = unit === "torso_length" ? "torso lengths" : "extents";
-  return h("div", { className: "curves", title: `Speed up to ${top.toFixed(1)} ${length} a second` }, drawing);
+  return h(
+    "div",
+    { className: "curves", title: `Speed up to ${top.toFixed(1)} ${length} a second` },
+    drawing,
+  );
 }
 
 /** What the curves are, in words. */
 export function legend() {
-  return h("ul", { className: "curve-legend", "aria-label": "Curves" },
+  return h(
+    "ul",
+    { className: "curve-legend", "aria-label": "Curves" },
     h("li", {}, h("i", { className: "salute-area" }), "salute"),
-    CURVES.map(({ className, text }) => h("li", {}, h("i", { className }), text)));
+    CURVES.map(({ className, text }) => h("li", {}, h("i", { className }), text)),
+  );
 }

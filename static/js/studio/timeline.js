@@ -17,7 +17,9 @@ function ruler(duration) {
   const step = tickStep(duration);
   const ticks = [];
   for (let second = 0; second <= duration - step / 3; second += step) {
-    ticks.push(h("span", { style: { left: percent(second, duration) } }, `${Number(second.toFixed(1))} s`));
+    ticks.push(
+      h("span", { style: { left: percent(second, duration) } }, `${Number(second.toFixed(1))} s`),
+    );
   }
   return h("div", { className: "ruler", "aria-hidden": "true" }, ticks);
 }
@@ -25,28 +27,51 @@ function ruler(duration) {
 function takeButton(take, index, duration) {
   const chosen = state.take === index;
   const length = take.end - take.start || 1;
-  const stroke = h("span", { className: "stroke", style: { left: percent(take.stroke_start - take.start, length), width: percent(take.stroke_end - take.stroke_start, length) } });
+  const stroke = h("span", {
+    className: "stroke",
+    style: {
+      left: percent(take.stroke_start - take.start, length),
+      width: percent(take.stroke_end - take.stroke_start, length),
+    },
+  });
   const name = `Take ${index + 1}`;
-  return h("button", {
-    type: "button",
-    className: `take${chosen ? " chosen" : ""}${take.closed ? "" : " open"}`,
-    "aria-pressed": String(chosen),
-    "aria-label": `${name}, ${moment(take.start)} to ${moment(take.end)}${take.closed ? "" : ", no closing salute"}`,
-    title: `${name}: from salute to salute. The bright part is the gesture, without the hand's way from and to the salute.`,
-    style: { left: percent(take.start, duration), width: percent(take.end - take.start, duration) },
-    onclick: () => update({ take: index, start: null, end: null, recognition: null }),
-  }, stroke, h("span", { className: "take-name" }, name, take.closed ? null : h("small", {}, " open")));
+  return h(
+    "button",
+    {
+      type: "button",
+      className: `take${chosen ? " chosen" : ""}${take.closed ? "" : " open"}`,
+      "aria-pressed": String(chosen),
+      "aria-label": `${name}, ${moment(take.start)} to ${moment(take.end)}${take.closed ? "" : ", no closing salute"}`,
+      title: `${name}: from salute to salute. The bright part is the gesture, without the hand's way from and to the salute.`,
+      style: {
+        left: percent(take.start, duration),
+        width: percent(take.end - take.start, duration),
+      },
+      onclick: () => update({ take: index, start: null, end: null, recognition: null }),
+    },
+    stroke,
+    h("span", { className: "take-name" }, name, take.closed ? null : h("small", {}, " open")),
+  );
 }
 
 /** Where a salute opens or closes a take. */
 function saluteMark(seconds, kind, duration) {
-  return h("span", { className: `salute ${kind}`, title: "Vulcan salute", style: { left: percent(seconds, duration) } }, icon("salute"));
+  return h(
+    "span",
+    {
+      className: `salute ${kind}`,
+      title: "Vulcan salute",
+      style: { left: percent(seconds, duration) },
+    },
+    icon("salute"),
+  );
 }
 
-const saluteMarks = (take, duration) => [
-  saluteMark(take.start, "opens", duration),
-  take.closed ? saluteMark(take.end, "closes", duration) : null,
-].filter(Boolean);
+const saluteMarks = (take, duration) =>
+  [
+    saluteMark(take.start, "opens", duration),
+    take.closed ? saluteMark(take.end, "closes", duration) : null,
+  ].filter(Boolean);
 
 /** When the last frame is shown: the right edge of the timeline. */
 const lastMoment = () => state.timeline.time.at(-1) || 1;
@@ -56,15 +81,31 @@ const frameAt = (seconds) => nearestFrame(state.timeline.time, seconds);
 
 function handle(which) {
   const label = which === "start" ? "Start of the range" : "End of the range";
-  const input = h("input", { type: "range", className: `handle ${which}`, min: 0, max: lastMoment(), step: "any", "aria-label": label, title: `${label}: drag, or use the arrow keys, frame by frame` });
-  const to = (frame) => { move(which, frame); seek(frame); };
+  const input = h("input", {
+    type: "range",
+    className: `handle ${which}`,
+    min: 0,
+    max: lastMoment(),
+    step: "any",
+    "aria-label": label,
+    title: `${label}: drag, or use the arrow keys, frame by frame`,
+  });
+  const to = (frame) => {
+    move(which, frame);
+    seek(frame);
+  };
   input.oninput = () => to(frameAt(Number(input.value)));
   // The browser's own step would be a share of the length, not a frame.
   input.onkeydown = (event) => {
     const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
     if (!way) return;
     event.preventDefault();
-    to(Math.min(state.timeline.time.length - 1, Math.max(0, frameAt(Number(input.value)) + way * (event.shiftKey ? 10 : 1))));
+    to(
+      Math.min(
+        state.timeline.time.length - 1,
+        Math.max(0, frameAt(Number(input.value)) + way * (event.shiftKey ? 10 : 1)),
+      ),
+    );
   };
   return input;
 }
@@ -84,15 +125,26 @@ function move(which, frame) {
   const range = selectedRange();
   const last = time.length - 1;
   const [start, end] = [frameAt(range.start), frameAt(range.end)];
-  const moved = which === "start"
-    ? [Math.max(0, Math.min(frame, last - LEAST_FRAMES)), Math.max(end, Math.min(last, frame + LEAST_FRAMES))]
-    : [Math.min(start, Math.max(0, frame - LEAST_FRAMES)), Math.min(last, Math.max(frame, LEAST_FRAMES))];
+  const moved =
+    which === "start"
+      ? [
+          Math.max(0, Math.min(frame, last - LEAST_FRAMES)),
+          Math.max(end, Math.min(last, frame + LEAST_FRAMES)),
+        ]
+      : [
+          Math.min(start, Math.max(0, frame - LEAST_FRAMES)),
+          Math.min(last, Math.max(frame, LEAST_FRAMES)),
+        ];
   update({ take: null, recognition: null, start: time[moved[0]], end: time[moved[1]] });
 }
 
 /** Let the range start, or end, at the frame on display. */
-export const setStart = () => { if (state.timeline && state.position) move("start", state.position.frame); };
-export const setEnd = () => { if (state.timeline && state.position) move("end", state.position.frame); };
+export const setStart = () => {
+  if (state.timeline && state.position) move("start", state.position.frame);
+};
+export const setEnd = () => {
+  if (state.timeline && state.position) move("end", state.position.frame);
+};
 
 function summary(range, takes) {
   const where = `${moment(range.start)} \u2013 ${moment(range.end)}`;
@@ -116,7 +168,9 @@ function scrub(area) {
     to(event);
     area.onpointermove = to;
   };
-  area.onpointerup = area.onpointercancel = () => { area.onpointermove = null; };
+  area.onpointerup = area.onpointercancel = () => {
+    area.onpointermove = null;
+  };
 }
 
 /** Draw the timeline of the clip on display. */
@@ -127,19 +181,39 @@ export function drawTimeline() {
   if (clip?.status !== "done" || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
   const track = box.querySelector(".track");
-  const lengths = h("div", { className: "range", style: { left: percent(range.start, duration), width: percent(range.end - range.start, duration) } });
+  const lengths = h("div", {
+    className: "range",
+    style: {
+      left: percent(range.start, duration),
+      width: percent(range.end - range.start, duration),
+    },
+  });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
   const salutes = state.takes.flatMap((take) => saluteMarks(take, duration));
-  const note = h("p", { className: "range-text" },
+  const note = h(
+    "p",
+    { className: "range-text" },
     h("span", { role: "status" }, summary(range, state.takes)),
     state.take === null && state.takes.length
-      ? h("button", { type: "button", className: "link", onclick: () => update({ take: 0, start: null, end: null, recognition: null }) }, `Back to ${plural(state.takes.length, "take")}`)
-      : null);
+      ? h(
+          "button",
+          {
+            type: "button",
+            className: "link",
+            onclick: () => update({ take: 0, start: null, end: null, recognition: null }),
+          },
+          `Back to ${plural(state.takes.length, "take")}`,
+        )
+      : null,
+  );
   if (track && box.dataset.clip === clip.id) {
     // The handle being dragged must stay the same element.
-    const focused = track.querySelector(".take:focus") ? [...track.querySelectorAll(".take")].indexOf(document.activeElement) : -1;
+    const focused = track.querySelector(".take:focus")
+      ? [...track.querySelectorAll(".take")].indexOf(document.activeElement)
+      : -1;
     track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
-    track.querySelector(".filmstrip")?.after(lengths, ...salutes, ...takes) ?? track.prepend(lengths, ...salutes, ...takes);
+    track.querySelector(".filmstrip")?.after(lengths, ...salutes, ...takes) ??
+      track.prepend(lengths, ...salutes, ...takes);
     if (focused >= 0) takes[focused]?.focus();
     placeHandles(track, range);
     byId("range-text").replaceChildren(note);
@@ -147,8 +221,22 @@ export function drawTimeline() {
   }
   box.dataset.clip = clip.id;
   const behind = h("div", { className: "curve-area" }, curves(state.timeline));
-  const lane = h("div", { className: "track", role: "group", "aria-label": "Takes" }, lengths, salutes, takes, handle("start"), handle("end"));
-  const along = h("div", { className: "along" }, lane, behind, h("i", { className: "now", id: "now" }));
+  const lane = h(
+    "div",
+    { className: "track", role: "group", "aria-label": "Takes" },
+    lengths,
+    salutes,
+    takes,
+    handle("start"),
+    handle("end"),
+  );
+  const along = h(
+    "div",
+    { className: "along" },
+    lane,
+    behind,
+    h("i", { className: "now", id: "now" }),
+  );
   box.replaceChildren(along, h("div", { className: "under" }, ruler(duration), legend()));
   lane.prepend(filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight) ?? "");
   placeHandles(lane, range);
@@ -160,5 +248,6 @@ export function drawTimeline() {
 /** Show where the clock stands. */
 export function drawNow() {
   const line = document.getElementById("now");
-  if (line && state.position && state.timeline) line.style.left = percent(state.position.time, lastMoment());
+  if (line && state.position && state.timeline)
+    line.style.left = percent(state.position.time, lastMoment());
 }

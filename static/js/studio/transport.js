@@ -30,24 +30,78 @@ function neighbour(by) {
   if (takes[next]) update({ take: next, start: null, end: null, recognition: null });
 }
 
-const button = (name, label, keys, onclick) => h("button", { type: "button", className: "quiet icon", id: `do-${name}`, "aria-label": label, title: `${label} (${keys})`, onclick }, icon(name));
+const button = (name, label, keys, onclick) =>
+  h(
+    "button",
+    {
+      type: "button",
+      className: "quiet icon",
+      id: `do-${name}`,
+      "aria-label": label,
+      title: `${label} (${keys})`,
+      onclick,
+    },
+    icon(name),
+  );
 
 /** Build the bar, and let the keys do what it does. */
 export function buildTransport() {
   byId("transport").replaceChildren(
-    h("div", { className: "transport-buttons" },
+    h(
+      "div",
+      { className: "transport-buttons" },
       button("back", "One frame back", ",", () => step(-1)),
       button("play", "Play", "Space", toggle),
-      button("forth", "One frame on", ".", () => step(1))),
+      button("forth", "One frame on", ".", () => step(1)),
+    ),
     h("p", { className: "clock", id: "clock" }),
-    h("small", { className: "dim num", id: "picture-of", title: "Of a clip this long not every picture is kept. Choose a take or a shorter range to see them all." }),
+    h("small", {
+      className: "dim num",
+      id: "picture-of",
+      title:
+        "Of a clip this long not every picture is kept. Choose a take or a shorter range to see them all.",
+    }),
     h("label", { className: "visually-hidden", for: "speed" }, "Speed"),
-    h("select", { id: "speed", title: "Speed", onchange: () => { if (state.position?.playing) play(speed()); } }, SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`))),
-    h("button", { type: "button", className: "quiet icon", id: "do-loop", "aria-label": "Repeat the range", title: "Repeat the range", onclick: () => loop(!state.position?.loop) }, icon("loop")),
-    h("span", { className: "joined edges" },
-      h("button", { type: "button", title: "Let the range start here ([)", onclick: setStart }, "Start here"),
-      h("button", { type: "button", title: "Let the range end here (])", onclick: setEnd }, "End here")));
-  const when = () => selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
+    h(
+      "select",
+      {
+        id: "speed",
+        title: "Speed",
+        onchange: () => {
+          if (state.position?.playing) play(speed());
+        },
+      },
+      SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`)),
+    ),
+    h(
+      "button",
+      {
+        type: "button",
+        className: "quiet icon",
+        id: "do-loop",
+        "aria-label": "Repeat the range",
+        title: "Repeat the range",
+        onclick: () => loop(!state.position?.loop),
+      },
+      icon("loop"),
+    ),
+    h(
+      "span",
+      { className: "joined edges" },
+      h(
+        "button",
+        { type: "button", title: "Let the range start here ([)", onclick: setStart },
+        "Start here",
+      ),
+      h(
+        "button",
+        { type: "button", title: "Let the range end here (])", onclick: setEnd },
+        "End here",
+      ),
+    ),
+  );
+  const when = () =>
+    selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
   const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
   keys(["Space"], "Play or pause", toggle);
   keys([","], "One frame back", () => step(-1));
@@ -80,5 +134,8 @@ export function drawTransport({ position }) {
   const other = !playing && position.picture !== null && position.picture !== frame;
   byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
   byId("do-loop").setAttribute("aria-pressed", String(position.loop));
-  byId("clock").replaceChildren(h("b", {}, moment(time)), ` frame ${frame} of ${frames}${playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : ""}`);
+  byId("clock").replaceChildren(
+    h("b", {}, moment(time)),
+    ` frame ${frame} of ${frames}${playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : ""}`,
+  );
 }

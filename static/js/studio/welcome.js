@@ -38,11 +38,19 @@ const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "
 function question(samples, languages) {
   const sample = samples.find(({ name }) => name === MISREAD.name);
   const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
-  const language = languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
+  const language =
+    languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
   if (!sample || !language) return null;
-  const button = h("button", { type: "button", className: "question" },
+  const button = h(
+    "button",
+    { type: "button", className: "question" },
     h("b", {}, `Why was a ${MISREAD.expected} read as a ${MISREAD.read}?`),
-    h("span", {}, "A robot misread this sample clip. See which voters were wrong, when and why, and what would have helped."));
+    h(
+      "span",
+      {},
+      "A robot misread this sample clip. See which voters were wrong, when and why, and what would have helped.",
+    ),
+  );
   button.onclick = async () => {
     await choose(language.id);
     const clip = await addSample(sample, button);
@@ -54,46 +62,85 @@ function question(samples, languages) {
 function welcome(samples, languages) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
-    h("ol", { className: "steps" }, STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text)))),
+    h(
+      "ol",
+      { className: "steps" },
+      STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
+    ),
     question(samples, languages),
-    h("div", { className: "welcome-actions" },
-      h("button", { type: "button", className: "primary", onclick: () => byId("file").click() }, "Choose clips"),
-      samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null),
+    h(
+      "div",
+      { className: "welcome-actions" },
+      h(
+        "button",
+        { type: "button", className: "primary", onclick: () => byId("file").click() },
+        "Choose clips",
+      ),
+      samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null,
+    ),
     samples.length ? samplesList(offered(samples)) : null,
   ];
 }
 
 /** For when the clip on display was deleted elsewhere. */
-const noClip = () => h("div", { className: "welcome-none" }, h("h1", {}, "No clip is shown"), h("p", { className: "dim" }, "Choose one from the list, or drop another one."));
+const noClip = () =>
+  h(
+    "div",
+    { className: "welcome-none" },
+    h("h1", {}, "No clip is shown"),
+    h("p", { className: "dim" }, "Choose one from the list, or drop another one."),
+  );
 
 /** The clip's own picture under the skeleton; `showProgress` moves both on. */
 function progressPanel(clip) {
   // The video of a dive recording is made while its poses are found.
-  const video = clip.topics.length ? null : h("video", { src: api.clips.video(clip.id), muted: true, playsInline: true, preload: "auto", "aria-hidden": "true" });
-  if (video) firstMoment(video).then((start) => { video.dataset.start = start; });
-  return h("div", { className: "welcome-progress" },
-    h("div", { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
+  const video = clip.topics.length
+    ? null
+    : h("video", {
+        src: api.clips.video(clip.id),
+        muted: true,
+        playsInline: true,
+        preload: "auto",
+        "aria-hidden": "true",
+      });
+  if (video)
+    firstMoment(video).then((start) => {
+      video.dataset.start = start;
+    });
+  return h(
+    "div",
+    { className: "welcome-progress" },
+    h(
+      "div",
+      { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
       video,
-      skeleton(clip.width, clip.height)),
+      skeleton(clip.width, clip.height),
+    ),
     h("h1"),
     h("progress", { "aria-label": "Progress" }),
-    h("p", { className: "dim", role: "status" }));
+    h("p", { className: "dim", role: "status" }),
+  );
 }
 
 /** Show the frame in which the newest pose was found, and the pose. */
 function showPose(panel, clip, { time, pose }) {
   const video = panel.querySelector("video");
-  const playable = video && !video.error && (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
+  const playable =
+    video &&
+    !video.error &&
+    (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
   // A seek that is cut short by the next shows nothing, so the next waits.
-  if (playable && !video.seeking && video.dataset.start) video.currentTime = Number(video.dataset.start) + time;
+  if (playable && !video.seeking && video.dataset.start)
+    video.currentTime = Number(video.dataset.start) + time;
   drawPose(panel.querySelector(".skeleton"), pose);
 }
 
 /** Change what moves in the panel, and keep the rest: the video would be loaded anew. */
 function showProgress(panel, clip, job) {
   const bar = panel.querySelector("progress");
-  panel.querySelector("h1").textContent = clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses";
+  panel.querySelector("h1").textContent =
+    clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses";
   panel.querySelector("[role=status]").textContent = statusText(clip, job);
   if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
   else bar.removeAttribute("value");
@@ -108,11 +155,29 @@ export function drawWelcome({ clips, uploads, samples, languages, jobs, loaded }
   const nothing = loaded && !clips.length && !uploads.length;
   const unchosen = loaded && clips.length > 0 && clip === null && !uploads.length;
   const asks = clip !== null && needsTopic(clip);
-  const shows = busy ? clip.job_id : asks ? `topics ${clip.id}` : unchosen ? "unchosen" : nothing ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}` : "";
+  const shows = busy
+    ? clip.job_id
+    : asks
+      ? `topics ${clip.id}`
+      : unchosen
+        ? "unchosen"
+        : nothing
+          ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}`
+          : "";
   box.hidden = !shows;
   if (box.dataset.shows !== shows) {
     box.dataset.shows = shows;
-    box.replaceChildren(...(busy ? [progressPanel(clip)] : asks ? [topicsPanel(clip)] : unchosen ? [noClip()] : nothing ? [h("div", {}, welcome(samples, languages))] : []));
+    box.replaceChildren(
+      ...(busy
+        ? [progressPanel(clip)]
+        : asks
+          ? [topicsPanel(clip)]
+          : unchosen
+            ? [noClip()]
+            : nothing
+              ? [h("div", {}, welcome(samples, languages))]
+              : []),
+    );
   }
   if (busy) showProgress(box, clip, jobs.get(clip.job_id));
 }

@@ -25,10 +25,23 @@ function costs({ alignments, expected }) {
   const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
   if (!alignment) return null;
   const steps = alignment.time.map(() => alignment.parts.map(() => 0));
-  alignment.pairs.forEach(([step], index) => alignment.costs[index].forEach((cost, part) => { steps[step][part] += cost; }));
+  alignment.pairs.forEach(([step], index) =>
+    alignment.costs[index].forEach((cost, part) => {
+      steps[step][part] += cost;
+    }),
+  );
   const totals = alignment.parts.map((_, part) => steps.reduce((sum, step) => sum + step[part], 0));
-  const shown = totals.map((total, part) => ({ total, part })).sort((one, other) => other.total - one.total).filter(({ total }) => total > 0).slice(0, MOST_PARTS);
-  return { time: alignment.time, steps, lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })), label: expected };
+  const shown = totals
+    .map((total, part) => ({ total, part }))
+    .sort((one, other) => other.total - one.total)
+    .filter(({ total }) => total > 0)
+    .slice(0, MOST_PARTS);
+  return {
+    time: alignment.time,
+    steps,
+    lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })),
+    label: expected,
+  };
 }
 
 /** Draw the costs along the clip's time; height and shade both say how much. */
@@ -38,11 +51,29 @@ function lane({ time, steps }, { part, name }, most, last) {
     const from = index ? (time[index - 1] + time[index]) / 2 : time[index];
     const to = index + 1 < time.length ? (time[index] + time[index + 1]) / 2 : time[index];
     const amount = Math.sqrt(step[part] / most);
-    return svg("rect", { x: share(from), width: Math.max(0.5, share(to) - share(from)), y: LANE * (1 - amount), height: LANE * amount, "fill-opacity": (0.35 + 0.65 * amount).toFixed(2) });
+    return svg("rect", {
+      x: share(from),
+      width: Math.max(0.5, share(to) - share(from)),
+      y: LANE * (1 - amount),
+      height: LANE * amount,
+      "fill-opacity": (0.35 + 0.65 * amount).toFixed(2),
+    });
   });
-  return h("div", { className: "cost-lane" },
-    svg("svg", { viewBox: `0 0 1000 ${LANE}`, preserveAspectRatio: "none", role: "img", "aria-label": `Difference of the ${readable(name)} along the clip` }, ...bars),
-    h("span", {}, readable(name)));
+  return h(
+    "div",
+    { className: "cost-lane" },
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 1000 ${LANE}`,
+        preserveAspectRatio: "none",
+        role: "img",
+        "aria-label": `Difference of the ${readable(name)} along the clip`,
+      },
+      ...bars,
+    ),
+    h("span", {}, readable(name)),
+  );
 }
 
 /** Under the curves: where along the take it differs from what was expected, and in which joint. */
@@ -50,35 +81,74 @@ export function drawCosts({ why, timeline }) {
   const box = byId("costs");
   const found = why && timeline && !why.right ? costs(why) : null;
   if (!found?.lanes.length) return box.replaceChildren();
-  const most = Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
+  const most =
+    Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
   return box.replaceChildren(
-    h("p", { className: "cost-title" }, "Where it differs from ", h("b", { className: "expected" }, found.label)),
-    ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)));
+    h(
+      "p",
+      { className: "cost-title" },
+      "Where it differs from ",
+      h("b", { className: "expected" }, found.label),
+    ),
+    ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)),
+  );
 }
 
 /** What a change of the language does to its other gestures, in words. */
 function effectOf(effect) {
   if (!effect) return null;
   if (effect.right_after < effect.right_before) {
-    const [shown, are] = effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
-    return h("small", { className: "expected" }, `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`);
+    const [shown, are] =
+      effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
+    return h(
+      "small",
+      { className: "expected" },
+      `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`,
+    );
   }
-  return h("small", { className: "dim" }, `the others stay right (${effect.right_after} of ${effect.takes})`);
+  return h(
+    "small",
+    { className: "dim" },
+    `the others stay right (${effect.right_after} of ${effect.takes})`,
+  );
 }
 
 function remedy(found) {
-  return h("li", {},
-    h("button", { type: "button", onclick: () => tryOut(found) }, h("span", {}, found.change.words)),
+  return h(
+    "li",
+    {},
+    h(
+      "button",
+      { type: "button", onclick: () => tryOut(found) },
+      h("span", {}, found.change.words),
+    ),
     h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
-    effectOf(found.effect));
+    effectOf(found.effect),
+  );
 }
 
-const shared = (href, title, note) => h("span", {}, h("a", { href, download: "" }, title), h("small", { className: "dim" }, ` ${note}`));
+const shared = (href, title, note) =>
+  h(
+    "span",
+    {},
+    h("a", { href, download: "" }, title),
+    h("small", { className: "dim" }, ` ${note}`),
+  );
 
 /** The take for people without a studio, and the whole clip for the tools of a robot's team. */
-const shares = (result, why) => h("p", { className: "share" },
-  why ? shared(api.recognitions.analysisUrl(result.id), "Share as one file", "plays without a server") : null,
-  shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"));
+const shares = (result, why) =>
+  h(
+    "p",
+    { className: "share" },
+    why
+      ? shared(
+          api.recognitions.analysisUrl(result.id),
+          "Share as one file",
+          "plays without a server",
+        )
+      : null,
+    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"),
+  );
 
 /** Draw why, under the take. */
 export function drawWhy({ why, result, trial }) {
@@ -87,15 +157,41 @@ export function drawWhy({ why, result, trial }) {
   const asks = result && result.expected === null;
   box.hidden = !result || (!why && !asks && !trying);
   if (box.hidden) return box.replaceChildren();
-  if (asks && !trying) return box.replaceChildren(h("div", { className: "why-words" },
-    h("p", { className: "dim" }, "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help."), shares(result, null)));
+  if (asks && !trying)
+    return box.replaceChildren(
+      h(
+        "div",
+        { className: "why-words" },
+        h(
+          "p",
+          { className: "dim" },
+          "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help.",
+        ),
+        shares(result, null),
+      ),
+    );
   const remedies = why && !why.right ? why.counterfactuals : [];
   const words = [
     trying,
     why ? h("p", { className: "why-sentence" }, why.sentence) : null,
-    remedies.length ? h("div", { className: "remedies" }, h("h2", {}, `It would have been read as ${why.expected}`), h("ul", {}, remedies.map(remedy))) : null,
-    why && !why.right && !remedies.length ? h("p", { className: "dim" }, `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`) : null,
+    remedies.length
+      ? h(
+          "div",
+          { className: "remedies" },
+          h("h2", {}, `It would have been read as ${why.expected}`),
+          h("ul", {}, remedies.map(remedy)),
+        )
+      : null,
+    why && !why.right && !remedies.length
+      ? h(
+          "p",
+          { className: "dim" },
+          `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`,
+        )
+      : null,
     result ? shares(result, why) : null,
   ];
-  return box.replaceChildren(...[h("div", { className: "why-words" }, words), alignmentsOf(why)].filter(Boolean));
+  return box.replaceChildren(
+    ...[h("div", { className: "why-words" }, words), alignmentsOf(why)].filter(Boolean),
+  );
 }

@@ -19,11 +19,21 @@ let shown = Promise.resolve();
 // there only while no page is there to hold it, and the copy has none.
 let mine = sessionStorage.getItem(KEY);
 sessionStorage.removeItem(KEY);
-addEventListener("pagehide", () => { if (mine) sessionStorage.setItem(KEY, mine); });
-addEventListener("pageshow", ({ persisted }) => { if (persisted) sessionStorage.removeItem(KEY); });
+addEventListener("pagehide", () => {
+  if (mine) sessionStorage.setItem(KEY, mine);
+});
+addEventListener("pageshow", ({ persisted }) => {
+  if (persisted) sessionStorage.removeItem(KEY);
+});
 
 /** The workspace of this tab, where the server still knows it. */
-const remembered = async () => (mine ? api.workspaces.find(mine).catch((error) => { if (error.status === 404) return null; throw error; }) : null);
+const remembered = async () =>
+  mine
+    ? api.workspaces.find(mine).catch((error) => {
+        if (error.status === 404) return null;
+        throw error;
+      })
+    : null;
 
 async function open() {
   let workspace = await remembered();
@@ -38,7 +48,14 @@ async function open() {
 function loadFrame(url) {
   const frame = byId("lab");
   explain(null);
-  const late = setTimeout(() => explain("The 3D view is taking long", "It has not answered yet. The rest of the page works without it."), LOADING_LIMIT);
+  const late = setTimeout(
+    () =>
+      explain(
+        "The 3D view is taking long",
+        "It has not answered yet. The rest of the page works without it.",
+      ),
+    LOADING_LIMIT,
+  );
   frame.onload = () => watch(frame, late);
   frame.src = `${url}?hideViserLogo`;
 }
@@ -48,7 +65,10 @@ function watch(frame, late) {
   const page = frame.contentDocument;
   if (!page?.querySelector("#root")) {
     clearTimeout(late);
-    explain("The 3D view did not load", "The server no longer knows this workspace, or something between it and the browser is in the way.");
+    explain(
+      "The 3D view did not load",
+      "The server no longer knows this workspace, or something between it and the browser is in the way.",
+    );
     return;
   }
   const drawn = () => {
@@ -67,13 +87,20 @@ function explain(title, text) {
   const box = byId("lab-problem");
   box.hidden = !title;
   if (!title) return;
-  box.replaceChildren(h("b", {}, title), h("p", {}, text), h("button", { type: "button", onclick: restart }, "Try again"));
+  box.replaceChildren(
+    h("b", {}, title),
+    h("p", {}, text),
+    h("button", { type: "button", onclick: restart }, "Try again"),
+  );
 }
 
 /** Open the tab's workspace. */
 export function openWorkspace() {
   if (!document.createElement("canvas").getContext("webgl2")) {
-    explain("No 3D view here", "This browser offers no WebGL 2. Clips, takes, gestures and recognition work without it.");
+    explain(
+      "No 3D view here",
+      "This browser offers no WebGL 2. Clips, takes, gestures and recognition work without it.",
+    );
   }
   opened = open();
   opened.catch(() => explain("The 3D view did not load", "The server did not open a workspace."));
@@ -105,7 +132,7 @@ async function send(view, again = true) {
     await api.workspaces.show(id, view);
   } catch (error) {
     // A restarted server knows no workspaces: open another one, once.
-    if (error.status !== 404 || !again || await remembered()) throw error;
+    if (error.status !== 404 || !again || (await remembered())) throw error;
     await openWorkspace();
     await send(view, false);
   }

@@ -12,7 +12,9 @@ export async function kindOfJson(file) {
   const head = await file.slice(0, HEAD).text();
   if (/"osg-studio\/gesture-language"/.test(head)) return "language";
   if (/^\s*\{[^{]*"people"\s*:\s*\[/.test(head)) return "frame";
-  return /^\s*(\[|\{[^]*?"(frames|poses|data|results)"\s*:\s*\[)/.test(head) ? "keypoints" : "language";
+  return /^\s*(\[|\{[^]*?"(frames|poses|data|results)"\s*:\s*\[)/.test(head)
+    ? "keypoints"
+    : "language";
 }
 
 const NEEDS = {
@@ -32,14 +34,37 @@ export function askForVideo(name, { code }, told = {}) {
     title: "What was the video like?",
     text: `${name} holds keypoints and no video. ${NEEDS[code]}`,
     fields: [
-      { name: "frame_rate", label: "Frames a second", value: told.frame_rate ?? "30", required: code === "frame_rate_needed", most: 12 },
-      { name: "frame_size", label: "Width x height in pixels", value: told.frame_size ?? "", required, most: 16, hint: "As 1920x1080. Needed where places are told as fractions of the picture." },
+      {
+        name: "frame_rate",
+        label: "Frames a second",
+        value: told.frame_rate ?? "30",
+        required: code === "frame_rate_needed",
+        most: 12,
+      },
+      {
+        name: "frame_size",
+        label: "Width x height in pixels",
+        value: told.frame_size ?? "",
+        required,
+        most: 16,
+        hint: "As 1920x1080. Needed where places are told as fractions of the picture.",
+      },
     ],
     action: "Add the clip",
     submit: (values) => {
-      if (values.frame_rate && !(Number(values.frame_rate) > 0)) throw new Error(`\u201c${values.frame_rate}\u201d is no number of frames a second; type one, as 29.97.`);
-      if (values.frame_size && !/^\d+\s*x\s*\d+$/.test(size(values.frame_size))) throw new Error(`\u201c${values.frame_size}\u201d is no size; type width and height, as 1920x1080.`);
-      return Object.fromEntries(Object.entries({ ...values, frame_size: size(values.frame_size) }).filter(([, value]) => value));
+      if (values.frame_rate && !(Number(values.frame_rate) > 0))
+        throw new Error(
+          `\u201c${values.frame_rate}\u201d is no number of frames a second; type one, as 29.97.`,
+        );
+      if (values.frame_size && !/^\d+\s*x\s*\d+$/.test(size(values.frame_size)))
+        throw new Error(
+          `\u201c${values.frame_size}\u201d is no size; type width and height, as 1920x1080.`,
+        );
+      return Object.fromEntries(
+        Object.entries({ ...values, frame_size: size(values.frame_size) }).filter(
+          ([, value]) => value,
+        ),
+      );
     },
   });
 }

@@ -8,7 +8,8 @@ const PART = 8 * 2 ** 20; // bytes of one request: what is sent again at most wh
 const FIRST_PAUSE = 500; // ms before the first attempt to go on; each further one waits twice as long,
 const LONGEST_PAUSE = 8000; // up to this: whoever comes back into the network's reach waits no longer.
 
-const cancelled = () => new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
+const cancelled = () =>
+  new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
 
 /** Where the address of a file's upload is kept, so that the same file goes on after a reload. */
 const keyOf = ({ name, size, lastModified }) => `osg-studio.upload.${size}.${lastModified}.${name}`;
@@ -17,7 +18,9 @@ function keep(file, place) {
   try {
     if (place) localStorage.setItem(keyOf(file), place);
     else localStorage.removeItem(keyOf(file));
-  } catch { /* A full or forbidden store: the upload goes on as long as its tab lives. */ }
+  } catch {
+    /* A full or forbidden store: the upload goes on as long as its tab lives. */
+  }
 }
 
 function kept(file) {
@@ -39,13 +42,22 @@ async function ask(method, place, headers = {}) {
   return response.headers;
 }
 
-const stand = (place, headers) => ({ place, offset: Number(headers.get("Upload-Offset")), clip: headers.get("Content-Location")?.split("/").at(-1) ?? null });
+const stand = (place, headers) => ({
+  place,
+  offset: Number(headers.get("Upload-Offset")),
+  clip: headers.get("Content-Location")?.split("/").at(-1) ?? null,
+});
 
 const base64 = (text) => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 
 async function begin(file, fields) {
-  const told = Object.entries({ filename: file.name, ...fields }).map(([name, text]) => `${name} ${base64(text)}`);
-  const headers = await ask("POST", PLACE, { "Upload-Length": String(file.size), "Upload-Metadata": told.join(",") });
+  const told = Object.entries({ filename: file.name, ...fields }).map(
+    ([name, text]) => `${name} ${base64(text)}`,
+  );
+  const headers = await ask("POST", PLACE, {
+    "Upload-Length": String(file.size),
+    "Upload-Metadata": told.join(","),
+  });
   const place = headers.get("Location");
   keep(file, place);
   return { place, offset: 0, clip: null };
@@ -68,24 +80,35 @@ function send(call, file, { place, offset }, onProgress) {
   const sent = new Promise((resolve, reject) => {
     call.upload.onprogress = ({ loaded }) => onProgress(offset + loaded);
     call.onload = () => {
-      if (call.status < 300) return resolve(stand(place, { get: (name) => call.getResponseHeader(name) }));
+      if (call.status < 300)
+        return resolve(stand(place, { get: (name) => call.getResponseHeader(name) }));
       let problem = {};
       try {
         problem = JSON.parse(call.responseText);
-      } catch { /* a proxy's own error page */ }
+      } catch {
+        /* a proxy's own error page */
+      }
       return reject(new ApiError(problem, call.status));
     };
     call.onerror = () => reject(unreachable());
     call.onabort = () => reject(cancelled());
   });
   call.open("PATCH", place);
-  for (const [name, value] of Object.entries({ ...VERSION, "Upload-Offset": String(offset), "Content-Type": "application/offset+octet-stream" })) call.setRequestHeader(name, value);
+  for (const [name, value] of Object.entries({
+    ...VERSION,
+    "Upload-Offset": String(offset),
+    "Content-Type": "application/offset+octet-stream",
+  }))
+    call.setRequestHeader(name, value);
   call.send(file.slice(offset, offset + PART));
   return sent;
 }
 
 /** Whether going on later may help: nobody answered, or the server and this page disagree how far it is. */
-const mayGoOn = (error) => isAway(error) || [502, 503, 504].includes(error.status) || ["upload_offset", "upload_broken_off"].includes(error.code);
+const mayGoOn = (error) =>
+  isAway(error) ||
+  [502, 503, 504].includes(error.status) ||
+  ["upload_offset", "upload_broken_off"].includes(error.code);
 
 /**
  * Upload a file. `fields` are what is told of it beside its bytes, as the API names them.
@@ -116,7 +139,10 @@ export function upload(file, fields, onProgress) {
         if (!mayGoOn(error)) throw error;
         onProgress(came, true);
         at = null;
-        await new Promise((resolve) => { wake = resolve; setTimeout(resolve, pause); });
+        await new Promise((resolve) => {
+          wake = resolve;
+          setTimeout(resolve, pause);
+        });
         pause = Math.min(LONGEST_PAUSE, 2 * pause);
       }
     }

@@ -17,14 +17,30 @@ let counter = 0;
 
 /** An upload that has not begun. */
 const waiting = (file, first, uploaded) => ({
-  key: String(counter++), file, first, uploaded, fields: {}, status: "waiting", loaded: 0, total: file.size, away: false, began: null, error: null, cancel: null,
+  key: String(counter++),
+  file,
+  first,
+  uploaded,
+  fields: {},
+  status: "waiting",
+  loaded: 0,
+  total: file.size,
+  away: false,
+  began: null,
+  error: null,
+  cancel: null,
 });
 
 /** Import a file ending in .json as a language where it is one; tells whether it is a clip instead. */
 async function isClip(file) {
   const kind = await kindOfJson(file);
   if (kind === "language") importLanguage(file);
-  else if (kind === "frame") toast("OpenPose\u2019s frames belong together", "Pack the folder that --write_json wrote as a .zip, and drop that.", { kind: "error" });
+  else if (kind === "frame")
+    toast(
+      "OpenPose\u2019s frames belong together",
+      "Pack the folder that --write_json wrote as a .zip, and drop that.",
+      { kind: "error" },
+    );
   return kind === "keypoints";
 }
 
@@ -36,14 +52,17 @@ export async function addFiles(files, uploaded = null) {
   const added = [];
   // A list of its own: the browser empties the one of a drop, or of the field, meanwhile.
   for (const file of [...files]) {
-    if (!/\.json$/i.test(file.name) || await isClip(file)) added.push(waiting(file, !added.length, uploaded));
+    if (!/\.json$/i.test(file.name) || (await isClip(file)))
+      added.push(waiting(file, !added.length, uploaded));
   }
   if (added.length) update({ uploads: [...state.uploads, ...added] });
   startNext();
 }
 
 function change(key, patch) {
-  update({ uploads: state.uploads.map((upload) => (upload.key === key ? { ...upload, ...patch } : upload)) });
+  update({
+    uploads: state.uploads.map((upload) => (upload.key === key ? { ...upload, ...patch } : upload)),
+  });
 }
 
 function forget(key) {
@@ -52,18 +71,28 @@ function forget(key) {
 
 function startNext() {
   const running = state.uploads.filter((upload) => upload.status === "uploading").length;
-  for (const upload of state.uploads.filter((each) => each.status === "waiting").slice(0, AT_ONCE - running)) start(upload);
+  for (const upload of state.uploads
+    .filter((each) => each.status === "waiting")
+    .slice(0, AT_ONCE - running))
+    start(upload);
 }
 
 async function start(upload) {
   // The rate counts from where this attempt found the file, which may be its middle.
   let began = null;
   const advanced = (loaded, away) => {
-    began = away ? null : began ?? { loaded, at: performance.now() };
+    began = away ? null : (began ?? { loaded, at: performance.now() });
     change(upload.key, { loaded, away, began });
   };
   const call = send(upload.file, upload.fields, advanced);
-  change(upload.key, { status: "uploading", cancel: call.cancel, loaded: 0, away: false, began: null, error: null });
+  change(upload.key, {
+    status: "uploading",
+    cancel: call.cancel,
+    loaded: 0,
+    away: false,
+    began: null,
+    error: null,
+  });
   try {
     const id = await call.done;
     forget(upload.key);
@@ -106,7 +135,8 @@ function withoutName(error, name) {
 function stage(upload) {
   if (upload.status === "waiting") return "Waiting for the other uploads";
   if (upload.status === "failed") return withoutName(upload.error, upload.file.name);
-  if (upload.away) return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; goes on by itself`;
+  if (upload.away)
+    return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; goes on by itself`;
   if (upload.loaded >= upload.total) return "Checking what is in it";
   const { began } = upload;
   const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at); // bytes a ms
@@ -124,15 +154,30 @@ function draw(upload, element) {
     return element;
   }
   const stop = () => (upload.status === "uploading" ? upload.cancel() : forget(key));
-  return h("li", { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
+  return h(
+    "li",
+    { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
     h("div", { className: "poster blank" }, icon("plus")),
-    h("div", { className: "clip-text" },
+    h(
+      "div",
+      { className: "clip-text" },
       h("b", {}, upload.file.name),
       h("span", { className: "stage-text" }, stage(upload)),
-      failed ? null : h("progress", { max: Math.max(1, upload.total), value: upload.loaded, "aria-label": `Upload of ${upload.file.name}` })),
-    h("div", { className: "clip-buttons" },
+      failed
+        ? null
+        : h("progress", {
+            max: Math.max(1, upload.total),
+            value: upload.loaded,
+            "aria-label": `Upload of ${upload.file.name}`,
+          }),
+    ),
+    h(
+      "div",
+      { className: "clip-buttons" },
       failed ? iconButton("retry", `Retry ${upload.file.name}`, () => retry(upload)) : null,
-      iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop)));
+      iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop),
+    ),
+  );
 }
 
 /** Draw the uploads. */
@@ -163,7 +208,9 @@ export function acceptFiles() {
     depth = 0;
     veil.hidden = true;
     const take = takers.get(state.view) ?? addFiles;
-    Promise.resolve(take(event.dataTransfer.files)).catch((error) => complain(error, "Adding the files"));
+    Promise.resolve(take(event.dataTransfer.files)).catch((error) =>
+      complain(error, "Adding the files"),
+    );
   });
   const input = byId("file");
   input.onchange = () => {
