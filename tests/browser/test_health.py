@@ -94,7 +94,7 @@ def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
     page = open_page(scene=False)
     rates = [takes / 40 for takes in range(41)]
     rounded = page.evaluate(
-        "async (rates) => rates.map((await import('/static/js/health/report-words.js')).percent)", rates
+        "async (rates) => rates.map((await import('/static/js/health/rates.js')).percent)", rates
     )
     assert rounded == [f"{rate:.0%}".removesuffix("%") for rate in rates]
 

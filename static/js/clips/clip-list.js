@@ -1,72 +1,15 @@
-// The clips: what each is, how far its poses are, and the samples for a first try.
+// The list of clips in the library: each with its picture, its progress and its buttons.
 
 import * as api from "../core/api.js";
-import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
-import { duration, plural, timeLeft } from "../core/format.js";
-import { refresh } from "../core/list-refresh.js";
-import { state, update } from "../core/state.js";
+import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { recordAction, showDone } from "../core/undo.js";
+import { BUSY, needsTopic, reloadClips, select, statusText } from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
-import { did, tellDone } from "../core/undo.js";
 
-export const BUSY = new Set(["queued", "running"]);
 const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
-const STAGES = {
-  queued: "Waiting for its turn",
-  starting: "Starting",
-  poses: "Finding poses",
-  saving: "Saving",
-};
-
 let inView = null; // the clip that the list was last scrolled to
-
-export async function reloadClips() {
-  const clips = await attempt("Loading the clips", api.clips.list);
-  if (clips) update({ clips });
-}
-
-/** Load one clip that changed. */
-export const reloadClip = (id) =>
-  refresh(id, {
-    load: api.clips.get,
-    current: () => state.clips,
-    order: (one, other) =>
-      other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
-    take: (clips) => update({ clips }),
-  });
-
-/** Show another clip. */
-export function select(id) {
-  update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
-}
-
-/** Take over a job's progress, as the server tells it. */
-export function followJob(job) {
-  update({ jobs: new Map(state.jobs).set(job.id, job) });
-  const clip = state.clips.find((each) => each.job_id === job.id);
-  if (!clip || clip.status !== job.status) reloadClip(job.clip_id);
-}
-
-/** Whether a clip is a dive recording of which nobody chose a topic yet. */
-export const needsTopic = (clip) => clip.error_code === "topic_needed";
-
-/** Say in words how far a clip is. */
-export function statusText(clip, job) {
-  if (needsTopic(clip)) return `${plural(clip.topics.length, "topic")}: choose one`;
-  if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
-  if (clip.status === "cancelled") return "Cancelled before its poses were found";
-  if (BUSY.has(clip.status)) {
-    const stage = STAGES[job?.stage] ?? STAGES[clip.status] ?? "Working";
-    if (!job?.total || job.stage !== "poses") return stage;
-    return `${stage}, ${job.done} of ${job.total} frames${job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`}`;
-  }
-  return [
-    clip.duration ? duration(clip.duration) : null,
-    clip.frames ? plural(clip.frames, "frame") : null,
-  ]
-    .filter(Boolean)
-    .join(" \u00b7 ");
-}
 
 async function remove(clip) {
   const done = await attempt("Deleting the clip", async () => {
@@ -78,8 +21,8 @@ async function remove(clip) {
   await reloadClips();
   // The next one moves up to its place, as in every list.
   if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
-  did({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
-  tellDone("Clip deleted", clip.name);
+  recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
+  showDone("Clip deleted", clip.name);
 }
 
 async function retry(clip) {
@@ -215,40 +158,4 @@ export function findClips() {
     inView = null; // Where the clip on display is among those found is another place.
     drawClips(state);
   };
-}
-
-/** "circle_a_demonstration.mp4" as people read it. */
-const readable = (name) => name.replace(/\.\w+$/, "").replace(/[_-]+/g, " ");
-
-/** Add a sample clip and show it; resolves to its id, or null. */
-export async function addSample(sample, button) {
-  button.disabled = true;
-  const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
-  button.disabled = false;
-  if (!accepted) return null;
-  await reloadClips();
-  select(accepted.id);
-  return accepted.id;
-}
-
-/** Make the list of sample clips, each a button that adds it. */
-export function samplesList(samples) {
-  return h(
-    "ul",
-    { className: "samples" },
-    samples.map((sample) => {
-      const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
-      button.onclick = () => addSample(sample, button);
-      return h("li", {}, button);
-    }),
-  );
-}
-
-/** Offer the sample clips in the library, folded away. */
-export function drawSamples({ samples }) {
-  byId("samples").replaceChildren(
-    ...(samples.length
-      ? [h("details", {}, h("summary", {}, "Sample clips"), samplesList(samples))]
-      : []),
-  );
 }

@@ -1,7 +1,5 @@
 // The keyboard: one list of what every key does, which is also what `?` shows.
 
-import { byId, h } from "./dom.js";
-
 const bound = [];
 
 const TYPED_IN =
@@ -66,80 +64,10 @@ function pressed(event) {
   found.run(event);
 }
 
-const keyCaps = (combination) => combination.split("+").map((key) => h("kbd", {}, key));
-
-let loadAll = async () => {};
-
-/** Let `load()` bring the modules that bind keys and were not needed so far, before all are told. */
-export const loadBeforeTelling = (load) => {
-  loadAll = load;
-};
-
-/** Write the keys that are bound by now, by what they belong to. */
-function drawKeys(list) {
-  const groups = [...new Set(bound.map((each) => each.group))];
-  list.replaceChildren(
-    ...groups.map((group) =>
-      h(
-        "section",
-        {},
-        h("h3", {}, group),
-        h(
-          "dl",
-          {},
-          bound
-            .filter((each) => each.group === group)
-            .map((each) =>
-              h("div", {}, h("dt", {}, keyCaps(each.keys[0])), h("dd", {}, each.text)),
-            ),
-        ),
-      ),
-    ),
-  );
-}
-
-/** Show all keys: those known here at once, and those of views that were not opened as they come. */
-export function showKeys() {
-  const dialog = byId("dialog");
-  const list = h("div", { className: "key-groups" });
-  drawKeys(list);
-  loadAll().then(() => drawKeys(list));
-  dialog.replaceChildren(
-    h(
-      "div",
-      { className: "key-list" },
-      h("h2", { id: "dialog-title" }, "Keys"),
-      list,
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h(
-          "button",
-          {
-            type: "button",
-            onclick: () => {
-              dialog.close();
-              import("../studio/tour.js").then(({ startTour }) => startTour());
-            },
-          },
-          "Tour",
-        ),
-        h(
-          "button",
-          { type: "button", className: "primary", autofocus: true, onclick: () => dialog.close() },
-          "Close",
-        ),
-      ),
-    ),
-  );
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
-}
-
 /** Hear the keys that are pressed in a window: this one, or a frame in it. */
 export function listenToKeys(heard = window) {
   heard.addEventListener("keydown", pressed);
 }
 
-bind({ keys: ["?"], text: "Show all keys", group: "Everywhere", run: showKeys });
+/** The bindings made so far, in their order; read only. */
+export const bindings = () => bound;

@@ -1,16 +1,17 @@
-// The connection to the server: what changes there, and what is done when it was away.
+// The stream of server-sent events: what changes on the server, and whether it can be reached.
 
 import * as api from "./api.js";
-import { followJob, reloadClip, reloadClips } from "../clips/clip-list.js";
 import { byId } from "./dom.js";
-import { reloadLanguages, reloadOneLanguage } from "../languages/language-store.js";
 import { state, update } from "./state.js";
-import { restart } from "../studio/workspace.js";
 
 const RETRY = 1000; // ms, as the server asks of the browser
 
-/** Hear of every change on the server; when that begins, also after a break, load what was missed. */
-export function followServer(lost = false) {
+/**
+ * Listen to every change on the server. `handlers` has a function per kind of event, `clips(id)`,
+ * `languages(id)` and `jobs(job)`; `opened()`, which loads what was missed, is called whenever the
+ * stream opens, and `returned()` when it opens after a break.
+ */
+export function followServer(handlers, lost = false) {
   const stream = api.changes();
   let away = lost;
   const data = (event) => {
@@ -22,11 +23,10 @@ export function followServer(lost = false) {
   };
   stream.onopen = () => {
     update({ connected: true });
-    // What changed since everything was loaded was not heard of; nothing is sent twice.
-    reloadClips();
-    reloadLanguages();
+    // The server sends no event twice: what changed since everything was loaded is loaded again.
+    handlers.opened();
     if (away) {
-      restart();
+      handlers.returned();
       update({ returns: state.returns + 1 });
     }
     away = false;
@@ -34,20 +34,20 @@ export function followServer(lost = false) {
   stream.onerror = () => {
     away = true;
     update({ connected: false });
-    // The browser tries again by itself, but not where somebody answered that nobody is there.
-    if (stream.readyState === EventSource.CLOSED) setTimeout(followServer, RETRY, true);
+    // The browser reconnects by itself, but not after an HTTP error, such as a proxy's 502.
+    if (stream.readyState === EventSource.CLOSED) setTimeout(followServer, RETRY, handlers, true);
   };
-  stream.addEventListener("clips", (event) => reloadClip(data(event).id));
-  stream.addEventListener("languages", (event) => reloadOneLanguage(data(event).id));
+  stream.addEventListener("clips", (event) => handlers.clips(data(event).id));
+  stream.addEventListener("languages", (event) => handlers.languages(data(event).id));
   stream.addEventListener("checks", (event) => update({ checking: data(event) }));
   stream.addEventListener("recognitions", (event) => update({ recognised: data(event).id }));
   stream.addEventListener("jobs", (event) => {
     const job = data(event);
-    if (job.id) followJob(job);
+    if (job.id) handlers.jobs(job);
   });
 }
 
-/** Say whether the server is there. */
+/** Show whether the server can be reached. */
 export function drawConnection({ connected }) {
   const element = byId("connection");
   element.textContent =

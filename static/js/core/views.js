@@ -1,26 +1,13 @@
 // The views of the page: one is shown at a time, named in the URL, and loaded when first shown.
 
 import { byId, h, reconcile } from "./dom.js";
-import { holdKeys, loadBeforeTelling } from "./keys.js";
+import { holdKeys } from "./keys.js";
 import { follow, state, update } from "./state.js";
 
 /** The view at the start, which the URL does not name. */
 const FIRST = "studio";
 
-// A passing view has a tab only while it is open: elsewhere there is nothing it could show.
-const VIEWS = [
-  { name: FIRST, title: "Studio" },
-  { name: "languages", title: "Languages", load: () => import("../languages/languages-view.js") },
-  {
-    name: "gesture",
-    title: "Gesture",
-    load: () => import("../editor/gesture-editor.js"),
-    passing: true,
-  },
-  { name: "phrases", title: "Phrases", load: () => import("../phrases/phrases-view.js") },
-  { name: "health", title: "Health", load: () => import("../health/health-view.js") },
-  { name: "live", title: "Live", load: () => import("../live/live-view.js") },
-];
+let views = []; // `{ name, title, load, passing }`
 
 const opened = new Map();
 const guards = new Map();
@@ -38,7 +25,7 @@ export async function go(view, change = {}) {
 }
 
 /** Whether there is a view of that name. */
-export const knows = (view) => VIEWS.some((each) => each.name === view);
+export const knows = (view) => views.some((each) => each.name === view);
 
 /** The address of a view, for a link that can be copied or opened in another tab. */
 export function address(view, change = {}) {
@@ -63,7 +50,7 @@ export const here = (run) => (event) => {
 function drawTabs(current) {
   reconcile(
     byId("views"),
-    VIEWS.filter(({ name, passing }) => !passing || name === current),
+    views.filter(({ name, passing }) => !passing || name === current),
     ({ name }) => name,
     ({ name, title }, known) => {
       const link = known ?? h("a", { onclick: here(() => go(name)) }, title);
@@ -80,8 +67,8 @@ async function show() {
   const current = nameOf(state.view);
   drawTabs(current);
   document.body.dataset.view = current;
-  for (const { name } of VIEWS) byId(`view-${name}`).hidden = name !== current;
-  const { load } = VIEWS.find((each) => each.name === current);
+  for (const { name } of views) byId(`view-${name}`).hidden = name !== current;
+  const { load } = views.find((each) => each.name === current);
   if (!load || opened.has(current)) return;
   const loading = load().then(({ open }) => open(byId(`view-${current}`)));
   opened.set(current, loading);
@@ -89,9 +76,15 @@ async function show() {
   await loading;
 }
 
-/** Follow what is selected. A view's module exports `open(section)`, called when it is first shown. */
-export function followViews() {
+/** Load every view's module, also of those that were not opened so far. */
+export const loadViews = () => Promise.allSettled(views.map(({ load }) => load?.()));
+
+/**
+ * Show the selected one of `list`, each `{ name, title, load, passing }`. `load()` imports the view's
+ * module, which exports `open(section)`, called when the view is first shown. A passing view has a
+ * tab only while it is open: elsewhere there is nothing it could show.
+ */
+export function followViews(list) {
+  views = list;
   follow(["view"], show);
-  // Without the server what is here already is told.
-  loadBeforeTelling(() => Promise.allSettled(VIEWS.map(({ load }) => load?.())));
 }

@@ -1,16 +1,16 @@
 // The demonstration: which part of which clip, shown frame by frame, with its two ends to be moved.
 
+import { filmstrip } from "../clips/filmstrip.js";
 import * as api from "../core/api.js";
-import { filmstrip } from "../studio/timeline-curves.js";
 import { h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { nearestFrame } from "../core/frame-times.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 import { change, draft, saved } from "./gesture-draft.js";
 import { figure } from "./pose-picture.js";
 import { chosenIn } from "./salient-keypoints.js";
-import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 
 const BY_HAND = "by hand";
 

@@ -1,7 +1,7 @@
 // A draft as the server takes it: to preview it, and to save it as one revision.
 
 import * as api from "../core/api.js";
-import { edit } from "../studio/gesture-cards.js";
+import { edit } from "../languages/revision-edit.js";
 import { read } from "../languages/robot-command.js";
 
 const SWITCHES = ["direction", "tempo", "mirror"];

@@ -4,12 +4,14 @@ import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/keys.js";
-import { choose, reloadLanguages } from "../languages/language-store.js";
 import { follow, selectedRange, state } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
-import { tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
+import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
+import { take } from "./demonstration-panel.js";
+import { requestOf, save } from "./draft-saving.js";
 import {
   begin,
   canRedo,
@@ -26,12 +28,10 @@ import {
   undo,
 } from "./gesture-draft.js";
 import { switches, textProblem, texts } from "./gesture-form.js";
-import { keypoints, toggle } from "./salient-keypoints.js";
 import { mayLeave } from "./leave-dialog.js";
 import { previewing } from "./preview-requests.js";
 import { health, image } from "./preview-results.js";
-import { requestOf, save } from "./draft-saving.js";
-import { take } from "./demonstration-panel.js";
+import { keypoints, toggle } from "./salient-keypoints.js";
 
 const GROUP = "Editing a gesture";
 
@@ -163,7 +163,7 @@ function build(section, about) {
       const label = draft().label.trim();
       const now = await save(about.language, gesture, draft(), saved());
       abandon();
-      tellDone("Gesture saved", `${label}, in ${now.name}`);
+      showDone("Gesture saved", `${label}, in ${now.name}`);
     } catch (error) {
       if (error.code !== "cancelled") tell(error.message);
       else abandon(); // Somebody else's change was preferred to this one.

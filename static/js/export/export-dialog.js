@@ -141,3 +141,13 @@ export async function openExport() {
   dialog.onclose = null;
   dialog.showModal();
 }
+
+/** Bind the button in the header. */
+export function bindExport() {
+  byId("export").onclick = openExport;
+}
+
+/** Enable the button for a language with gestures. */
+export function drawExportButton({ gestures }) {
+  byId("export").disabled = !gestures?.gestures.length;
+}

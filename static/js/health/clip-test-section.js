@@ -1,11 +1,11 @@
 // The batch test on the page: drop clips, correct their labels, see what was confused, open the clips.
 
-import { statusText } from "../clips/clip-list.js";
+import { statusText } from "../clips/clip-store.js";
 import { h, iconButton } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
-import { takeFilesIn } from "../upload/upload-list.js";
 import { address, go, here } from "../core/views.js";
+import { takeFilesIn } from "../upload/upload-list.js";
 import {
   addTestClips,
   correct,

@@ -3,9 +3,9 @@
 // A take is in the test as long as its newest recognition says what was meant. So the test is the
 // same for everybody, survives reloads, and is repeated whenever the language has changed.
 
+import { labelInName } from "../clips/clip-label.js";
+import { BUSY } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
-import { BUSY } from "../clips/clip-list.js";
-import { proposed } from "../studio/gesture-cards.js";
 import { state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { addFiles } from "../upload/upload-list.js";
@@ -80,10 +80,7 @@ export function addTestClips(files) {
 /** What a pending clip is taken for: what was chosen, or what its name says. */
 export const meantBy = ({ clip, expected }) =>
   expected ??
-  proposed(
-    state.clips.find(({ id }) => id === clip),
-    state.gestures?.gestures ?? [],
-  );
+  labelInName(state.clips.find(({ id }) => id === clip)?.name ?? "", state.gestures?.labels ?? []);
 
 /** Say what a clip that was not recognised yet shows. */
 export const means = (clip, expected) =>

@@ -2,12 +2,12 @@
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
-import { edit } from "../studio/gesture-cards.js";
 import { complain } from "../core/toasts.js";
-import { tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
+import { edit } from "../languages/revision-edit.js";
 import { compare, editLink } from "./finding-links.js";
-import { told } from "./report-words.js";
+import { told } from "./rates.js";
 
 const AT_FIRST = 5; // Warnings shown before the matrix and the map; the worst come first.
 const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.
@@ -23,7 +23,7 @@ async function switchOn(kind, gestures, text, button) {
   button.disabled = true;
   try {
     await edit("Applying the remedy", `Remedy: ${text}`, change);
-    tellDone("Remedy applied", text);
+    showDone("Remedy applied", text);
   } catch (error) {
     complain(error, "Applying the remedy");
     button.disabled = false;

@@ -3,7 +3,7 @@
 import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
 import { editLink } from "./finding-links.js";
-import { percent, told } from "./report-words.js";
+import { percent, told } from "./rates.js";
 
 /** A rate with a bar of that length and its interval; over the bar it is marked by a sign as well. */
 function rate(forecast, bar) {

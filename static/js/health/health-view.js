@@ -7,13 +7,14 @@ import { follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { batchSection } from "./clip-test-section.js";
-import { forecastTable } from "./gesture-estimates.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { compare } from "./finding-links.js";
+import { warningsList } from "./findings-list.js";
+import { forecastTable } from "./gesture-estimates.js";
+import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
 import { languageMap } from "./language-map.js";
 import { predicted, showPair } from "./pair-page.js";
-import { cancel, check, isCurrent, keepChecked, percent, told } from "./report-words.js";
-import { warningsList } from "./findings-list.js";
+import { percent, told } from "./rates.js";
 
 const STAGES = {
   rehearsing: "Rehearsing takes of every gesture",

@@ -5,11 +5,11 @@ import { h, icon } from "../core/dom.js";
 import { bind } from "../core/keys.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { stepsOf, timeCursor } from "./pair-cursor.js";
 import { editLink, pairOf } from "./finding-links.js";
-import { boxOf, movingPaths } from "./movement-paths.js";
-import { told } from "./report-words.js";
 import { warningsList } from "./findings-list.js";
+import { boxOf, movingPaths } from "./movement-paths.js";
+import { stepsOf, timeCursor } from "./pair-cursor.js";
+import { told } from "./rates.js";
 
 const close = () => update({ pair: null });
 

@@ -91,7 +91,7 @@ async function deedsSince(from) {
  * Let the user pick. Resolves to `{ before, language }`: the revision that was changed, and the
  * language as it is now. Throws `cancelled` when theirs is kept, and a 412 when nothing is chosen.
  */
-export async function settleRace({ doing, title, from, mine, change }) {
+export async function settleConflict({ doing, title, from, mine, change }) {
   const [theirs, deeds] = await Promise.all([api.languages.get(from.id), deedsSince(from)]);
   const compared = await api.languages.compare(from.id, from.revision, theirs.revision);
   const theirGestures = compared.gestures.map(({ kind, before, after }) => ({

@@ -2,11 +2,11 @@
 
 import * as api from "../core/api.js";
 import { ask } from "../core/dialogs.js";
-import { edit } from "../studio/gesture-cards.js";
-import { begin, choose, reloadLanguages } from "./language-store.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { did, tellDone } from "../core/undo.js";
+import { recordAction, showDone } from "../core/undo.js";
+import { begin, choose, reloadLanguages } from "./language-store.js";
+import { edit } from "./revision-edit.js";
 
 /** Ask for another name and author. */
 export async function rename({ id }) {
@@ -54,10 +54,10 @@ export async function remove(language) {
     return true;
   });
   if (!done) return reloadLanguages();
-  did({ title: `Deletion of ${language.name}`, kind: "language", id: language.id });
+  recordAction({ title: `Deletion of ${language.name}`, kind: "language", id: language.id });
   if (state.language === language.id) update({ language: null, recognition: null });
   await reloadLanguages();
-  return tellDone("Language deleted", language.name);
+  return showDone("Language deleted", language.name);
 }
 
 /** Show a language's history, compared with what was before its newest change. */
@@ -67,7 +67,7 @@ export async function openHistory({ id }) {
 }
 
 /** Bring a sample language, also one that was deleted. */
-export async function addSample({ name, title }) {
+export async function addSampleLanguage({ name, title }) {
   const language = await attempt("Adding the sample", () => api.samples.addLanguage(name));
   if (language) await begin(language, `Sample ${title}`, "Sample language added");
 }

@@ -3,12 +3,12 @@
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
-import { choose } from "./language-store.js";
 import { menu } from "../core/menu.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
-import { duplicate, openHistory, remove, rename } from "./language-actions.js";
 import { showHealth } from "./card-health.js";
+import { duplicate, openHistory, remove, rename } from "./language-actions.js";
+import { choose } from "./language-store.js";
 
 const PICTURES = 5; // A row of a card; the rest are told by their number.
 

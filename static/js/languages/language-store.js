@@ -1,14 +1,12 @@
-// Which language is edited, its import and its export.
+// The languages as the server has them: loading, selecting, creating and importing.
 
 import * as api from "../core/api.js";
 import { ask } from "../core/dialogs.js";
-import { byId, h } from "../core/dom.js";
-import { openExport } from "../export/export-dialog.js";
 import { plural } from "../core/format.js";
 import { refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { did, tellDone } from "../core/undo.js";
+import { recordAction, registerUndo, showDone } from "../core/undo.js";
 
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 
@@ -63,10 +61,10 @@ export function choose(id) {
 
 /** Work on a language that was just made; it can be taken back. */
 export async function begin(language, title, words) {
-  did({ title, kind: "created", id: language.id });
+  recordAction({ title, kind: "created", id: language.id });
   update({ languages: await api.languages.list() });
   await choose(language.id);
-  tellDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
+  showDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
 }
 
 /** Ask for a name and make an empty language; resolves to it, or null. */
@@ -92,21 +90,8 @@ export async function importLanguage(file) {
   if (language) await begin(language, `Import of ${file.name}`, "Language imported");
 }
 
-export function drawPicker({ languages, language }) {
-  const picker = byId("language");
-  picker.replaceChildren(...languages.map((each) => h("option", { value: each.id }, each.name)));
-  if (!languages.length) picker.append(h("option", { value: "" }, "No language yet"));
-  picker.disabled = !languages.length;
-  picker.value = language ?? "";
-}
+const remove = (id) => api.languages.remove({ id }).then(reloadLanguages);
+const restore = (id) => api.languages.restore(id).then(reloadLanguages);
 
-export function drawExport({ gestures }) {
-  byId("export").disabled = !gestures?.gestures.length;
-}
-
-/** Wire what the header offers. */
-export function manageLanguages() {
-  byId("language").onchange = (event) => choose(event.target.value);
-  byId("new-language").onclick = newLanguage;
-  byId("export").onclick = openExport;
-}
+registerUndo("language", { undo: ({ id }) => restore(id), redo: ({ id }) => remove(id) });
+registerUndo("created", { undo: ({ id }) => remove(id), redo: ({ id }) => restore(id) });

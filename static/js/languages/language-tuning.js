@@ -2,10 +2,10 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { edit } from "../studio/gesture-cards.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
-import { tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
+import { edit } from "./revision-edit.js";
 
 const UNTUNED = { profile: "full", tuning: null };
 
@@ -34,7 +34,7 @@ async function reset() {
     await edit("Recognising as before", "Recognition as the profile does", (language) =>
       api.languages.change(language, UNTUNED),
     );
-    tellDone("Recognised as any language", state.gestures.name);
+    showDone("Recognised as any language", state.gestures.name);
   } catch (error) {
     complain(error, "Recognising as before");
   }

@@ -2,11 +2,11 @@
 
 import { h, icon, reconcile } from "../core/dom.js";
 import { plural } from "../core/format.js";
-import { importLanguage, newLanguage } from "./language-store.js";
 import { follow, state } from "../core/state.js";
 import { drawCard } from "./language-card.js";
+import { importLanguage, newLanguage } from "./language-store.js";
 import { openHistoryPanel } from "./revision-history.js";
-import { drawSamples } from "./sample-languages.js";
+import { drawSampleLanguages } from "./sample-languages.js";
 
 const REDRAWN_EVERY = 60000; // ms. "2 minutes ago" grows old.
 
@@ -80,7 +80,7 @@ function library() {
   search.oninput = draw;
   follow(["languages", "language", "loaded"], draw);
   follow(["languages", "loaded"], ({ loaded }) => {
-    if (loaded) drawSamples(samples);
+    if (loaded) drawSampleLanguages(samples);
   });
   setInterval(draw, REDRAWN_EVERY);
   return h(

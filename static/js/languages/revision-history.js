@@ -3,12 +3,12 @@
 import * as api from "../core/api.js";
 import { h, icon, reconcile } from "../core/dom.js";
 import { ago, dateAndTime } from "../core/format.js";
-import { edit } from "../studio/gesture-cards.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
-import { tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
 import { address, here } from "../core/views.js";
 import { drawComparison } from "./revision-diff.js";
+import { edit } from "./revision-edit.js";
 
 let revisions = []; // of `of`, newest first
 let of = null;
@@ -28,7 +28,7 @@ async function goBack({ revision }) {
     await edit("Going back", `Going back to revision ${revision}`, (language) =>
       api.languages.revert(language, revision),
     );
-    tellDone(`Went back to revision ${revision}`, "The newer ones stay in the history.");
+    showDone(`Went back to revision ${revision}`, "The newer ones stay in the history.");
   } catch (error) {
     complain(error, "Going back");
   }

@@ -5,7 +5,7 @@ import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { addSample } from "./language-actions.js";
+import { addSampleLanguage } from "./language-actions.js";
 
 let samples = null;
 
@@ -25,14 +25,14 @@ function offer(sample) {
   );
   button.onclick = async () => {
     button.disabled = true;
-    await addSample(sample);
+    await addSampleLanguage(sample);
     button.disabled = false;
   };
   return h("li", {}, button);
 }
 
 /** Draw the offer, or nothing where all are there. */
-export async function drawSamples(box) {
+export async function drawSampleLanguages(box) {
   samples ??= await attempt("Loading the samples", api.samples.languages);
   const missing = (samples ?? []).filter((sample) => !present(sample));
   box.hidden = !missing.length;

@@ -5,14 +5,14 @@ import { byId, h } from "../core/dom.js";
 import { bind } from "../core/keys.js";
 import { follow, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
-import { addFiles } from "../upload/upload-list.js";
 import { go } from "../core/views.js";
-import { panel } from "./live-layout.js";
-import { openLink } from "./live-socket.js";
-import { drawSeen, overlay } from "./pose-overlay.js";
+import { addFiles } from "../upload/upload-list.js";
 import { countDown, record } from "./camera-recording.js";
+import { panel } from "./live-layout.js";
 import { addResult, clearResults, nothingHeard } from "./live-results.js";
-import { sayState, saySpeed } from "./live-status.js";
+import { openLink } from "./live-socket.js";
+import { saySpeed, sayState } from "./live-status.js";
+import { drawSeen, overlay } from "./pose-overlay.js";
 import {
   CAMERA_LOST,
   cameraPossible,

@@ -1,52 +1,6 @@
-// The grammar of the language on display, and the steps that change it. Each step is a function of a
-// grammar, so that it can be done again on top of what somebody else did meanwhile.
-
-import * as api from "../core/api.js";
-import { edit } from "../studio/gesture-cards.js";
-import { state } from "../core/state.js";
-import { complain } from "../core/toasts.js";
-
-const EMPTY = {
-  start: null,
-  end: null,
-  cancel: null,
-  timeout: 10,
-  most_phrases: 1,
-  slot_types: [],
-  phrases: [],
-};
+// Edits of a grammar, each a function of the grammar: so it can be applied again to a newer revision.
 
 export const ROLES = ["start", "end", "cancel"];
-
-export const grammar = () => state.gestures?.grammar ?? EMPTY;
-export const labels = () => state.gestures?.gestures.map(({ label }) => label) ?? [];
-
-let drawAgain = () => {};
-
-/** Call `react` when a step was refused: the form then shows what is not. */
-export const followRefusals = (react) => {
-  drawAgain = react;
-};
-
-// One after the other: a field may be left by pressing the next button.
-let working = Promise.resolve();
-
-/** Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to whether it was. */
-export function save(title, step) {
-  working = working.then(async () => {
-    try {
-      await edit("Changing the phrases", title, (base) =>
-        api.languages.change(base, { grammar: step(base.grammar ?? EMPTY) }),
-      );
-      return true;
-    } catch (error) {
-      complain(error, "Changing the phrases");
-      drawAgain();
-      return false;
-    }
-  });
-  return working;
-}
 
 /** A name that none of `taken` is: `stem`, or `stem` with a number. */
 export function free(stem, taken, joint = " ") {
@@ -71,9 +25,6 @@ const renamed = new Map();
 
 /** Remember a new name: what was pressed before the form showed it still means the same entry. */
 export const rememberName = (before, after) => renamed.set(before, after);
-
-/** Resolves when everything is saved, or refused. */
-export const saved = () => working;
 
 /** The name of the entry that has that name, or was given another one since. */
 export function called(list, name) {
@@ -106,7 +57,7 @@ export const slotsOf = (phrase) => everyPart(phrase.parts).filter((part) => part
 const framing = (whole) => ROLES.map((role) => whole[role]);
 
 /** The gesture to begin with: one that nothing uses yet, if there is one. */
-function fresh(whole) {
+function unusedGesture(whole, labels) {
   const used = new Set([
     ...framing(whole),
     ...whole.phrases.flatMap(({ parts }) =>
@@ -115,22 +66,29 @@ function fresh(whole) {
     ...whole.slot_types.flatMap(({ values }) => values.map(({ gesture }) => gesture)),
   ]);
   return (
-    labels().find((label) => !used.has(label)) ??
-    labels().find((label) => label !== whole.cancel) ??
-    labels()[0]
+    labels.find((label) => !used.has(label)) ??
+    labels.find((label) => label !== whole.cancel) ??
+    labels[0]
   );
 }
 
-export const gesturePart = (whole) => ({ gestures: [fresh(whole)], least: 1, most: 1 });
+export const gesturePart = (whole, labels) => ({
+  gestures: [unusedGesture(whole, labels)],
+  least: 1,
+  most: 1,
+});
 
-export function withPhrase(whole, name) {
+export function withPhrase(whole, name, labels) {
   return {
     ...whole,
-    phrases: [...whole.phrases, { name, parts: [gesturePart(whole)], command: null, says: "" }],
+    phrases: [
+      ...whole.phrases,
+      { name, parts: [gesturePart(whole, labels)], command: null, says: "" },
+    ],
   };
 }
 
-export function withSlotType(whole) {
+export function withSlotType(whole, labels) {
   const name = free(
     "number",
     whole.slot_types.map((each) => each.name),
@@ -139,14 +97,14 @@ export function withSlotType(whole) {
     ...whole,
     slot_types: [
       ...whole.slot_types,
-      { name, reads_as: "number", values: [{ gesture: fresh(whole), value: 1 }] },
+      { name, reads_as: "number", values: [{ gesture: unusedGesture(whole, labels), value: 1 }] },
     ],
   };
 }
 
 /** Add a slot to the parts at `path` of a phrase, and something to fill it with where there is nothing yet. */
-export function withSlot(whole, phraseName, path) {
-  const ready = whole.slot_types.length ? whole : withSlotType(whole);
+export function withSlot(whole, phraseName, path, labels) {
+  const ready = whole.slot_types.length ? whole : withSlotType(whole, labels);
   const type = ready.slot_types[0].name;
   const slug =
     type

@@ -2,7 +2,7 @@
 
 import { h } from "../core/dom.js";
 import { choice, numberField } from "./form-fields.js";
-import { grammar, labels, save } from "./grammar-edits.js";
+import { grammar, labels, save } from "./grammar-store.js";
 
 const TEXTS = {
   start: ["Starts with", "none: any phrase may begin"],

@@ -1,15 +1,16 @@
 // One phrase as a card: at a glance, or open with its form.
 
 import { h, icon } from "../core/dom.js";
-import { read, written } from "../languages/robot-command.js";
 import { plural } from "../core/format.js";
 import { state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
-import { tellDone } from "../core/undo.js";
-import { sequence } from "./phrase-sequence.js";
+import { showDone } from "../core/undo.js";
+import { read, written } from "../languages/robot-command.js";
 import { textField, tool } from "./form-fields.js";
-import { inPhrase, rememberName, save, slotsOf } from "./grammar-edits.js";
+import { inPhrase, rememberName, slotsOf } from "./grammar-edits.js";
+import { save } from "./grammar-store.js";
 import { addButtons, partList } from "./phrase-parts.js";
+import { sequence } from "./phrase-sequence.js";
 import { found, showExample } from "./phrase-trial.js";
 
 const put = (phrase, title, change) =>
@@ -38,7 +39,7 @@ async function remove(phrase) {
   )
     return;
   if (state.phrase === phrase.name) update({ phrase: null });
-  tellDone("Phrase deleted", phrase.name);
+  showDone("Phrase deleted", phrase.name);
 }
 
 function command(phrase, text) {

@@ -4,18 +4,16 @@ import { h, icon } from "../core/dom.js";
 import { checkbox, choice, numberField, textField, tool } from "./form-fields.js";
 import {
   gesturePart,
-  grammar,
   inPart,
   inParts,
   inPhrase,
-  labels,
   moved,
-  save,
   typed,
   without,
   withSlot,
   withSlotRenamed,
 } from "./grammar-edits.js";
+import { grammar, labels, save } from "./grammar-store.js";
 
 const idOf = (path) => `part-${path.join("-")}`;
 
@@ -227,12 +225,16 @@ export function addButtons(phrase, path = []) {
   return h(
     "div",
     { className: "part-add" },
-    button("gesture", "Gesture", () => add("New gesture in a phrase", gesturePart)),
-    button("slot", "Slot", () => save("New slot", (base) => withSlot(base, phrase.name, path))),
+    button("gesture", "Gesture", () =>
+      add("New gesture in a phrase", (base) => gesturePart(base, labels())),
+    ),
+    button("slot", "Slot", () =>
+      save("New slot", (base) => withSlot(base, phrase.name, path, labels())),
+    ),
     path.length
       ? null
       : button("group", "Group", () =>
-          add("New group", (base) => ({ parts: [gesturePart(base)], least: 0, most: 1 })),
+          add("New group", (base) => ({ parts: [gesturePart(base, labels())], least: 0, most: 1 })),
         ),
   );
 }

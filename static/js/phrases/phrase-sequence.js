@@ -1,7 +1,7 @@
 // A phrase at a glance: what is shown, one after the other.
 
 import { h } from "../core/dom.js";
-import { grammar } from "./grammar-edits.js";
+import { grammar } from "./grammar-store.js";
 
 const often = ({ least, most }) =>
   most === 1 ? "" : least === most ? ` \u00d7${most}` : ` \u00d7${Math.max(least, 1)}\u2013${most}`;

@@ -4,7 +4,8 @@ import * as api from "../core/api.js";
 import { h, reconcile } from "../core/dom.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { ROLES, called, grammar, saved } from "./grammar-edits.js";
+import { called, ROLES } from "./grammar-edits.js";
+import { grammar, saved } from "./grammar-store.js";
 
 /** After these a message is over, and the next gesture begins another one. */
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);

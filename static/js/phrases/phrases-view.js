@@ -3,21 +3,22 @@
 import { h, icon } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
-import { tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { redraw } from "./form-fields.js";
+import { free, withPhrase } from "./grammar-edits.js";
+import { followRefusals, grammar, labels, save } from "./grammar-store.js";
 import { framePanel } from "./message-frame.js";
-import { followRefusals, free, grammar, labels, save, withPhrase } from "./grammar-edits.js";
 import { phraseCard } from "./phrase-card.js";
-import { slotTypesPanel } from "./slot-types.js";
 import { followFound, found, show, trialPanel } from "./phrase-trial.js";
+import { slotTypesPanel } from "./slot-types.js";
 
 async function addPhrase() {
   const name = free(
     "phrase",
     grammar().phrases.map((each) => each.name),
   );
-  if (await save(`New ${name}`, (base) => withPhrase(base, name))) {
+  if (await save(`New ${name}`, (base) => withPhrase(base, name, labels()))) {
     update({ phrase: name });
     document.getElementById(`phrase-${grammar().phrases.length - 1}-name`)?.select();
   }
@@ -26,7 +27,7 @@ async function addPhrase() {
 async function takeOut() {
   if (!(await save("Phrases taken out", () => null))) return;
   update({ phrase: null, shown: null, paused: null });
-  tellDone("Phrases taken out", "Every gesture stands for itself.");
+  showDone("Phrases taken out", "Every gesture stands for itself.");
 }
 
 /** What is ambiguous, each with the message that shows it. */

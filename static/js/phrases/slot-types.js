@@ -3,17 +3,15 @@
 import { h, icon } from "../core/dom.js";
 import { choice, textField, tool } from "./form-fields.js";
 import {
-  grammar,
   inSlotType,
-  labels,
   rememberName,
-  save,
   slotsOf,
   typed,
   without,
   withSlotType,
   withSlotTypeRenamed,
 } from "./grammar-edits.js";
+import { grammar, labels, save } from "./grammar-store.js";
 
 const READS = [
   ["number", "a number each"],
@@ -187,7 +185,11 @@ export function slotTypesPanel() {
       {},
       h(
         "button",
-        { type: "button", id: "add-slot-type", onclick: () => save("New values", withSlotType) },
+        {
+          type: "button",
+          id: "add-slot-type",
+          onclick: () => save("New values", (base) => withSlotType(base, labels())),
+        },
         icon("plus"),
         "Add values",
       ),

@@ -3,8 +3,8 @@
 import { h, svg } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../core/frame-times.js";
-import { seek } from "./playback.js";
 import { state, update } from "../core/state.js";
+import { seek } from "./playback.js";
 
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it

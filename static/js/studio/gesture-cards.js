@@ -1,34 +1,14 @@
 // The gestures of the language, as cards with their trajectory images.
 
+import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
-import { reloadLanguage } from "../languages/language-store.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
-import { did, tellDone } from "../core/undo.js";
+import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
-
-/**
- * Change the language by `change(base)`, which calls the API with the revision `base`; it can be
- * taken back under `title`. `from` is what the user saw when beginning, `mine` what it would be
- * like then: both are shown when someone else was faster, and the user picks.
- */
-export async function edit(doing, title, change, { from = state.gestures, mine = from } = {}) {
-  let made;
-  try {
-    made = { before: from.revision, language: await change(from) };
-  } catch (error) {
-    if (error.status !== 412) throw error;
-    const { settleRace } = await import("../languages/edit-conflict.js");
-    await reloadLanguage();
-    made = await settleRace({ doing, title, from, mine, change });
-  }
-  const { before, language } = made;
-  if (state.language === language.id) update({ gestures: language });
-  did({ title, kind: "edit", language: language.id, before, after: language.revision });
-  return language;
-}
+import { edit } from "../languages/revision-edit.js";
 
 async function remove(gesture) {
   const from = state.gestures;
@@ -40,7 +20,7 @@ async function remove(gesture) {
       (language) => api.languages.removeGesture(language, gesture.label),
       { from, mine },
     );
-    tellDone("Gesture deleted", gesture.label);
+    showDone("Gesture deleted", gesture.label);
   } catch (error) {
     complain(error, "Deleting the gesture");
   }
@@ -102,31 +82,17 @@ export function drawGestures({ gestures, result }) {
 
 let shown = { result: null, clip: null };
 
-/** The words and numbers of a name, with a space around each. */
-const words = (name) => ` ${(name.toLowerCase().match(/\p{L}+|\p{N}+/gu) ?? []).join(" ")} `;
-
-/**
- * A clip called "circle-2.mp4" is probably meant as a circle, "unfinished triangle" as a triangle;
- * what its name begins with goes before what it mentions. Anyone can say otherwise.
- */
-export function proposed(clip, members) {
-  const name = words(clip?.name ?? "");
-  const named = members
-    .map(({ label }) => ({ label, at: words(label).trim() ? name.indexOf(words(label)) : -1 }))
-    .filter(({ at }) => at >= 0);
-  return (
-    named.sort((one, other) => one.at - other.at || other.label.length - one.label.length)[0]
-      ?.label ?? ""
-  );
-}
-
 /** Offer the labels as what was meant; a recognition that is opened says it itself. */
 function drawExpected(members, result) {
   const expected = byId("expected");
   const clip = selectedClip();
   let told = expected.value;
   if (result && result.id !== shown.result) told = result.expected ?? "";
-  else if (clip?.id !== shown.clip) told = proposed(clip, members);
+  else if (clip?.id !== shown.clip)
+    told = labelInName(
+      clip?.name ?? "",
+      members.map(({ label }) => label),
+    );
   shown = { result: result?.id ?? null, clip: clip?.id };
   expected.replaceChildren(
     h("option", { value: "" }, "not told"),

@@ -2,12 +2,12 @@
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
-import { edit } from "./gesture-cards.js";
-import { rangeOf, recogniseWith } from "./stage.js";
 import { state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
+import { showDone, undo } from "../core/undo.js";
 import { keepTuning } from "../languages/language-tuning.js";
-import { tellDone, undo } from "../core/undo.js";
+import { edit } from "../languages/revision-edit.js";
+import { rangeOf, recogniseWith } from "./stage.js";
 
 /** What differs from the profile in the recognition on display. */
 const tuning = () => state.result.tuning ?? state.gestures.tuning ?? { weights: {} };
@@ -84,7 +84,7 @@ async function keep({ change, edited }) {
   if (TUNING.has(change.kind)) {
     // By the language as it is now, so that what is shown is what a robot would say.
     await recogniseWith();
-    tellDone("Change kept", where);
+    showDone("Change kept", where);
   } else if (edited) toast("Change kept", where);
   else
     toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");

@@ -2,13 +2,13 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
+import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { frameShown } from "./playback.js";
-import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { drawTimeline } from "./timeline.js";
-import { attempt, complain, toast } from "../core/toasts.js";
 import { buildTransport } from "./transport.js";
-import { go } from "../core/views.js";
 import { show } from "./workspace.js";
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.

@@ -1,6 +1,5 @@
-// What lies behind the takes: thumbnails of the clip, the salute's confidence, the wrists' speed.
+// The curves under the timeline: the salute's confidence and the wrists' speed.
 
-import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";
 import { SALUTE } from "../core/salute-threshold.js";
 
@@ -10,33 +9,6 @@ const CURVES = [
   { name: "right_wrist", className: "right", text: "right wrist\u2019s speed" },
   { name: "left_wrist", className: "left", text: "left wrist\u2019s speed" },
 ];
-
-/** The thumbnails, as many as fit side by side, each at its own moment. */
-export function filmstrip(clip, { thumbnails }, width, height) {
-  if (!thumbnails || !width) return null;
-  const each = height * (clip.width / clip.height);
-  const count = Math.max(1, Math.ceil(width / each));
-  const source = `url(${api.clips.filmstrip(clip.id)})`;
-  return h(
-    "div",
-    { className: "filmstrip", "aria-hidden": "true" },
-    Array.from({ length: count }, (_, place) => {
-      const index = Math.min(
-        thumbnails - 1,
-        Math.round((((place + 0.5) * each) / width) * (thumbnails - 1)),
-      );
-      return h("i", {
-        style: {
-          left: `${(100 * place * each) / width}%`,
-          width: `${(100 * each) / width}%`,
-          "background-image": source,
-          "background-size": `${thumbnails * 100}% 100%`,
-          "background-position": `${thumbnails > 1 ? (100 * index) / (thumbnails - 1) : 0}% 0`,
-        },
-      });
-    }),
-  );
-}
 
 /** A line through `values`, interrupted where there is none. */
 function line(values, top, share) {

@@ -1,11 +1,12 @@
 // The takes of a clip along its time, where the clock stands, and the range the buttons act on.
 
-import { curves, filmstrip, legend } from "./timeline-curves.js";
+import { filmstrip } from "../clips/filmstrip.js";
 import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
-import { seek } from "./playback.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { seek } from "./playback.js";
+import { curves, legend } from "./timeline-curves.js";
 
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 

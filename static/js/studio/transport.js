@@ -3,8 +3,8 @@
 import { byId, h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/keys.js";
-import { loop, play, step } from "./playback.js";
 import { selectedClip, state, update } from "../core/state.js";
+import { loop, play, step } from "./playback.js";
 import { setEnd, setStart } from "./timeline.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2];

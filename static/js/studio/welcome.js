@@ -1,13 +1,14 @@
 // What stands in the middle while there is nothing to show yet: the way to begin, or the progress.
 
+import { BUSY, needsTopic, statusText } from "../clips/clip-store.js";
+import { addSampleClip, samplesList } from "../clips/sample-clips.js";
+import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { addSample, BUSY, needsTopic, samplesList, statusText } from "../clips/clip-list.js";
 import { byId, h } from "../core/dom.js";
 import { firstMoment } from "../core/frame-times.js";
-import { choose } from "../languages/language-store.js";
 import { drawPose, skeleton } from "../core/skeleton.js";
 import { selectedClip, state, update } from "../core/state.js";
-import { topicsPanel } from "../clips/topic-dialog.js";
+import { choose } from "../languages/language-store.js";
 
 const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
@@ -53,7 +54,7 @@ function question(samples, languages) {
   );
   button.onclick = async () => {
     await choose(language.id);
-    const clip = await addSample(sample, button);
+    const clip = await addSampleClip(sample, button);
     if (clip) update({ question: { clip, expected: MISREAD.expected } });
   };
   return button;

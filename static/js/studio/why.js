@@ -1,11 +1,11 @@
 // Why a recognition came out as it did, where the difference lies, and what would have helped.
 
-import { alignmentsOf } from "./alignment.js";
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.

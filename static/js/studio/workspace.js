@@ -2,10 +2,10 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { followClock, frameShown, rememberFrame } from "./playback.js";
 import { listenToKeys } from "../core/keys.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
+import { followClock, frameShown, rememberFrame } from "./playback.js";
 
 const KEY = "osg-studio.workspace"; // sessionStorage, over a reload: every tab is its own workspace.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.

@@ -1,15 +1,15 @@
 // Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
 
+import { needsTopic, select } from "../clips/clip-store.js";
+import { openTopics } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { needsTopic, select } from "../clips/clip-list.js";
 import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
 import { bytes, timeLeft } from "../core/format.js";
-import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
-import { importLanguage } from "../languages/language-store.js";
-import { upload as send } from "./tus-upload.js";
 import { state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
-import { openTopics } from "../clips/topic-dialog.js";
+import { importLanguage } from "../languages/language-store.js";
+import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
+import { upload as send } from "./tus-upload.js";
 
 const AT_ONCE = 2; // More only share the same line, and each would finish later.
 
