@@ -2,7 +2,13 @@
 
 import { toast } from "./toasts.js";
 
-/** Copy a text, and say so in `title`, with what it means in `detail`. */
+/**
+ * Copy a text, and say so in `title`, with what it means in `detail`.
+ *
+ * @param {string} text
+ * @param {string} title
+ * @param {string} [detail]
+ */
 export async function copy(text, title, detail = text) {
   try {
     await navigator.clipboard.writeText(text);

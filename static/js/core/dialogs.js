@@ -2,11 +2,16 @@
 
 import { byId, h } from "./dom.js";
 
+/** @import { Field } from "./types.d.ts" */
+
 /**
  * Ask for values.
  *
  * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
  * task; its error is shown in the dialog. Resolves to what `submit` returned, or null.
+ *
+ * @param {{ title: string, text?: string, fields: Field[], action: string, submit: (values: Record<string, string>) => any, preview?: HTMLElement | null }} question
+ * @returns {Promise<any>}
  */
 export function ask({ title, text = "", fields, action, submit, preview = null }) {
   const dialog = byId("dialog");
@@ -14,6 +19,7 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
   const confirm = h("button", { type: "submit", className: "primary" }, action);
   const inputs = fields.map((field) => inputOf(field));
   return new Promise((resolve) => {
+    /** @type {any} */
     let answer = null;
     const form = h(
       "form",
@@ -51,6 +57,7 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
         confirm.disabled = false;
       }
     };
+    /** @type {(message: string, input?: HTMLElement) => void} */
     const tell = (message, input) => {
       problem.textContent = message;
       problem.hidden = false;
@@ -64,6 +71,7 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
   });
 }
 
+/** @param {Field} field */
 function inputOf(field) {
   const properties = {
     id: `field-${field.name}`,
@@ -78,6 +86,10 @@ function inputOf(field) {
     : h("input", { ...properties, type: "text" });
 }
 
+/**
+ * @param {Field} field
+ * @param {HTMLElement} input
+ */
 function rowOf(field, input) {
   return h(
     "div",

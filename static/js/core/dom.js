@@ -1,5 +1,6 @@
 // Building elements. Text only ever becomes text nodes: nothing a user wrote is parsed as markup.
 
+/** @type {Record<string, string>} */
 const ICONS = {
   back: "M15 4v12L7 10zM5 4v12",
   chevron: "M12 4l-6 6 6 6",
@@ -20,27 +21,47 @@ const ICONS = {
   up: "M5 12l5-5 5 5",
 };
 
-/** Find an element that index.html promises. */
-export const byId = (id) => document.getElementById(id);
+/**
+ * Find an element that index.html promises.
+ *
+ * @param {string} id
+ * @returns {any} Typed loosely: its kind of element stands in index.html.
+ */
+export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 
 /**
  * Make an element. Properties are set as properties (`onclick`, `className`, `hidden`), those with
  * a dash as attributes; children are elements or text, and null is left out.
+ *
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, any>} [properties]
+ * @param {...any} children
+ * @returns {HTMLElementTagNameMap[K]}
  */
 export function h(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
+  const values = /** @type {any} */ (element);
   for (const [name, value] of Object.entries(properties)) {
     if (value === undefined || value === null) continue;
     if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
     else if (name === "style")
       for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
-    else element[name] = value;
+    else values[name] = value;
   }
   element.append(...children.flat().filter((child) => child !== null && child !== undefined));
   return element;
 }
 
-/** Make an element of a drawing, with attributes. */
+/**
+ * Make an element of a drawing, with attributes.
+ *
+ * @template {keyof SVGElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, any>} [attributes]
+ * @param {...(string | Node)} children
+ * @returns {SVGElementTagNameMap[K]}
+ */
 export function svg(tag, attributes = {}, ...children) {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
@@ -48,7 +69,11 @@ export function svg(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** Make one of the line icons; it is decoration, so its button needs a label of its own. */
+/**
+ * Make one of the line icons; it is decoration, so its button needs a label of its own.
+ *
+ * @param {string} name
+ */
 export function icon(name) {
   return svg(
     "svg",
@@ -57,7 +82,13 @@ export function icon(name) {
   );
 }
 
-/** Make a small button that shows only an icon. */
+/**
+ * Make a small button that shows only an icon.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {() => unknown} onclick
+ */
 export function iconButton(name, label, onclick) {
   return h(
     "button",
@@ -66,12 +97,21 @@ export function iconButton(name, label, onclick) {
   );
 }
 
+/** @param {HTMLElement} list */
+const elementsIn = (list) => /** @type {HTMLElement[]} */ ([...list.children]);
+
 /**
  * Make a list's children match `items`, reusing the element of an item that stays, so that focus
  * and running transitions survive. `draw(item, element)` returns the element.
+ *
+ * @template T
+ * @param {HTMLElement} list
+ * @param {T[]} items
+ * @param {(item: T) => string | number} keyOf
+ * @param {(item: T, element: any) => HTMLElement} draw
  */
 export function reconcile(list, items, keyOf, draw) {
-  const known = new Map([...list.children].map((element) => [element.dataset.key, element]));
+  const known = new Map(elementsIn(list).map((element) => [element.dataset.key, element]));
   const wanted = items.map((item) => {
     const key = String(keyOf(item));
     const drawn = draw(item, known.get(key));
@@ -79,7 +119,7 @@ export function reconcile(list, items, keyOf, draw) {
     return drawn;
   });
   const keep = new Set(wanted);
-  for (const element of [...list.children]) if (!keep.has(element)) element.remove();
+  for (const element of elementsIn(list)) if (!keep.has(element)) element.remove();
   wanted.forEach((element, index) => {
     if (list.children[index] !== element) list.insertBefore(element, list.children[index] ?? null);
   });

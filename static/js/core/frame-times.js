@@ -3,7 +3,13 @@
 /** A range of fewer frames holds no gesture. */
 export const LEAST_FRAMES = 3;
 
-/** The frame that is nearest to a moment. */
+/**
+ * The frame that is nearest to a moment.
+ *
+ * @param {number[]} time
+ * @param {number} seconds
+ * @returns {number}
+ */
 export function nearestFrame(time, seconds) {
   let low = 0;
   let high = time.length - 1;
@@ -18,6 +24,9 @@ export function nearestFrame(time, seconds) {
 /**
  * A moment inside a frame, so that a video that is sent there shows that frame and not the one
  * before. Of the last frame nobody knows how long it stands: as long as the one before it.
+ *
+ * @param {number[]} time
+ * @param {number} frame
  */
 export const insideFrame = (time, frame) =>
   time[frame] +
@@ -29,6 +38,9 @@ export const insideFrame = (time, frame) =>
 /**
  * When a video whose source was just set shows its first frame, by its own clock. That is not 0
  * where sound begins before the picture, or where the file was cut out of a longer one.
+ *
+ * @param {HTMLVideoElement} video
+ * @returns {Promise<number>}
  */
 export const firstMoment = (video) =>
   new Promise((resolve) => {

@@ -3,9 +3,16 @@
 import { byId, h } from "./dom.js";
 import { bind, bindings } from "./keys.js";
 
+/** @import { KeyListActions } from "./types.d.ts" */
+
+/** @param {string} combination */
 const keyCaps = (combination) => combination.split("+").map((key) => h("kbd", {}, key));
 
-/** Draw the keys that are bound by now, grouped. */
+/**
+ * Draw the keys that are bound by now, grouped.
+ *
+ * @param {HTMLElement} list
+ */
 function drawKeys(list) {
   const groups = [...new Set(bindings().map((each) => each.group))];
   list.replaceChildren(
@@ -28,7 +35,11 @@ function drawKeys(list) {
   );
 }
 
-/** Show all keys: those bound so far at once, those of views not opened yet once they are loaded. */
+/**
+ * Show all keys: those bound so far at once, those of views not opened yet once they are loaded.
+ *
+ * @param {KeyListActions} actions
+ */
 function showKeys({ loadAll, startTour }) {
   const dialog = byId("dialog");
   const list = h("div", { className: "key-groups" });
@@ -70,6 +81,8 @@ function showKeys({ loadAll, startTour }) {
 /**
  * Bind `?` and the button to the dialog. `loadAll()` loads the modules that bind keys and were not
  * needed so far; `startTour()` is what its button "Tour" does.
+ *
+ * @param {KeyListActions} actions
  */
 export function bindKeyList(actions) {
   const run = () => showKeys(actions);

@@ -1,5 +1,8 @@
 // The keyboard: one list of what every key does, which is also what `?` shows.
 
+/** @import { Binding } from "./types.d.ts" */
+
+/** @type {Binding[]} */
 const bound = [];
 
 const TYPED_IN =
@@ -10,12 +13,19 @@ const TYPED_IN =
  * is the one told; `when` says whether it means anything now, and of several that do the last one
  * bound is meant. Plain keys are left alone where text
  * is typed. None may shadow what the browser itself does.
+ *
+ * @param {{ keys: string[], text: string, group: string, run: (event: KeyboardEvent) => unknown, when?: () => boolean }} binding
  */
 export function bind({ keys, text, group, run, when = () => true }) {
   bound.push({ keys, text, group, run, when });
 }
 
-/** A key press as it is written in `bind`; what Shift makes of a letter or sign is undone. */
+/**
+ * A key press as it is written in `bind`; what Shift makes of a letter or sign is undone.
+ *
+ * @param {KeyboardEvent} event
+ * @returns {string}
+ */
 function written(event) {
   const name =
     event.key === " "
@@ -32,9 +42,14 @@ function written(event) {
   return [...held.filter(Boolean), name].join("+");
 }
 
+/** @type {Promise<unknown> | null} */
 let opening = null; // A view that is being loaded: its keys are not bound yet.
 
-/** Let keys that are pressed before a promise is kept wait for it. */
+/**
+ * Let keys that are pressed before a promise is kept wait for it.
+ *
+ * @param {Promise<unknown>} promise
+ */
 export function holdKeys(promise) {
   opening = promise;
   promise.finally(() => {
@@ -42,13 +57,16 @@ export function holdKeys(promise) {
   });
 }
 
+/** @param {string} combination */
 const meant = (combination) =>
   bound.findLast((each) => each.keys.includes(combination) && each.when());
 
+/** @param {KeyboardEvent} event */
 function pressed(event) {
   if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
   // An element of a frame is no Element of this window.
-  const at = event.target?.closest ? event.target : null;
+  const at =
+    event.target && "closest" in event.target ? /** @type {Element} */ (event.target) : null;
   if (at?.closest(TYPED_IN)) return;
   // A button that has the focus is pressed with the space bar.
   if (event.key === " " && at?.closest("button, summary, [role=tab], [role=button]")) return;
@@ -64,9 +82,13 @@ function pressed(event) {
   found.run(event);
 }
 
-/** Hear the keys that are pressed in a window: this one, or a frame in it. */
-export function listenToKeys(heard = window) {
-  heard.addEventListener("keydown", pressed);
+/**
+ * Hear the keys that are pressed in a window: this one, or a frame in it.
+ *
+ * @param {Window} [target]
+ */
+export function listenToKeys(target = window) {
+  target.addEventListener("keydown", pressed);
 }
 
 /** The bindings made so far, in their order; read only. */

@@ -2,11 +2,17 @@
 
 import { attempt } from "./toasts.js";
 
+/** @type {Map<string, symbol>} */
 const newest = new Map(); // per id the request that was sent last
 
 /**
  * Load a member by `load(id)`. Resolves to `{ member }`, null in it where it is gone, or to null
  * where the answer came too late: a newer one is on its way.
+ *
+ * @template T
+ * @param {string} id
+ * @param {(id: string) => Promise<T>} load
+ * @returns {Promise<{ member: T | null } | null>}
  */
 async function loaded(id, load) {
   const request = Symbol(id);
@@ -27,6 +33,10 @@ async function loaded(id, load) {
 /**
  * Refresh a member of a list. `current()` returns the list and `order(one, other)` sorts it;
  * `take(list, member)` gets the new one.
+ *
+ * @template {{ id: string }} T
+ * @param {string} id
+ * @param {{ load: (id: string) => Promise<any>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: any) => void }} source
  */
 export async function refresh(id, { load, current, order, take }) {
   const answer = await loaded(id, load);

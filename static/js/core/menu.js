@@ -2,25 +2,34 @@
 
 import { h, icon } from "./dom.js";
 
+/** @import { MenuItem } from "./types.d.ts" */
+
+/** @type {{ menu: HTMLDetailsElement } | null} */
 let open = null;
 
+/** @param {boolean} [back] */
 function close(back = false) {
   if (!open) return;
   const { menu } = open;
   open = null;
   menu.open = false;
-  if (back) menu.querySelector("summary").focus();
+  if (back) menu.querySelector("summary")?.focus();
 }
 
 addEventListener("click", (event) => {
-  if (open && !open.menu.contains(event.target)) close();
+  if (open && !open.menu.contains(/** @type {Node} */ (event.target))) close();
 });
 
 /**
  * Make a menu. `items` are `{ text, run }`, or `{ text, href }` for a file to download; the arrow
  * keys walk through them.
+ *
+ * @param {string} label
+ * @param {MenuItem[]} items
+ * @returns {HTMLDetailsElement}
  */
 export function menu(label, items) {
+  /** @param {MenuItem} item */
   const entry = ({ text, run, href }) =>
     href
       ? h("a", { href, download: "", onclick: () => close() }, text)
@@ -30,7 +39,7 @@ export function menu(label, items) {
             type: "button",
             onclick: () => {
               close(true);
-              run();
+              run?.();
             },
           },
           text,
@@ -60,8 +69,9 @@ export function menu(label, items) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (!step || !element.open) return;
     event.preventDefault();
-    const at = [...list.children].indexOf(document.activeElement);
-    list.children[(at + step + items.length) % items.length].focus();
+    const entries = /** @type {HTMLElement[]} */ ([...list.children]);
+    const at = entries.findIndex((each) => each === document.activeElement);
+    entries[(at + step + items.length) % items.length].focus();
   };
   return element;
 }

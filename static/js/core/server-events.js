@@ -4,16 +4,22 @@ import * as api from "./api.js";
 import { byId } from "./dom.js";
 import { state, update } from "./state.js";
 
+/** @import { Job, State } from "./types.d.ts" */
+
 const RETRY = 1000; // ms, as the server asks of the browser
 
 /**
  * Listen to every change on the server. `handlers` has a function per kind of event, `clips(id)`,
  * `languages(id)` and `jobs(job)`; `opened()`, which loads what was missed, is called whenever the
  * stream opens, and `returned()` when it opens after a break.
+ *
+ * @param {{ opened: () => void, returned: () => void, clips: (id: string) => void, languages: (id: string) => void, jobs: (job: Job) => void }} handlers
+ * @param {boolean} [lost]
  */
 export function followServer(handlers, lost = false) {
   const stream = api.changes();
   let away = lost;
+  /** @param {MessageEvent} event */
   const data = (event) => {
     try {
       return JSON.parse(event.data);
@@ -47,11 +53,15 @@ export function followServer(handlers, lost = false) {
   });
 }
 
-/** Show whether the server can be reached. */
+/**
+ * Show whether the server can be reached.
+ *
+ * @param {State} state
+ */
 export function drawConnection({ connected }) {
   const element = byId("connection");
-  element.textContent =
-    { true: "Connected", false: "Reconnecting\u2026" }[connected] ?? "Connecting\u2026";
+  if (connected === null) element.textContent = "Connecting\u2026";
+  else element.textContent = connected ? "Connected" : "Reconnecting\u2026";
   element.classList.toggle("on", connected === true);
   byId("away").hidden = connected !== false;
 }

@@ -26,7 +26,13 @@ export const BONES = [
   [28, 32],
 ];
 
-/** Make an empty drawing that lies over a picture of `width` x `height` pixels. */
+/**
+ * Make an empty drawing that lies over a picture of `width` x `height` pixels.
+ *
+ * @param {number} width
+ * @param {number} height
+ * @returns {SVGSVGElement}
+ */
 export function skeleton(width, height) {
   return svg(
     "svg",
@@ -39,6 +45,9 @@ export function skeleton(width, height) {
 /**
  * Draw a pose instead of the one before; null clears the drawing. A pose has [x, y] of every
  * landmark as fractions of the picture's width and height, and null for one that was not seen.
+ *
+ * @param {SVGSVGElement} drawing
+ * @param {([number, number] | null)[] | null} pose
  */
 export function drawPose(drawing, pose) {
   const { width, height } = drawing.viewBox.baseVal;
@@ -48,9 +57,9 @@ export function drawPose(drawing, pose) {
   const bones = BONES.filter(([from, to]) => points[from] && points[to]);
   drawing
     .querySelector(".bones")
-    .setAttribute("d", bones.map(([from, to]) => `M${points[from]}L${points[to]}`).join(""));
+    ?.setAttribute("d", bones.map(([from, to]) => `M${points[from]}L${points[to]}`).join(""));
   // A line without length has round ends: a dot.
-  drawing.querySelector(".landmarks").setAttribute(
+  drawing.querySelector(".landmarks")?.setAttribute(
     "d",
     points
       .filter(Boolean)

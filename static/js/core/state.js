@@ -1,5 +1,8 @@
 // What the page shows, in one place. What a colleague should see from a link is in the URL.
 
+/** @import { Clip, State, Take } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const IN_URL = {
   view: "view",
   source: "source",
@@ -23,7 +26,7 @@ const IN_URL = {
 };
 const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
 
-// `returns` counts how often the server came back: what could not be asked meanwhile is asked then.
+/** @type {State} */
 const values = {
   view: null,
   source: null,
@@ -47,6 +50,8 @@ const values = {
   health: null,
   checking: null,
   recognised: null,
+  tested: [],
+  pending: [],
   clip: null,
   take: null,
   start: null,
@@ -65,6 +70,7 @@ const values = {
   paused: null,
 };
 
+/** @type {{ names: (keyof State)[], react: (state: State) => void }[]} */
 const listeners = [];
 
 let returning = false; // to another entry of the browser's history, which says the URL already
@@ -72,9 +78,16 @@ let returning = false; // to another entry of the browser's history, which says 
 /** The present values; read only. */
 export const state = values;
 
-/** Change values, put what belongs there into the URL, and tell who listens to them. */
+/** @type {(change: Partial<State>) => (keyof State)[]} */
+const keysOf = (change) => /** @type {any} */ (Object.keys(change));
+
+/**
+ * Change values, put what belongs there into the URL, and tell who listens to them.
+ *
+ * @param {Partial<State>} change
+ */
 export function update(change) {
-  const changed = Object.keys(change).filter((name) => values[name] !== change[name]);
+  const changed = keysOf(change).filter((name) => values[name] !== change[name]);
   if (!changed.length) return;
   Object.assign(values, change);
   // Another view is another page to go back from; the rest is only where one is in it.
@@ -83,19 +96,29 @@ export function update(change) {
     if (names.some((name) => changed.includes(name))) react(values);
 }
 
-/** Call `react` now, and whenever one of the named values changes. */
+/**
+ * Call `react` now, and whenever one of the named values changes.
+ *
+ * @param {(keyof State)[]} names
+ * @param {(state: State) => void} react
+ */
 export function follow(names, react) {
   listeners.push({ names, react });
   react(values);
 }
 
-/** Take over what the URL says. */
+/**
+ * Take over what the URL says.
+ *
+ * @returns {Partial<State>}
+ */
 export function readUrl() {
   const query = new URLSearchParams(location.search);
+  /** @type {Record<string, string | number | null>} */
   const change = {};
   for (const [name, key] of Object.entries(IN_URL)) {
     const text = query.get(key);
-    const number = Number.parseFloat(text);
+    const number = Number.parseFloat(text ?? "");
     if (!NUMBERS.has(name)) change[name] = text;
     else change[name] = Number.isFinite(number) ? number : null;
   }
@@ -111,10 +134,11 @@ export function followHistory() {
   });
 }
 
+/** @param {boolean} another */
 function writeUrl(another) {
   const query = new URLSearchParams();
   for (const [name, key] of Object.entries(IN_URL)) {
-    const value = values[name];
+    const value = /** @type {any} */ (values)[name];
     if (value !== null && value !== undefined)
       query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
   }
@@ -124,16 +148,25 @@ function writeUrl(another) {
   else history.replaceState(null, "", url);
 }
 
+/** @returns {Clip | null} */
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
 
-/** Seconds the clip lasts, by its last frame; before its poses are found, by its container. */
+/**
+ * Seconds the clip lasts, by its last frame; before its poses are found, by its container.
+ *
+ * @param {Clip} clip
+ */
 export const lengthOf = (clip) => values.timeline?.time.at(-1) ?? clip.duration ?? 0;
 
-/** The range in seconds on which buttons act, and whether it is a take's own. */
+/**
+ * The range in seconds on which buttons act, and whether it is a take's own.
+ *
+ * @returns {{ start: number, end: number, shown: [number, number], take: Take | null } | null}
+ */
 export function selectedRange() {
   const clip = selectedClip();
   if (!clip) return null;
-  const take = values.takes?.[values.take];
+  const take = values.takes?.[values.take ?? -1];
   if (take)
     return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
   const start = values.start ?? 0;

@@ -2,16 +2,23 @@
 
 import { byId, h, iconButton } from "./dom.js";
 
+/** @type {Record<string, number>} */
 const SHOWN_FOR = { info: 6000, error: 15000 };
 
 /**
  * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
  * One with the same text replaces the older one. Returns its element.
+ *
+ * @param {string} title
+ * @param {string} [detail]
+ * @param {{ kind?: "info" | "error", action?: { label: string, run: () => void } | null }} [options]
+ * @returns {HTMLElement}
  */
 export function toast(title, detail = "", { kind = "info", action = null } = {}) {
   const box = byId("toasts");
   for (const other of [...box.children]) if (other.dataset.text === title + detail) other.remove();
   const close = () => element.remove();
+  /** @type {HTMLElement} */
   const element = h(
     "div",
     { className: `toast ${kind}`, role: kind === "error" ? "alert" : "status" },
@@ -34,15 +41,23 @@ export function toast(title, detail = "", { kind = "info", action = null } = {})
   element.dataset.text = title + detail;
   box.append(element);
   let timer = setTimeout(close, SHOWN_FOR[kind]);
-  // Nobody loses a message while reading or reaching for it.
-  element.onpointerenter = element.onfocusin = () => clearTimeout(timer);
-  element.onpointerleave = element.onfocusout = () => {
+  // A message stays while the pointer or the focus is on it.
+  const hold = () => clearTimeout(timer);
+  const release = () => {
+    clearTimeout(timer);
     timer = setTimeout(close, SHOWN_FOR[kind]);
   };
+  for (const event of ["pointerenter", "focusin"]) element.addEventListener(event, hold);
+  for (const event of ["pointerleave", "focusout"]) element.addEventListener(event, release);
   return element;
 }
 
-/** Show what went wrong. */
+/**
+ * Show what went wrong.
+ *
+ * @param {any} error
+ * @param {string} [doing]
+ */
 export function complain(error, doing) {
   if (error.code === "cancelled") return;
   if (!("status" in error)) console.error(error);
@@ -51,7 +66,14 @@ export function complain(error, doing) {
   });
 }
 
-/** Run a task and show its error, if any, as a toast; the answer is null then. */
+/**
+ * Run a task and show its error, if any, as a toast; the answer is null then.
+ *
+ * @template T
+ * @param {string} doing
+ * @param {() => T | Promise<T>} task
+ * @returns {Promise<T | null>}
+ */
 export async function attempt(doing, task) {
   try {
     return await task();

@@ -99,7 +99,7 @@ function keep() {
 
 function read(at) {
   try {
-    const kept = JSON.parse(localStorage.getItem(at));
+    const kept = JSON.parse(localStorage.getItem(at) ?? "null");
     return kept && Date.now() - kept.time < SHELF_LIFE ? kept : null;
   } catch {
     return null;

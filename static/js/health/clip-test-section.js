@@ -6,16 +6,15 @@ import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
+import { csvOf, testedOf } from "./clip-test-results.js";
 import {
   addTestClips,
   correct,
-  csvOf,
   leaveOut,
   leaveWaiting,
   loadTested,
   means,
   repeat,
-  testedOf,
   waitingClips,
   workOff,
 } from "./clip-test.js";

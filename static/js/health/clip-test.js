@@ -14,38 +14,17 @@ const KEY = "osg-studio.batch"; // sessionStorage: clips whose poses are still b
 
 const stored = () => {
   try {
-    return JSON.parse(sessionStorage.getItem(KEY)) ?? [];
+    return JSON.parse(sessionStorage.getItem(KEY) ?? "null") ?? [];
   } catch {
     return [];
   }
 };
 
-update({ tested: [], pending: stored() });
+update({ pending: stored() });
 
 function setPending(pending) {
   update({ pending });
   sessionStorage.setItem(KEY, JSON.stringify(pending));
-}
-
-/** What is tested of a language: the newest answer by its profile, untried, for each take that was told. */
-export function testedOf(recognitions, clips, profile) {
-  const names = new Map(clips.map(({ id, name }) => [id, name]));
-  const newest = new Map();
-  for (const each of recognitions) {
-    const key = `${each.clip_id} ${each.start}`;
-    if (each.profile === profile && !each.tuning && !newest.has(key)) newest.set(key, each);
-  }
-  return [...newest.values()]
-    .filter((each) => each.expected !== null && names.has(each.clip_id))
-    .map((each) => ({
-      ...each,
-      clip: names.get(each.clip_id),
-      right: each.label === each.expected,
-    }))
-    .sort(
-      (one, other) =>
-        one.clip.localeCompare(other.clip, "en", { numeric: true }) || one.start - other.start,
-    );
 }
 
 /** Load what was recognised in the language on display. */
@@ -167,29 +146,3 @@ export async function repeat(takes, advance) {
   }
   await loadTested();
 }
-
-const COLUMNS = [
-  "clip",
-  "start",
-  "end",
-  "expected",
-  "label",
-  "nearest",
-  "confidence",
-  "right",
-  "revision",
-  "id",
-];
-
-/** A value as CSV (RFC 4180); a text that a spreadsheet would calculate is marked as text. */
-function field(value) {
-  const text =
-    typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
-  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-}
-
-/** The table of takes as a CSV file. */
-export const csvOf = (takes) =>
-  [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => take[name]))]
-    .map((row) => `${row.map(field).join(",")}\r\n`)
-    .join("");

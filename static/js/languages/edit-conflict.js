@@ -3,6 +3,7 @@
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
+import { changedTexts, diffGestures } from "./draft-diff.js";
 
 const cancelled = () =>
   Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
@@ -14,25 +15,6 @@ const undecided = (doing) =>
     ),
     { title: `${doing} failed`, status: 412 },
   );
-
-/** Compare in the page what the server has not seen: `{ gesture, kind }` each, as it compares. */
-function differences(mine, from) {
-  // A gesture that is renamed keeps its picture.
-  const before = new Map(from.gestures.map((each) => [each.thumbnail, each]));
-  const after = mine.gestures.map((gesture) => {
-    const known = before.get(gesture.thumbnail);
-    before.delete(gesture.thumbnail);
-    return {
-      gesture,
-      kind: !known
-        ? "added"
-        : JSON.stringify(known) === JSON.stringify(gesture)
-          ? "same"
-          : "changed",
-    };
-  });
-  return [...after, ...[...before.values()].map((gesture) => ({ gesture, kind: "removed" }))];
-}
 
 /** One version: what was done, and the gestures with what happened to each. */
 function version(title, told, gestures, choice) {
@@ -59,22 +41,6 @@ function version(title, told, gestures, choice) {
       ),
     ),
     choice,
-  );
-}
-
-const TEXTS = ["name", "author", "label", "description", "command"];
-
-/** What the user typed, where it is not what it was. */
-function typed(mine, from) {
-  const before = new Map(from.gestures.map((each) => [each.thumbnail, each]));
-  const pairs = [
-    [mine, from],
-    ...mine.gestures.map((each) => [each, before.get(each.thumbnail) ?? each]),
-  ];
-  return pairs.flatMap(([now, then]) =>
-    TEXTS.filter((name) => now[name] !== then[name]).map(
-      (name) => `${name}: \u201c${now[name] ?? ""}\u201d`,
-    ),
   );
 }
 
@@ -146,8 +112,8 @@ export async function settleConflict({ doing, title, from, mine, change }) {
       ),
       version(
         "Yours, not saved yet",
-        [title, ...typed(mine, from)],
-        differences(mine, from),
+        [title, ...changedTexts(mine, from)],
+        diffGestures(mine, from),
         button("Keep yours", pick(instead)),
       ),
     ),

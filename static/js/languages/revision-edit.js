@@ -10,7 +10,7 @@ const KEY = "osg-studio.heads"; // sessionStorage, beside what can be undone
 
 const stored = () => {
   try {
-    return JSON.parse(sessionStorage.getItem(KEY));
+    return JSON.parse(sessionStorage.getItem(KEY) ?? "null");
   } catch {
     return null;
   }

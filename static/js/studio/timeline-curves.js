@@ -10,8 +10,8 @@ const CURVES = [
   { name: "left_wrist", className: "left", text: "left wrist\u2019s speed" },
 ];
 
-/** A line through `values`, interrupted where there is none. */
-function line(values, top, share) {
+/** The path of a line through `values`, interrupted where there is none. */
+export function linePath(values, top, share) {
   let down = false;
   return values
     .map((value, index) => {
@@ -27,7 +27,7 @@ function line(values, top, share) {
 }
 
 /** The largest of what ordinary frames show: a landmark that jumps must not flatten the rest. */
-function topOf(timeline) {
+export function topSpeed(timeline) {
   const values = CURVES.flatMap(({ name }) => timeline.speed[name])
     .filter((value) => value !== null)
     .sort((one, other) => one - other);
@@ -39,7 +39,7 @@ export function curves(timeline) {
   const { time, salute, speed, unit } = timeline;
   const last = time.at(-1) || 1;
   const share = (index) => ((1000 * time[index]) / last).toFixed(1);
-  const top = topOf(timeline);
+  const top = topSpeed(timeline);
   const area = `M0 ${HEIGHT}${salute.map((value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`).join("")}L1000 ${HEIGHT}Z`;
   const drawing = svg(
     "svg",
@@ -52,7 +52,7 @@ export function curves(timeline) {
     svg("path", { class: "salute-area", d: area }),
     svg("path", { class: "salute-bar", d: `M0 ${HEIGHT * (1 - SALUTE)}H1000` }),
     ...CURVES.map(({ name, className }) =>
-      svg("path", { class: className, d: line(speed[name], top, share) }),
+      svg("path", { class: className, d: linePath(speed[name], top, share) }),
     ),
   );
   const length = unit === "torso_length" ? "torso lengths" : "extents";

@@ -42,7 +42,8 @@ async function ask(method, place, headers = {}) {
   return response.headers;
 }
 
-const stand = (place, headers) => ({
+/** How far an upload is, by the headers of an answer. */
+export const standOf = (place, headers) => ({
   place,
   offset: Number(headers.get("Upload-Offset")),
   clip: headers.get("Content-Location")?.split("/").at(-1) ?? null,
@@ -50,13 +51,16 @@ const stand = (place, headers) => ({
 
 const base64 = (text) => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 
+/** The `Upload-Metadata` of a file: names, each with its text in base64 of UTF-8. */
+export const metadataOf = (name, fields) =>
+  Object.entries({ filename: name, ...fields })
+    .map(([key, text]) => `${key} ${base64(text)}`)
+    .join(",");
+
 async function begin(file, fields) {
-  const told = Object.entries({ filename: file.name, ...fields }).map(
-    ([name, text]) => `${name} ${base64(text)}`,
-  );
   const headers = await ask("POST", PLACE, {
     "Upload-Length": String(file.size),
-    "Upload-Metadata": told.join(","),
+    "Upload-Metadata": metadataOf(file.name, fields),
   });
   const place = headers.get("Location");
   keep(file, place);
@@ -68,7 +72,7 @@ async function resume(file, fields) {
   const place = kept(file);
   if (!place) return begin(file, fields);
   try {
-    return stand(place, await ask("HEAD", place));
+    return standOf(place, await ask("HEAD", place));
   } catch (error) {
     if (error.status !== 404) throw error;
     return begin(file, fields);
@@ -81,7 +85,7 @@ function send(call, file, { place, offset }, onProgress) {
     call.upload.onprogress = ({ loaded }) => onProgress(offset + loaded);
     call.onload = () => {
       if (call.status < 300)
-        return resolve(stand(place, { get: (name) => call.getResponseHeader(name) }));
+        return resolve(standOf(place, { get: (name) => call.getResponseHeader(name) }));
       let problem = {};
       try {
         problem = JSON.parse(call.responseText);
@@ -105,7 +109,7 @@ function send(call, file, { place, offset }, onProgress) {
 }
 
 /** Whether going on later may help: nobody answered, or the server and this page disagree how far it is. */
-const mayGoOn = (error) =>
+export const mayGoOn = (error) =>
   isAway(error) ||
   [502, 503, 504].includes(error.status) ||
   ["upload_offset", "upload_broken_off"].includes(error.code);
