@@ -31,7 +31,7 @@ export default [
     settings: { "import-x/resolver-next": [createNodeResolver()] },
     linterOptions: { reportUnusedDisableDirectives: "error" },
     rules: {
-      complexity: ["error", 12],
+      complexity: ["error", 13],
       eqeqeq: "error",
       "import-x/no-cycle": "error",
       "import-x/no-restricted-paths": ["error", { zones: [...upwards, ...sideways] }],

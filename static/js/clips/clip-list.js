@@ -72,6 +72,25 @@ function posterOf(clip, element) {
   return poster;
 }
 
+/** How far a progress bar is, where that is known. */
+const lengthOf = (job) => (job?.total ? { max: job.total, value: job.done } : {});
+
+/** Move the progress on in place. */
+function advance(element, clip, job) {
+  element.querySelector(".stage-text").textContent = statusText(clip, job);
+  Object.assign(element.querySelector("progress"), lengthOf(job));
+}
+
+/** Replace an element's content; the button of the same name keeps the focus. */
+function replaceKeepingFocus(element, ...content) {
+  const { activeElement } = document;
+  const name = element.contains(activeElement) ? activeElement.getAttribute("aria-label") : null;
+  element.replaceChildren(...content);
+  if (!name) return;
+  const named = [...element.querySelectorAll("[aria-label]")];
+  named.find((each) => each.getAttribute("aria-label") === name)?.focus();
+}
+
 function draw(clip, element) {
   const job = state.jobs.get(clip.job_id);
   const busy = BUSY.has(clip.status);
@@ -82,19 +101,15 @@ function draw(clip, element) {
   const shape = JSON.stringify([{ ...clip, status: busy }, chosen]);
   if (busy && element?.dataset.shape === shape) {
     element.dataset.signature = signature;
-    element.querySelector(".stage-text").textContent = statusText(clip, job);
-    const bar = element.querySelector("progress");
-    if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
+    advance(element, clip, job);
     return element;
   }
   const drawn = element ?? h("li");
   drawn.dataset.signature = signature;
   drawn.dataset.shape = shape;
   drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
-  const focused = drawn.contains(document.activeElement)
-    ? document.activeElement.getAttribute("aria-label")
-    : null;
-  drawn.replaceChildren(
+  replaceKeepingFocus(
+    drawn,
     h(
       "button",
       {
@@ -111,20 +126,11 @@ function draw(clip, element) {
         { className: "clip-text" },
         h("b", {}, clip.name),
         h("span", { className: "stage-text" }, statusText(clip, job)),
-        busy
-          ? h("progress", {
-              "aria-label": `Poses of ${clip.name}`,
-              ...(job?.total ? { max: job.total, value: job.done } : {}),
-            })
-          : null,
+        busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...lengthOf(job) }) : null,
       ),
     ),
     h("div", { className: "clip-buttons" }, buttons(clip)),
   );
-  if (focused)
-    [...drawn.querySelectorAll("[aria-label]")]
-      .find((each) => each.getAttribute("aria-label") === focused)
-      ?.focus();
   return drawn;
 }
 

@@ -45,16 +45,19 @@ export function followJob(job) {
 /** Whether a clip is a dive recording of which nobody chose a topic yet. */
 export const needsTopic = (clip) => clip.error_code === "topic_needed";
 
-/** Say in words how far a clip is. */
+function progressText(clip, job) {
+  const stage = STAGES[job?.stage] ?? STAGES[clip.status] ?? "Working";
+  if (!job?.total || job.stage !== "poses") return stage;
+  const left = job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`;
+  return `${stage}, ${job.done} of ${job.total} frames${left}`;
+}
+
+/** The state of a clip in words. */
 export function statusText(clip, job) {
   if (needsTopic(clip)) return `${plural(clip.topics.length, "topic")}: choose one`;
   if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
   if (clip.status === "cancelled") return "Cancelled before its poses were found";
-  if (BUSY.has(clip.status)) {
-    const stage = STAGES[job?.stage] ?? STAGES[clip.status] ?? "Working";
-    if (!job?.total || job.stage !== "poses") return stage;
-    return `${stage}, ${job.done} of ${job.total} frames${job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`}`;
-  }
+  if (BUSY.has(clip.status)) return progressText(clip, job);
   return [
     clip.duration ? duration(clip.duration) : null,
     clip.frames ? plural(clip.frames, "frame") : null,

@@ -233,20 +233,28 @@ export function take({ language, gesture, drawn, pick }) {
       : "A range by hand is taken as it is; choose a take to have it found.";
   }
 
-  /** Put a demonstration on display: of a clip, or as the language keeps it. */
+  const wantedClip = () => draft().clip?.clip_id ?? null;
+
+  /** Show a demonstration: of a clip, or as the language keeps it. */
   async function open() {
-    const id = draft().clip?.clip_id ?? null;
+    const id = wantedClip();
     if ((source && source.id === id) || opening === id) return;
     if (clock) pause();
     opening = id;
-    const loaded = id === null && (gesture === null || drawn) ? null : await load(id);
+    const none = id === null && (gesture === null || drawn);
+    const loaded = none ? null : await load(id);
     if (opening !== id) return; // Another one is on its way, or this one is shown already.
     opening = undefined;
-    if (!loaded || (draft().clip?.clip_id ?? null) !== id) {
+    if (!loaded || wantedClip() !== id) {
       element.classList.toggle("bare", !loaded);
       return;
     }
+    show(loaded);
+  }
+
+  function show(loaded) {
     source = loaded;
+    const { id } = source;
     element.classList.remove("bare");
     picture.show(source.poses, id);
     scrub.max = source.poses.time.length - 1;

@@ -292,6 +292,14 @@ function explain(section) {
   );
 }
 
+/** Whether the language has the gesture that is edited. */
+const isKnown = ({ language, gesture }) =>
+  gesture === null || language.gestures.some((each) => each.label === gesture);
+
+/** Whether all is loaded, and nothing of it can be edited. */
+const nothingComes = () =>
+  state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip);
+
 /** Build the view, and build it anew when something else is edited. */
 export function open(section) {
   follow(
@@ -312,18 +320,9 @@ export function open(section) {
       if (editor && !state.languages.some(({ id }) => id === editor.about.language.id))
         return bereft();
       const about = subject();
-      const known =
-        about &&
-        (about.gesture === null ||
-          about.language.gestures.some((each) => each.label === about.gesture));
-      if (!known) {
+      if (!about || !isKnown(about)) {
         left();
-        if (
-          state.loaded &&
-          (state.gestures || !state.languages.length) &&
-          (state.gesture || !state.clip)
-        )
-          explain(section);
+        if (nothingComes()) explain(section);
         return undefined;
       }
       if (editor?.about.key === about.key) return adopt(about);

@@ -22,6 +22,18 @@ export function toggle(landmark, preview) {
   return next.length > 0;
 }
 
+/** What the bars mean, or why there are none. */
+function noteOn(preview, count) {
+  if (!preview) return "\u2026";
+  if (count) {
+    const unit = preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent";
+    return `Movement in ${unit}. From the line, ${preview.threshold.toFixed(2)}, a keypoint is proposed.`;
+  }
+  if (draft().clip)
+    return "No keypoint is seen in this range of the clip: choose another range, or another clip.";
+  return "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose.";
+}
+
 /** Build the list; `draw(preview)` shows what moves. */
 export function keypoints(latest) {
   let all = false;
@@ -103,13 +115,7 @@ export function keypoints(latest) {
     every.hidden = found.length === 0;
     every.textContent = all ? "Fewer keypoints" : `All ${found.length} keypoints`;
     proposal.disabled = draft().salient === null || !found.length;
-    note.textContent = found.length
-      ? `Movement in ${preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent"}. From the line, ${preview.threshold.toFixed(2)}, a keypoint is proposed.`
-      : preview && draft().clip
-        ? "No keypoint is seen in this range of the clip: choose another range, or another clip."
-        : preview
-          ? "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose."
-          : "\u2026";
+    note.textContent = noteOn(preview, found.length);
   }
   return {
     element: h(

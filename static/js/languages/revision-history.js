@@ -100,11 +100,15 @@ async function load() {
     if (!loaded || state.gestures?.id !== id) return;
     [revisions, of] = [loaded, id];
   }
-  const known = (number) => revisions.some((each) => each.revision === number);
   const another = earlier !== null && earlier !== id;
   const outgrown = earlier === id && state.newer === head && head !== revision;
-  if (another || outgrown || !known(state.newer) || (state.older !== null && !known(state.older)))
-    select(revisions[0].revision);
+  if (another || outgrown || !areKnown(state)) select(revisions[0].revision);
+}
+
+/** Whether both revisions of a diff are in the history. */
+function areKnown({ newer, older }) {
+  const numbers = [null, ...revisions.map(({ revision }) => revision)];
+  return newer !== null && numbers.includes(newer) && numbers.includes(older);
 }
 
 /** Build the panel and keep it in step. */

@@ -129,6 +129,13 @@ function list() {
   );
 }
 
+/** All that the view shows, as one key. */
+function shownKey() {
+  const { gestures, phrase } = state;
+  const { id, name, grammar: kept } = gestures ?? {};
+  return JSON.stringify([id, name, labels(), kept, phrase, found()?.ambiguities]);
+}
+
 /** Build the view. */
 export function open(section) {
   const title = h("h1");
@@ -138,29 +145,10 @@ export function open(section) {
   const columns = h("div", { className: "phrase-columns" }, form, trial);
   const none = h("div");
   let drawn = "";
-  const draw = () => {
-    const { gestures, loaded, view, phrase } = state;
-    if (view !== "phrases" || (!gestures && !loaded)) return;
-    const now = JSON.stringify([
-      gestures?.id,
-      gestures?.name,
-      labels(),
-      gestures?.grammar,
-      phrase,
-      found()?.ambiguities,
-    ]);
-    if (now === drawn) return; // a button that is just being pressed stays where it is
-    drawn = now;
-    title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
-    const able = Boolean(gestures?.gestures.length);
-    columns.hidden = !able;
-    none.hidden = able;
-    none.replaceChildren(...(able ? [] : [noGestures()]));
-    says.replaceChildren(...[able ? verdict() : null].filter(Boolean));
-    if (!able) return;
+  const drawForm = (kept) => {
     trial.hidden = !grammar().phrases.length;
     columns.classList.toggle("alone", trial.hidden);
-    if (trial.hidden) redraw(form, beginning(), state.gestures.grammar ? slotTypesPanel() : null);
+    if (trial.hidden) redraw(form, beginning(), kept ? slotTypesPanel() : null);
     else {
       redraw(
         form,
@@ -179,6 +167,21 @@ export function open(section) {
         ),
       );
     }
+  };
+  const draw = () => {
+    const { gestures, loaded, view } = state;
+    if (view !== "phrases" || (!gestures && !loaded)) return;
+    const now = shownKey();
+    if (now === drawn) return; // a button that is just being pressed stays where it is
+    drawn = now;
+    title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
+    const able = Boolean(gestures?.gestures.length);
+    columns.hidden = !able;
+    none.hidden = able;
+    none.replaceChildren(...(able ? [] : [noGestures()]));
+    says.replaceChildren(...[able ? verdict() : null].filter(Boolean));
+    if (!able) return;
+    drawForm(gestures.grammar);
   };
   section.append(
     h(

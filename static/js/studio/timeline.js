@@ -174,6 +174,16 @@ function scrub(area) {
   };
 }
 
+/** Replace what lies on the track; the handle that is dragged must stay the same element. */
+function redrawTrack(track, content, takes) {
+  const focused = [...track.querySelectorAll(".take")].indexOf(document.activeElement);
+  track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
+  const film = track.querySelector(".filmstrip");
+  if (film) film.after(...content);
+  else track.prepend(...content);
+  takes[focused]?.focus();
+}
+
 /** Draw the timeline of the clip on display. */
 export function drawTimeline() {
   const box = byId("timeline");
@@ -207,17 +217,10 @@ export function drawTimeline() {
         )
       : null,
   );
+  byId("range-text").replaceChildren(note);
   if (track && box.dataset.clip === clip.id) {
-    // The handle being dragged must stay the same element.
-    const focused = track.querySelector(".take:focus")
-      ? [...track.querySelectorAll(".take")].indexOf(document.activeElement)
-      : -1;
-    track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
-    track.querySelector(".filmstrip")?.after(lengths, ...salutes, ...takes) ??
-      track.prepend(lengths, ...salutes, ...takes);
-    if (focused >= 0) takes[focused]?.focus();
+    redrawTrack(track, [lengths, ...salutes, ...takes], takes);
     placeHandles(track, range);
-    byId("range-text").replaceChildren(note);
     return undefined;
   }
   box.dataset.clip = clip.id;
@@ -242,7 +245,6 @@ export function drawTimeline() {
   lane.prepend(filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight) ?? "");
   placeHandles(lane, range);
   scrub(along);
-  byId("range-text").replaceChildren(note);
   return drawNow();
 }
 

@@ -148,37 +148,29 @@ function showProgress(panel, clip, job) {
   if (Number.isFinite(job?.time)) showPose(panel, clip, job);
 }
 
-/** Draw it, or hide it when the frame has something to show. */
-export function drawWelcome({ clips, uploads, samples, languages, jobs, loaded }) {
+/** What there is to show: `{ key, panel }`, or null when the workspace has something to show. */
+function contentOf({ clips, uploads, samples, languages, loaded }, clip) {
+  if (clip && BUSY.has(clip.status)) return { key: clip.job_id, panel: () => progressPanel(clip) };
+  if (clip && needsTopic(clip)) return { key: `topics ${clip.id}`, panel: () => topicsPanel(clip) };
+  if (clip || !loaded || uploads.length) return null;
+  if (clips.length) return { key: "unchosen", panel: noClip };
+  const revisions = languages.map(({ id, revision }) => id + revision);
+  return {
+    key: `welcome ${samples.length} ${revisions}`,
+    panel: () => h("div", {}, welcome(samples, languages)),
+  };
+}
+
+/** Draw it, or hide it when the workspace has something to show. */
+export function drawWelcome(values) {
   const box = byId("welcome");
   const clip = selectedClip();
-  const busy = clip !== null && BUSY.has(clip.status);
-  const nothing = loaded && !clips.length && !uploads.length;
-  const unchosen = loaded && clips.length > 0 && clip === null && !uploads.length;
-  const asks = clip !== null && needsTopic(clip);
-  const shows = busy
-    ? clip.job_id
-    : asks
-      ? `topics ${clip.id}`
-      : unchosen
-        ? "unchosen"
-        : nothing
-          ? `welcome ${samples.length} ${languages.map(({ id, revision }) => id + revision)}`
-          : "";
-  box.hidden = !shows;
-  if (box.dataset.shows !== shows) {
-    box.dataset.shows = shows;
-    box.replaceChildren(
-      ...(busy
-        ? [progressPanel(clip)]
-        : asks
-          ? [topicsPanel(clip)]
-          : unchosen
-            ? [noClip()]
-            : nothing
-              ? [h("div", {}, welcome(samples, languages))]
-              : []),
-    );
+  const content = contentOf(values, clip);
+  const key = content?.key ?? "";
+  box.hidden = !key;
+  if (box.dataset.shows !== key) {
+    box.dataset.shows = key;
+    box.replaceChildren(...(content ? [content.panel()] : []));
   }
-  if (busy) showProgress(box, clip, jobs.get(clip.job_id));
+  if (clip && BUSY.has(clip.status)) showProgress(box, clip, values.jobs.get(clip.job_id));
 }

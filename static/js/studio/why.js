@@ -150,48 +150,40 @@ const shares = (result, why) =>
     shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"),
   );
 
+const note = (text) => h("p", { className: "dim" }, text);
+
+/** What would have helped, as buttons that try it out; a note where nothing would. */
+function remediesOf(why) {
+  if (why.right) return null;
+  if (!why.counterfactuals.length)
+    return note(
+      `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`,
+    );
+  return h(
+    "div",
+    { className: "remedies" },
+    h("h2", {}, `It would have been read as ${why.expected}`),
+    h("ul", {}, why.counterfactuals.map(remedy)),
+  );
+}
+
+const reasons = (why) => [h("p", { className: "why-sentence" }, why.sentence), remediesOf(why)];
+
+const ASK_EXPECTED =
+  "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help.";
+
 /** Draw why, under the take. */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
-  const asks = result && result.expected === null;
-  box.hidden = !result || (!why && !asks && !trying);
+  const asks = result !== null && result.expected === null && !trying;
+  box.hidden = !result || !(why || asks || trying);
   if (box.hidden) return box.replaceChildren();
-  if (asks && !trying)
-    return box.replaceChildren(
-      h(
-        "div",
-        { className: "why-words" },
-        h(
-          "p",
-          { className: "dim" },
-          "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help.",
-        ),
-        shares(result, null),
-      ),
-    );
-  const remedies = why && !why.right ? why.counterfactuals : [];
-  const words = [
-    trying,
-    why ? h("p", { className: "why-sentence" }, why.sentence) : null,
-    remedies.length
-      ? h(
-          "div",
-          { className: "remedies" },
-          h("h2", {}, `It would have been read as ${why.expected}`),
-          h("ul", {}, remedies.map(remedy)),
-        )
-      : null,
-    why && !why.right && !remedies.length
-      ? h(
-          "p",
-          { className: "dim" },
-          `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`,
-        )
-      : null,
-    result ? shares(result, why) : null,
-  ];
+  const words = asks
+    ? [note(ASK_EXPECTED), shares(result, null)]
+    : [trying, ...(why ? reasons(why) : []), shares(result, why)];
+  const alignments = asks ? null : alignmentsOf(why);
   return box.replaceChildren(
-    ...[h("div", { className: "why-words" }, words), alignmentsOf(why)].filter(Boolean),
+    ...[h("div", { className: "why-words" }, words), alignments].filter(Boolean),
   );
 }
