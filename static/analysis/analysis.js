@@ -14,6 +14,9 @@ const REST = 600; // ms that the last frame stands before it starts over
 [canvas.width, canvas.height] = size;
 slider.max = String(frames.length - 1);
 
+const styles = getComputedStyle(document.documentElement);
+const colour = (name) => styles.getPropertyValue(name);
+
 const at = (landmark) => landmark && [landmark[0] * canvas.width, landmark[1] * canvas.height];
 
 function line(points, colour, width) {
@@ -40,11 +43,11 @@ function draw(index) {
   context.drawImage(images[index], 0, 0, canvas.width, canvas.height);
   const pose = poses[index];
   for (const [from, to] of bones)
-    if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], "#ffffffcc", 2);
+    if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], colour("--bone"), 2);
   for (const landmark of trails)
     line(
       poses.slice(0, index + 1).map((each) => at(each[landmark])),
-      "#3a86ff",
+      colour("--trail"),
       4,
     );
   clock.textContent = `${times[index].toFixed(2)} s`;
