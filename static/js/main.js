@@ -1,4 +1,4 @@
-// Start: load what there is, follow what changes, and keep every part of the page in step.
+// The start of the page: loads the data, registers the views, and binds drawing to the state.
 
 import { drawClips, findClips } from "./clips/clip-list.js";
 import { followJob, reloadClip, reloadClips } from "./clips/clip-store.js";
@@ -100,8 +100,8 @@ function loadWithSelection() {
 
 const OF_A_CLIP = new Set([null, "studio", "gesture"]); // Views that show the clip on display.
 
-/** Who follows a link must not take what is shown instead for what was meant. */
-function tellWhatIsGone({ clip, language }) {
+/** Show which clip or language of a link is missing. */
+function reportMissing({ clip, language }) {
   const gone = [
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,
     language && language !== state.language ? "language" : null,
@@ -145,7 +145,7 @@ async function start() {
     openWorkspace().catch(() => null),
   ]);
   update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
-  if (linked && clips) tellWhatIsGone({ clip, language });
+  if (linked && clips) reportMissing({ clip, language });
   if (state.clip && clips && !selectedClip())
     update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
@@ -160,7 +160,7 @@ async function start() {
     },
     returned: restart,
   });
-  // Whoever comes by a link came to see what it shows.
+  // A link is opened for what it shows, so no tour then.
   if (!linked) offerTour();
 }
 

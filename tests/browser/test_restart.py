@@ -128,7 +128,7 @@ def test_every_view_survives_a_server_that_is_killed(
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
         studio.keyboard.press(".")
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
-        confusions = pages["health"].get_by_role("grid", name="Predicted confusions")
+        confusions = pages["health"].get_by_role("grid", name="Estimated confusions")
         expect(confusions).to_be_visible()
         pages["health"].close()
         editor = pages["gesture"]

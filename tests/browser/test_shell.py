@@ -110,7 +110,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     expect(trial).to_contain_text("It is read as line")
     expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
     trial.get_by_role("button", name=re.compile("Discard|Back to as it was")).click()
-    expect(page.locator("#outcome")).to_contain_text("Taken for circle, expected line")
+    expect(page.locator("#outcome")).to_contain_text("Recognised as circle, expected line")
     while not held:
         page.wait_for_timeout(10)
     with page.expect_response("**/explanation") as told:

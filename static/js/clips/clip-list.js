@@ -8,9 +8,13 @@ import { recordAction, showDone } from "../core/undo.js";
 import { BUSY, needsTopic, reloadClips, select, statusText } from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
 
+/** @import { Clip, Job, State } from "../core/types.d.ts" */
+
 const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
+/** @type {string | null} */
 let inView = null; // the clip that the list was last scrolled to
 
+/** @param {Clip} clip */
 async function remove(clip) {
   const done = await attempt("Deleting the clip", async () => {
     await api.clips.remove(clip.id);
@@ -25,11 +29,13 @@ async function remove(clip) {
   showDone("Clip deleted", clip.name);
 }
 
+/** @param {Clip} clip */
 async function retry(clip) {
   await attempt("Retrying", () => api.clips.retry(clip.id));
   await reloadClips();
 }
 
+/** @param {Clip} clip */
 function buttons(clip) {
   if (BUSY.has(clip.status))
     return [
@@ -56,7 +62,12 @@ function buttons(clip) {
   return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
 }
 
-/** The clip's picture; once made it is kept, since progress redraws the rest often. */
+/**
+ * The clip's picture; once made it is kept, since progress redraws the rest often.
+ *
+ * @param {Clip} clip
+ * @param {HTMLElement} [element]
+ */
 function posterOf(clip, element) {
   const known = element?.querySelector(".poster:not(.blank)");
   if (known) return known;
@@ -72,25 +83,47 @@ function posterOf(clip, element) {
   return poster;
 }
 
-/** How far a progress bar is, where that is known. */
+/**
+ * How far a progress bar is, where that is known.
+ *
+ * @param {Job} [job]
+ */
 const lengthOf = (job) => (job?.total ? { max: job.total, value: job.done } : {});
 
-/** Move the progress on in place. */
+/**
+ * Move the progress on in place.
+ *
+ * @param {HTMLElement} element
+ * @param {Clip} clip
+ * @param {Job} [job]
+ */
 function advance(element, clip, job) {
-  element.querySelector(".stage-text").textContent = statusText(clip, job);
-  Object.assign(element.querySelector("progress"), lengthOf(job));
+  /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = statusText(
+    clip,
+    job,
+  );
+  Object.assign(/** @type {HTMLElement} */ (element.querySelector("progress")), lengthOf(job));
 }
 
-/** Replace an element's content; the button of the same name keeps the focus. */
+/**
+ * Replace an element's content; the button of the same name keeps the focus.
+ *
+ * @param {HTMLElement} element
+ * @param {...(string | Node)} content
+ */
 function replaceKeepingFocus(element, ...content) {
   const { activeElement } = document;
-  const name = element.contains(activeElement) ? activeElement.getAttribute("aria-label") : null;
+  const name = element.contains(activeElement) ? activeElement?.getAttribute("aria-label") : null;
   element.replaceChildren(...content);
   if (!name) return;
-  const named = [...element.querySelectorAll("[aria-label]")];
+  const named = /** @type {HTMLElement[]} */ ([...element.querySelectorAll("[aria-label]")]);
   named.find((each) => each.getAttribute("aria-label") === name)?.focus();
 }
 
+/**
+ * @param {Clip} clip
+ * @param {HTMLElement} [element]
+ */
 function draw(clip, element) {
   const job = state.jobs.get(clip.job_id);
   const busy = BUSY.has(clip.status);
@@ -134,6 +167,7 @@ function draw(clip, element) {
   return drawn;
 }
 
+/** @param {State} state */
 export function drawClips({ clips, clip: chosen }) {
   byId("clip-count").textContent = clips.length ? String(clips.length) : "";
   const search = byId("find-clip");
@@ -147,8 +181,14 @@ export function drawClips({ clips, clip: chosen }) {
   if (chosen !== inView && list.clientHeight) bringIntoView(list, chosen);
 }
 
-/** Scroll the list, and nothing else, to the clip on display. */
+/**
+ * Scroll the list, and nothing else, to the clip on display.
+ *
+ * @param {HTMLElement} list
+ * @param {string | null} chosen
+ */
 function bringIntoView(list, chosen) {
+  /** @type {HTMLElement | null} */
   const item = list.querySelector(".chosen");
   if (!item) return;
   inView = chosen;

@@ -3,7 +3,16 @@
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 
-/** The thumbnails, as many as fit side by side, each at its own moment. */
+/** @import { Clip, Timeline } from "../core/types.d.ts" */
+
+/**
+ * The thumbnails, as many as fit side by side, each at its own moment.
+ *
+ * @param {Clip} clip
+ * @param {Timeline} timeline
+ * @param {number} width
+ * @param {number} height
+ */
 export function filmstrip(clip, { thumbnails }, width, height) {
   if (!thumbnails || !width) return null;
   const each = height * (clip.width / clip.height);

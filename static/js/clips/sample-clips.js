@@ -5,10 +5,21 @@ import { byId, h, icon } from "../core/dom.js";
 import { attempt } from "../core/toasts.js";
 import { reloadClips, select } from "./clip-store.js";
 
-/** "circle_a_demonstration.mp4" as people read it. */
+/** @import { Sample, State } from "../core/types.d.ts" */
+
+/**
+ * "circle_a_demonstration.mp4" as people read it.
+ *
+ * @param {string} name
+ */
 const readable = (name) => name.replace(/\.\w+$/, "").replace(/[_-]+/g, " ");
 
-/** Add a sample clip and show it; resolves to its id, or null. */
+/**
+ * Add a sample clip and show it; resolves to its id, or null.
+ *
+ * @param {Sample} sample
+ * @param {HTMLButtonElement} button
+ */
 export async function addSampleClip(sample, button) {
   button.disabled = true;
   const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
@@ -19,7 +30,11 @@ export async function addSampleClip(sample, button) {
   return accepted.id;
 }
 
-/** Make the list of sample clips, each a button that adds it. */
+/**
+ * Make the list of sample clips, each a button that adds it.
+ *
+ * @param {Sample[]} samples
+ */
 export function samplesList(samples) {
   return h(
     "ul",
@@ -32,7 +47,11 @@ export function samplesList(samples) {
   );
 }
 
-/** Offer the sample clips in the library, folded away. */
+/**
+ * Offer the sample clips in the library, folded away.
+ *
+ * @param {State} state
+ */
 export function drawSampleClips({ samples }) {
   byId("samples").replaceChildren(
     ...(samples.length

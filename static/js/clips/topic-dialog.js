@@ -1,11 +1,18 @@
-// The topics of a dive recording, of which one becomes the clip.
+// The dialog that chooses the topic of a dive recording.
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { duration, plural } from "../core/format.js";
 
+/** @import { Clip, Topic } from "../core/types.d.ts" */
+
+/** @type {Record<string, string>} */
 const USES = { pictures: "Pictures", keypoints: "Keypoints, shown as a skeleton" };
 
+/**
+ * @param {Topic} topic
+ * @param {boolean} chosen
+ */
 function choice(topic, chosen) {
   const facts = [topic.type.replace("/msg/", "/"), `${topic.width} \u00d7 ${topic.height}`].join(
     "  \u00b7  ",
@@ -29,7 +36,11 @@ function choice(topic, chosen) {
   );
 }
 
-/** What stands in the middle until a topic is chosen. */
+/**
+ * The panel that is shown until a topic is chosen.
+ *
+ * @param {Clip} clip
+ */
 export const topicsPanel = (clip) =>
   h(
     "div",
@@ -43,7 +54,11 @@ export const topicsPanel = (clip) =>
     ),
   );
 
-/** Let the user choose what a recording's clip is made of. */
+/**
+ * Let the user choose what a recording's clip is made of.
+ *
+ * @param {Clip} clip
+ */
 export function openTopics(clip) {
   const dialog = byId("dialog");
   if (dialog.open) return; // its card asks again
@@ -75,7 +90,7 @@ export function openTopics(clip) {
     event.preventDefault();
     confirm.disabled = true;
     try {
-      await api.clips.chooseTopic(clip.id, new FormData(form).get("topic"));
+      await api.clips.chooseTopic(clip.id, String(new FormData(form).get("topic")));
       dialog.close();
     } catch (error) {
       problem.textContent = error.message;

@@ -23,7 +23,7 @@ export const unreachable = () =>
   new ApiError(
     {
       title: "No connection",
-      detail: "The server did not answer. Is it still running? It is tried again by itself.",
+      detail: "The server did not answer. Is it still running? The page reconnects by itself.",
       code: "offline",
     },
     0,

@@ -1,9 +1,9 @@
-// What leaves the page by the clipboard.
+// Copying to the clipboard.
 
 import { toast } from "./toasts.js";
 
 /**
- * Copy a text, and say so in `title`, with what it means in `detail`.
+ * Copy a text and confirm it in a toast with `title` and `detail`.
  *
  * @param {string} text
  * @param {string} title
@@ -22,7 +22,7 @@ export async function copy(text, title, detail = text) {
   }
 }
 
-/** Copy the address: it names all that is on display. */
+/** Copy the page's address, which restores all that is shown. */
 export const copyLink = () =>
   copy(
     location.href,

@@ -1,11 +1,11 @@
-// One modal dialog with a form; it stays open, and says why, until its task succeeds.
+// A modal dialog with a form; it stays open and shows the error until its task succeeds.
 
 import { byId, h } from "./dom.js";
 
 /** @import { Field } from "./types.d.ts" */
 
 /**
- * Ask for values.
+ * Ask for values in a dialog.
  *
  * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
  * task; its error is shown in the dialog. Resolves to what `submit` returned, or null.
@@ -41,7 +41,8 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
       const empty = fields.findIndex(
         (field, index) => field.required && !inputs[index].value.trim(),
       );
-      if (empty >= 0) return tell(`${fields[empty].label} is empty; type one.`, inputs[empty]);
+      if (empty >= 0)
+        return showProblem(`${fields[empty].label} is empty; type one.`, inputs[empty]);
       confirm.disabled = true;
       try {
         answer = await submit(
@@ -52,13 +53,13 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
         dialog.close();
       } catch (error) {
         if (error.code === "cancelled") return dialog.close();
-        tell(error.message, inputs[0]);
+        showProblem(error.message, inputs[0]);
       } finally {
         confirm.disabled = false;
       }
     };
     /** @type {(message: string, input?: HTMLElement) => void} */
-    const tell = (message, input) => {
+    const showProblem = (message, input) => {
       problem.textContent = message;
       problem.hidden = false;
       input?.focus();

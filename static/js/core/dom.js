@@ -1,4 +1,4 @@
-// Building elements. Text only ever becomes text nodes: nothing a user wrote is parsed as markup.
+// Creating DOM elements. Text becomes text nodes only: nothing a user wrote is parsed as markup.
 
 /** @type {Record<string, string>} */
 const ICONS = {

@@ -1,4 +1,4 @@
-// Numbers and names as people read them.
+// Formatting numbers, durations, moments and names.
 
 /**
  * @param {number} count
@@ -50,7 +50,7 @@ const UNITS = [
 ];
 
 /**
- * How long ago a moment was.
+ * A past moment relative to now.
  *
  * @param {string | number} moment
  * @returns {string}
@@ -62,7 +62,7 @@ export function ago(moment) {
 }
 
 /**
- * A moment in full, as the reader's own system writes it.
+ * A date and time in the reader's locale.
  *
  * @param {string} moment
  */

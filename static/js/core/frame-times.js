@@ -1,6 +1,6 @@
-// Frames and their moments: `time` is when each frame is shown, by the container's clock.
+// Frames and their timestamps: `time` has each frame's container timestamp in seconds.
 
-/** A range of fewer frames holds no gesture. */
+/** The fewest frames of a range. */
 export const LEAST_FRAMES = 3;
 
 /**

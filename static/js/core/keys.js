@@ -1,4 +1,4 @@
-// The keyboard: one list of what every key does, which is also what `?` shows.
+// The key bindings: one list, which `?` also shows.
 
 /** @import { Binding } from "./types.d.ts" */
 
@@ -9,10 +9,10 @@ const TYPED_IN =
   "input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]";
 
 /**
- * Let a key do something. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,", the first
- * is the one told; `when` says whether it means anything now, and of several that do the last one
- * bound is meant. Plain keys are left alone where text
- * is typed. None may shadow what the browser itself does.
+ * Bind keys to a function. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,"; the first
+ * is the one shown; `when()` says whether the binding applies now, and of several the last one
+ * wins. Plain keys do nothing where text
+ * is typed. No key may override one of the browser.
  *
  * @param {{ keys: string[], text: string, group: string, run: (event: KeyboardEvent) => unknown, when?: () => boolean }} binding
  */
@@ -21,7 +21,7 @@ export function bind({ keys, text, group, run, when = () => true }) {
 }
 
 /**
- * A key press as it is written in `bind`; what Shift makes of a letter or sign is undone.
+ * A key press in the notation of `bind`: the key's own letter or sign, also with Shift.
  *
  * @param {KeyboardEvent} event
  * @returns {string}
@@ -46,7 +46,7 @@ function written(event) {
 let opening = null; // A view that is being loaded: its keys are not bound yet.
 
 /**
- * Let keys that are pressed before a promise is kept wait for it.
+ * Delay keys that are pressed until a promise is settled.
  *
  * @param {Promise<unknown>} promise
  */
@@ -83,7 +83,7 @@ function pressed(event) {
 }
 
 /**
- * Hear the keys that are pressed in a window: this one, or a frame in it.
+ * Handle the keys that are pressed in a window: this one, or a frame in it.
  *
  * @param {Window} [target]
  */

@@ -1,4 +1,4 @@
-// One member of a list loaded anew when the server says that it changed: a long list is not.
+// Reloading one member of a list after the server reported a change of it.
 
 import { attempt } from "./toasts.js";
 
@@ -7,7 +7,7 @@ const newest = new Map(); // per id the request that was sent last
 
 /**
  * Load a member by `load(id)`. Resolves to `{ member }`, null in it where it is gone, or to null
- * where the answer came too late: a newer one is on its way.
+ * where a newer request for it has been sent since.
  *
  * @template T
  * @param {string} id

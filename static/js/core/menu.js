@@ -1,4 +1,4 @@
-// A button that opens a short list of commands.
+// A menu: a button that opens a short list of commands.
 
 import { h, icon } from "./dom.js";
 

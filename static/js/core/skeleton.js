@@ -1,4 +1,4 @@
-// A diver's pose drawn over the picture: bones as lines, landmarks as dots.
+// The skeleton over a picture: bones as lines, landmarks as dots.
 
 import { svg } from "./dom.js";
 
@@ -47,7 +47,7 @@ export function skeleton(width, height) {
  * landmark as fractions of the picture's width and height, and null for one that was not seen.
  *
  * @param {SVGSVGElement} drawing
- * @param {([number, number] | null)[] | null} pose
+ * @param {(number[] | null)[] | null} pose
  */
 export function drawPose(drawing, pose) {
   const { width, height } = drawing.viewBox.baseVal;

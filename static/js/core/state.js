@@ -1,6 +1,6 @@
-// What the page shows, in one place. What a colleague should see from a link is in the URL.
+// The state of the page, in one place; what a link should restore is in the URL.
 
-/** @import { Clip, State, Take } from "./types.d.ts" */
+/** @import { Clip, Language, SelectedRange, State } from "./types.d.ts" */
 
 /** @type {Record<string, string>} */
 const IN_URL = {
@@ -73,7 +73,7 @@ const values = {
 /** @type {{ names: (keyof State)[], react: (state: State) => void }[]} */
 const listeners = [];
 
-let returning = false; // to another entry of the browser's history, which says the URL already
+let returning = false; // to another entry of the browser's history, whose URL is there already
 
 /** The present values; read only. */
 export const state = values;
@@ -82,7 +82,7 @@ export const state = values;
 const keysOf = (change) => /** @type {any} */ (Object.keys(change));
 
 /**
- * Change values, put what belongs there into the URL, and tell who listens to them.
+ * Change values, write them to the URL, and call the listeners of those that changed.
  *
  * @param {Partial<State>} change
  */
@@ -90,7 +90,7 @@ export function update(change) {
   const changed = keysOf(change).filter((name) => values[name] !== change[name]);
   if (!changed.length) return;
   Object.assign(values, change);
-  // Another view is another page to go back from; the rest is only where one is in it.
+  // Only another view makes an entry in the browser's history.
   if (!returning && changed.some((name) => name in IN_URL)) writeUrl(changed.includes("view"));
   for (const { names, react } of listeners)
     if (names.some((name) => changed.includes(name))) react(values);
@@ -108,7 +108,7 @@ export function follow(names, react) {
 }
 
 /**
- * Take over what the URL says.
+ * Read the state that is in the URL.
  *
  * @returns {Partial<State>}
  */
@@ -161,7 +161,7 @@ export const lengthOf = (clip) => values.timeline?.time.at(-1) ?? clip.duration 
 /**
  * The range in seconds on which buttons act, and whether it is a take's own.
  *
- * @returns {{ start: number, end: number, shown: [number, number], take: Take | null } | null}
+ * @returns {SelectedRange | null}
  */
 export function selectedRange() {
   const clip = selectedClip();
@@ -172,4 +172,14 @@ export function selectedRange() {
   const start = values.start ?? 0;
   const end = values.end ?? lengthOf(clip);
   return { start, end, shown: [start, end], take: null };
+}
+
+/**
+ * The language on display, for code that runs only while there is one.
+ *
+ * @returns {Language}
+ */
+export function currentLanguage() {
+  if (!values.gestures) throw new Error("No language is on display.");
+  return values.gestures;
 }

@@ -1,4 +1,4 @@
-// Short messages that say what happened, why, and what to do next.
+// Toasts: short messages with what happened, why, and what to do next.
 
 import { byId, h, iconButton } from "./dom.js";
 

@@ -91,10 +91,25 @@ export type Explanation = Omit<
   "alignments" | "counterfactuals" | "verdicts"
 > & { alignments: Alignment[]; counterfactuals: Counterfactual[]; verdicts: Verdict[] };
 
-export type Recognition = Omit<Schemas["RecognitionView"], "profile" | "weights"> & {
+/** The answer to a recognition; the fields that the page reads. */
+export interface Recognition {
+  id: string;
+  clip_id: string;
+  language_id: string;
+  revision: number;
+  start: number;
+  end: number;
   profile: Language["profile"];
+  tuning: Tuning | null;
+  expected: string | null;
+  created: string;
+  label: string | null;
+  nearest: string | null;
+  confidence: number;
+  votes: Record<string, string | null>;
   weights: Record<string, number>;
-};
+  fault: string | null;
+}
 
 export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;
@@ -298,3 +313,18 @@ export interface KeyListActions {
 export type MenuItem =
   | { text: string; run: () => unknown; href?: undefined }
   | { text: string; href: string; run?: undefined };
+
+/** The range in seconds on which buttons act, the part of it to show, and the take it is, if any. */
+export interface SelectedRange {
+  start: number;
+  end: number;
+  shown: [number, number];
+  take: Take | null;
+}
+
+/** How far an upload is: its address, the bytes received, and the clip's id once it is whole. */
+export interface Stand {
+  place: string;
+  offset: number;
+  clip: string | null;
+}

@@ -70,7 +70,7 @@ async function step(from, to, how, words) {
   }
 }
 
-// One after the other: a second key press may come while the first still waits for the server.
+// Sequential: a second key press may come while the first still waits for the server.
 let working = Promise.resolve();
 
 /** Undo the newest action; resolves when that is done. */

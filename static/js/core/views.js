@@ -1,4 +1,4 @@
-// The views of the page: one is shown at a time, named in the URL, and loaded when first shown.
+// The views of the page: one is shown at a time, named in the URL, and imported when first shown.
 
 import { byId, h, reconcile } from "./dom.js";
 import { holdKeys } from "./keys.js";
@@ -18,7 +18,7 @@ const opened = new Map();
 const guards = new Map();
 
 /**
- * Ask `mayLeave()`, which may take its time, before a view is left for another one.
+ * Register `mayLeave()`, which is awaited before the view is left for another one.
  *
  * @param {string} view
  * @param {() => boolean | Promise<boolean>} mayLeave
@@ -68,7 +68,7 @@ export function address(view, change = {}) {
 }
 
 /**
- * What a link does when it is clicked here; another tab or window is left to the browser.
+ * The click handler of a link: a plain click calls `run`; the browser opens other tabs and windows.
  *
  * @param {() => unknown} run
  * @returns {(event: MouseEvent) => void}

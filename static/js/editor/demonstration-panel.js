@@ -1,4 +1,4 @@
-// The demonstration: which part of which clip, shown frame by frame, with its two ends to be moved.
+// The panel of the demonstration: its clip, its take, its frames, and its two ends to move.
 
 import { filmstrip } from "../clips/filmstrip.js";
 import * as api from "../core/api.js";
@@ -68,7 +68,7 @@ export function take({ language, gesture, drawn, pick }) {
       "label",
       { className: "check" },
       transit,
-      h("span", {}, "Leave out the hand\u2019s way from and to the salute", transitText),
+      h("span", {}, "Leave out the hand\u2019s transit from and to the salute", transitText),
     ),
   );
   const note = h("p", { className: "dim" });
@@ -116,6 +116,7 @@ export function take({ language, gesture, drawn, pick }) {
     go(which === "start" ? first : last);
   }
 
+  /** @type {() => [number, number]} */
   const span = () =>
     source.id
       ? framesOf(draft().clip, source.takes, source.poses.time)
@@ -145,7 +146,7 @@ export function take({ language, gesture, drawn, pick }) {
   function go(to) {
     if (!source) return;
     frame = Math.max(0, Math.min(source.poses.time.length - 1, to));
-    scrub.value = frame;
+    scrub.value = String(frame);
     clockText.textContent = `frame ${frame}, ${moment(source.poses.time[frame])}`;
     scrub.setAttribute("aria-valuetext", clockText.textContent);
     picture.draw(frame, span(), chosen);
@@ -190,7 +191,7 @@ export function take({ language, gesture, drawn, pick }) {
     clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
     clips.value = draft().clip?.clip_id ?? "";
     const several = Boolean(source?.id);
-    takes.parentElement.hidden = !several;
+    /** @type {HTMLElement} */ (takes.parentElement).hidden = !several;
     if (!several) return;
     takes.replaceChildren(
       ...source.takes.map((each, index) =>
@@ -222,7 +223,7 @@ export function take({ language, gesture, drawn, pick }) {
       seconds.dataset.end = which;
     });
     const share = (index) => (100 * index) / (time.length - 1);
-    const range = strip.querySelector(".range");
+    const range = /** @type {HTMLElement} */ (strip.querySelector(".range"));
     range.style.left = `${share(frames[0])}%`;
     range.style.width = `${share(frames[1]) - share(frames[0])}%`;
     const own = takeOf(draft().clip, source.takes);
@@ -230,7 +231,7 @@ export function take({ language, gesture, drawn, pick }) {
     transit.checked = Boolean(own) && !draft().clip.keep_transit;
     transitText.textContent = own
       ? `${moment(own.stroke_start - own.start)} before and ${moment(own.end - own.stroke_end)} after the gesture`
-      : "A range by hand is taken as it is; choose a take to have it found.";
+      : "A range chosen by hand is used as it is; choose a take to have the transit found.";
   }
 
   const wantedClip = () => draft().clip?.clip_id ?? null;
@@ -257,7 +258,7 @@ export function take({ language, gesture, drawn, pick }) {
     const { id } = source;
     element.classList.remove("bare");
     picture.show(source.poses, id);
-    scrub.max = source.poses.time.length - 1;
+    scrub.max = String(source.poses.time.length - 1);
     strip.querySelector(".filmstrip")?.remove();
     draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
     go(span()[0]);
@@ -272,8 +273,8 @@ export function take({ language, gesture, drawn, pick }) {
     note.textContent = draft().clip
       ? ""
       : drawn
-        ? "Imported as a drawing: the demonstration is not in the file, so it cannot be played, trimmed or followed by other keypoints. Show the gesture anew from a clip."
-        : "The demonstration as the language keeps it; its clip is not here, or no longer. To trim it, or to show the gesture anew, choose a clip.";
+        ? "Imported without its demonstration: it cannot be played or trimmed, and its keypoints cannot be changed. Choose a clip that shows the gesture."
+        : "The demonstration as it is saved in the language; its clip is not in this studio. To trim or replace it, choose a clip.";
     note.hidden = Boolean(draft().clip);
     drawTrim();
     if (source) go(frame);

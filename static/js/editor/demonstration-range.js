@@ -1,8 +1,8 @@
-// Which part of a clip the demonstration is: a take's stroke, all of a take, or a range by hand.
+// The range of a demonstration in its clip: a take's gesture, all of a take, or a range by hand.
 
 import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
 
-const SAME_MOMENT = 1e-3; // s, as the server tells a take's own range
+const SAME_MOMENT = 1e-3; // s, as the server compares a range with a take
 
 const near = (one, other) => Math.abs(one - other) <= SAME_MOMENT;
 
@@ -10,7 +10,11 @@ const near = (one, other) => Math.abs(one - other) <= SAME_MOMENT;
 export const takeOf = (where, takes) =>
   takes.find((take) => near(take.start, where.start) && near(take.end, where.end)) ?? null;
 
-/** First and last frame of what is meant. */
+/**
+ * First and last frame of what is meant.
+ *
+ * @returns {[number, number]}
+ */
 export function framesOf(where, takes, time) {
   const take = takeOf(where, takes);
   const [start, end] =

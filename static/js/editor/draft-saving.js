@@ -1,4 +1,4 @@
-// A draft as the server takes it: to preview it, and to save it as one revision.
+// Requests of a draft: its preview, and saving it as one revision.
 
 import * as api from "../core/api.js";
 import { edit } from "../languages/revision-edit.js";

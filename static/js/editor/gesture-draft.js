@@ -1,4 +1,4 @@
-// The draft of a gesture: what was changed and not saved yet, its own undo, and its copy on disk.
+// The draft of a gesture: unsaved changes with their own undo, kept in localStorage.
 
 const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.
 const MOST_STEPS = 200; // Of undo: an hour of tireless clicking, a few hundred bytes each.
@@ -31,11 +31,11 @@ export const canRedo = () => future.length > 0;
 export const placeOf = (language, gesture) => `${KEY}.${language}.${gesture}`;
 
 /**
- * Begin with `values`, or with the draft kept from another time. `told()` is called after every
+ * Begin with `values`, or with the draft kept from another time. `changed()` is called after every
  * change. Returns when the kept draft was left, in ms, or null.
  */
-export function begin(at, values, told) {
-  [place, base, now, past, future, typing, listener] = [at, values, values, [], [], null, told];
+export function begin(at, values, changed) {
+  [place, base, now, past, future, typing, listener] = [at, values, values, [], [], null, changed];
   const kept = read(at);
   if (!kept || same(kept.values, values)) return null;
   now = { ...values, ...kept.values };
@@ -44,6 +44,7 @@ export function begin(at, values, told) {
 }
 
 /** Change some values. Typing on in the same `field` stays one step. */
+/** @type {(values: object, field?: string | null) => void} */
 export function change(values, field = null) {
   const next = { ...now, ...values };
   if (same(next, now)) return;

@@ -1,10 +1,10 @@
-// One gesture being made or changed: nothing is saved before "Save", and nothing is lost until then.
+// The editor of a gesture. Only "Save" changes the language; until then there is a draft.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/keys.js";
-import { follow, selectedRange, state } from "../core/state.js";
+import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
@@ -33,11 +33,13 @@ import { previewing } from "./preview-requests.js";
 import { health, image } from "./preview-results.js";
 import { keypoints, toggle } from "./salient-keypoints.js";
 
+/** @import { SelectedRange } from "../core/types.d.ts" */
+
 const GROUP = "Editing a gesture";
 
 let editor = null; // the one on display
 
-/** What is edited: a gesture of the language, or a new one from what is selected. */
+/** The gesture to edit: one of the language, or a new one from the selected range. */
 function subject() {
   const { gestures, gesture, clip, clips, loaded } = state;
   if (!gestures || gestures.id !== state.language || !loaded) return null;
@@ -58,7 +60,7 @@ const isThere = (where) =>
 
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
-    const { start, end } = selectedRange();
+    const { start, end } = /** @type {SelectedRange} */ (selectedRange());
     return {
       label: "",
       description: "",
@@ -87,12 +89,14 @@ function valuesOf({ language, gesture }) {
 function build(section, about) {
   const { language, gesture } = about;
   const others = () =>
-    state.gestures.gestures.map((each) => each.label).filter((label) => label !== gesture);
+    currentLanguage()
+      .gestures.map((each) => each.label)
+      .filter((label) => label !== gesture);
   const drawn =
     gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
   let preview = null;
-  let outlook = null;
-  let before = null; // the outlook of what is saved
+  let estimate = null;
+  let before = null; // the estimate of what is saved
   const pick = (landmark) => {
     if (!toggle(landmark, preview))
       toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
@@ -119,10 +123,10 @@ function build(section, about) {
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
 
   const ask = previewing({
-    shown: (found, forecast) => {
+    shown: (found, estimated) => {
       preview = found;
-      outlook = forecast;
-      if (forecast && !isChanged() && gesture !== null) before = forecast;
+      estimate = estimated;
+      if (estimated && !isChanged() && gesture !== null) before = estimated;
       draw();
     },
     failed: (error) => complain(error, "The preview"),
@@ -130,11 +134,11 @@ function build(section, about) {
 
   function draw() {
     parts.texts.draw();
-    parts.switches.draw(outlook);
+    parts.switches.draw(estimate);
     parts.keypoints.draw(preview);
     parts.take.draw(preview);
     parts.image.draw(preview);
-    parts.health.draw(outlook, before, preview?.problem);
+    parts.health.draw(estimate, before, preview?.problem);
     undoing.disabled = !canUndo();
     redoing.disabled = !canRedo();
     status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
@@ -157,7 +161,7 @@ function build(section, about) {
   async function submit(event) {
     event.preventDefault();
     const fault = textProblem(draft(), others());
-    if (fault) return tell(fault.text, document.getElementById(fault.id));
+    if (fault) return showProblem(fault.text, document.getElementById(fault.id));
     saving.disabled = true;
     try {
       const label = draft().label.trim();
@@ -165,7 +169,7 @@ function build(section, about) {
       abandon();
       showDone("Gesture saved", `${label}, in ${now.name}`);
     } catch (error) {
-      if (error.code !== "cancelled") tell(error.message);
+      if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // Somebody else's change was preferred to this one.
     } finally {
       saving.disabled = false;
@@ -173,7 +177,7 @@ function build(section, about) {
     return undefined;
   }
 
-  function tell(text, input) {
+  function showProblem(text, input) {
     problem.textContent = text;
     problem.hidden = false;
     input?.focus();
@@ -232,7 +236,7 @@ function close() {
   editor = null;
 }
 
-/** The editor was left without being asked, as by the browser's Back: say that nothing is lost. */
+/** After leaving by the browser's Back: show that the draft is kept. */
 function left() {
   const { gesture, language } = editor?.about ?? {};
   const kept = editor && isKept();
@@ -248,7 +252,7 @@ function left() {
   });
 }
 
-/** The language was deleted elsewhere: another one's gesture of the same label is not what was edited. */
+/** Leave the editor after its language was deleted elsewhere. */
 function bereft() {
   const {
     gesture,

@@ -1,4 +1,4 @@
-// What a gesture says, and which of its properties count.
+// The form of a gesture: its texts, and the switches of its invariances.
 
 import { h } from "../core/dom.js";
 import { read } from "../languages/robot-command.js";
@@ -11,27 +11,27 @@ const SWITCHES = [
     name: "direction",
     title: "Direction",
     words: {
-      auto: "Counts where the language needs it",
-      on: "Only the way round it is shown",
-      off: "Either way round",
+      auto: "Used where the language needs it",
+      on: "Only in the demonstrated direction",
+      off: "In either direction",
     },
   },
   {
     name: "tempo",
     title: "Tempo",
     words: {
-      auto: "Counts where the language needs it",
-      on: "How long it takes counts",
-      off: "However fast it is shown",
+      auto: "Used where the language needs it",
+      on: "Only at the demonstrated duration",
+      off: "At any speed",
     },
   },
   {
     name: "mirror",
     title: "Mirror",
     words: {
-      auto: "The hand that shows it counts",
-      on: "The other hand, mirrored, means it too",
-      off: "Never, and sides are never exchanged",
+      auto: "Only by the demonstrated hand",
+      on: "Also mirrored, by the other hand",
+      off: "Never mirrored, and sides are never exchanged",
     },
   },
 ];
@@ -50,7 +50,7 @@ function field(name, label, input, hint = "") {
   };
 }
 
-/** Build the text fields; `draw` puts the draft into them and says what is wrong with it. */
+/** Build the text fields; `draw` writes the draft into them and shows what is invalid. */
 export function texts(taken) {
   const label = field(
     "label",
@@ -66,7 +66,7 @@ export function texts(taken) {
   const command = field("command", "Command", h("textarea", { rows: 3, spellcheck: false }));
   const fields = { label, description, command };
 
-  function tell({ input, note }, problem, text) {
+  function annotate({ input, note }, problem, text) {
     note.textContent = problem ?? text;
     note.className = problem ? "field-problem" : "dim";
     input.setAttribute("aria-invalid", String(Boolean(problem)));
@@ -76,19 +76,19 @@ export function texts(taken) {
     const values = draft();
     for (const [name, { input }] of Object.entries(fields))
       if (input.value !== values[name]) input.value = values[name];
-    tell(
+    annotate(
       label,
       labelProblem(values.label, taken()),
-      "What the recogniser answers: circle, ascend, follow me.",
+      "The name that the recogniser returns: circle, ascend, follow me.",
     );
     const { problem, kind } = read(values.command);
-    tell(command, problem, `${kind}. Words, or a JSON object for the robot.`);
+    annotate(command, problem, `${kind}. Words, or a JSON object for the robot.`);
   }
   return {
     element: h(
       "section",
-      { className: "panel words", "aria-label": "What it says" },
-      h("h2", {}, "What it says"),
+      { className: "panel words", "aria-label": "Texts" },
+      h("h2", {}, "Texts"),
       label.row,
       description.row,
       command.row,
@@ -105,7 +105,7 @@ function labelProblem(label, taken) {
     : null;
 }
 
-/** What is wrong with the texts, and the field to mend; null when nothing is. */
+/** The first invalid text and its field; null when all are valid. */
 export function textProblem(values, taken) {
   if (!values.label.trim()) return { id: "editor-label", text: "Label is empty; type one." };
   const label = labelProblem(values.label, taken);
@@ -154,14 +154,14 @@ function choice({ name, title, words }) {
   return { element, draw };
 }
 
-/** Build the switches; `draw(outlook)` also says what the automatic ones come to. */
+/** Build the switches; `draw(estimate)` also shows what the automatic ones resolve to. */
 export function switches() {
   const choices = SWITCHES.map(choice);
   return {
     element: h(
       "section",
-      { className: "panel switches", "aria-label": "What of it counts" },
-      h("h2", {}, "What of it counts"),
+      { className: "panel switches", "aria-label": "Invariances" },
+      h("h2", {}, "Invariances"),
       choices.map((each) => each.element),
     ),
     draw: (found) => choices.forEach((each) => each.draw(found)),

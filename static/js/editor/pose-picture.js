@@ -1,4 +1,4 @@
-// The diver in one frame: the video under the skeleton, whose landmarks are switched by a click.
+// The picture of one frame: the video under the skeleton; a click on a landmark selects it.
 
 import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";

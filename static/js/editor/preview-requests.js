@@ -2,11 +2,11 @@
 
 import * as api from "../core/api.js";
 
-const SETTLED = 120; // ms without a change: a slider being dragged tells many, typing is no change.
+const SETTLED = 120; // ms without a change: dragging a slider makes many.
 
 /**
  * Return `ask(request)`; `shown(preview, null)` is called with what the gesture would be, then
- * `shown(preview, outlook)` with what it would do to its language, `failed(error)` instead of them.
+ * `shown(preview, estimate)` with what it would do to its language, `failed(error)` instead of them.
  */
 export function previewing({ shown, failed }) {
   let timer = 0;
@@ -22,8 +22,8 @@ export function previewing({ shown, failed }) {
         if (asked !== newest) return;
         shown(preview, null);
         if (preview.problem) return;
-        const outlook = await api.languages.previewHealth(language, body);
-        if (asked === newest) shown(preview, outlook);
+        const estimate = await api.languages.previewHealth(language, body);
+        if (asked === newest) shown(preview, estimate);
       } catch (error) {
         if (asked !== newest) return;
         newest = ""; // The same again may succeed.

@@ -1,4 +1,4 @@
-// What the draft would be: its trajectory image, its descriptors, and the outlook of its language.
+// The preview of a draft: its trajectory image, its descriptors, and its estimated rates.
 
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
@@ -85,9 +85,9 @@ export function image() {
   };
 }
 
-/** One forecast, with its bar: a sign and words say what the length does. */
-function forecast(words, share, bar, before) {
-  const bad = share.rate > bar;
+/** One estimated rate, as a bar, a number and a mark. */
+function rateRow(words, share, threshold, before) {
+  const bad = share.rate > threshold;
   const was =
     before && percent(before.rate) !== percent(share.rate)
       ? h("small", { className: "dim" }, ` (saved: ${percent(before.rate)})`)
@@ -100,7 +100,11 @@ function forecast(words, share, bar, before) {
     },
     h(
       "span",
-      { className: "verdict", role: "img", "aria-label": bad ? "Too often" : "Fine" },
+      {
+        className: "verdict",
+        role: "img",
+        "aria-label": bad ? "Above the threshold" : "Below the threshold",
+      },
       bad ? "!" : "\u2713",
     ),
     h("span", {}, words, was),
@@ -109,7 +113,7 @@ function forecast(words, share, bar, before) {
       "span",
       { className: "bar-track" },
       h("i", { className: "fill", style: { width: `${100 * Math.min(1, share.rate)}%` } }),
-      h("i", { className: "mark", style: { left: `${100 * bar}%` } }),
+      h("i", { className: "mark", style: { left: `${100 * threshold}%` } }),
     ),
   );
 }
@@ -117,8 +121,8 @@ function forecast(words, share, bar, before) {
 function rows(found, before) {
   const earlier = (label) => before?.pairs.find((pair) => pair.gestures[1] === label)?.confusion;
   return [
-    forecast(
-      "Missed: read as another gesture, or refused",
+    rateRow(
+      "Missed: recognised as another gesture, or rejected",
       found.missed,
       found.most_missed,
       before?.missed,
@@ -126,7 +130,7 @@ function rows(found, before) {
     ...found.pairs
       .filter((pair) => pair.confusion)
       .map((pair) =>
-        forecast(
+        rateRow(
           h(
             "span",
             {},
@@ -144,24 +148,24 @@ function rows(found, before) {
   ];
 }
 
-/** Build the outlook; `draw(found, before)` compares with the gesture as it is saved. */
+/** Build the estimated rates; `draw(found, before)` compares them with the saved gesture's. */
 export function health(name) {
-  const list = h("ul", { className: "forecasts", "aria-label": "Forecasts" });
+  const list = h("ul", { className: "estimates", "aria-label": "Estimated rates" });
   const note = h("p", { className: "dim", role: "status" });
   function draw(found, before, problem) {
     list.classList.toggle("stale", !found);
     if (!found) {
       note.textContent = problem
-        ? "Nothing to forecast before the gesture is one."
-        : "Rehearsing\u2026";
+        ? "Nothing can be estimated before the gesture is complete."
+        : "Simulating trials\u2026";
       return;
     }
     const empty = found.missed === null;
     note.textContent = empty
-      ? "Without a demonstration there is nothing to rehearse: show it anew from a clip."
+      ? "Without a demonstration no trials can be simulated: choose a clip that shows the gesture."
       : found.pairs.length
-        ? "Of takes by another diver, forecast from rehearsals; the nearest gestures. The line is the bar of the health report."
-        : "The first gesture of a language has nothing to be confused with.";
+        ? "Estimated for another diver from simulated trials, with the nearest gestures. The line is the threshold of the health report."
+        : "The only gesture of a language cannot be confused with another.";
     list.replaceChildren(...(empty ? [] : rows(found, before)));
   }
   return {

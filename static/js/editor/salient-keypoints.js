@@ -1,4 +1,4 @@
-// The salient keypoints: how far each moves, as bars that switch it on and off.
+// The choice of the salient keypoints: a bar each for how far it moves, with a checkbox.
 
 import { h, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
@@ -31,7 +31,7 @@ function noteOn(preview, count) {
   }
   if (draft().clip)
     return "No keypoint is seen in this range of the clip: choose another range, or another clip.";
-  return "Imported without its demonstration: which keypoints are followed cannot be changed. Show it anew from a clip to choose.";
+  return "Imported without its demonstration: its keypoints cannot be changed. Choose a clip that shows the gesture.";
 }
 
 /** Build the list; `draw(preview)` shows what moves. */

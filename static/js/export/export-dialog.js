@@ -1,4 +1,4 @@
-// The language as a file for the robot: what it holds, what it needs, and how it is used there.
+// The dialog that exports a language: its formats, its contents, and the command to use it.
 
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
@@ -8,6 +8,9 @@ import { state } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { tuningWords } from "../languages/language-tuning.js";
 
+/** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
+
+/** @type {Record<string, { title: string, text: string, suffix?: string, command: (file: string) => string }>} */
 const FORMATS = {
   "osg-studio": {
     title: "OSG Studio language",
@@ -27,9 +30,15 @@ const FORMATS = {
   },
 };
 
+/** @param {string[]} names */
 const listed = (names) => names.map(readable).join(", ");
 
-/** A name that a shell takes without quotes. */
+/**
+ * A name that a shell takes without quotes.
+ *
+ * @param {string} name
+ * @param {{ suffix?: string }} format
+ */
 const fileName = (name, { suffix = ".json" }) =>
   `${
     name
@@ -39,6 +48,11 @@ const fileName = (name, { suffix = ".json" }) =>
       .replace(/^-+|-+$/g, "") || "language"
   }${suffix}`;
 
+/**
+ * @param {ExportedFile} file
+ * @param {boolean} chosen
+ * @param {(event: Event) => void} onchange
+ */
 function choice({ format, bytes: size }, chosen, onchange) {
   const { title, text } = FORMATS[format];
   return h(
@@ -50,16 +64,25 @@ function choice({ format, bytes: size }, chosen, onchange) {
   );
 }
 
+/**
+ * @param {string} term
+ * @param {string} value
+ * @param {string} [note]
+ */
 const row = (term, value, note) =>
   value.length
     ? [h("dt", {}, term), h("dd", {}, value, note ? h("small", { className: "dim" }, note) : null)]
     : [];
 
+/**
+ * @param {ExportContents} contents
+ * @param {Language} language
+ */
 function facts(contents, language) {
   return h(
     "dl",
     { className: "export-facts" },
-    row("Landmarks", listed(contents.salient), "must be seen, or the gesture is not recognised"),
+    row("Keypoints", listed(contents.salient), "keypoints that must be seen for recognition"),
     row("Better with", listed(contents.limbs)),
     row("Torso", listed(contents.torso), "takes out distance and drift"),
     row(
@@ -69,10 +92,15 @@ function facts(contents, language) {
     ),
     row("Recognised", tuningWords(language), "as kept after a trial; the robot does the same"),
     row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
-    row("Without command", contents.without_command.join(", "), "the robot is told the label only"),
+    row(
+      "Without command",
+      contents.without_command.join(", "),
+      "the robot receives the label only",
+    ),
   );
 }
 
+/** @param {() => string} text */
 function commandLine(text) {
   const button = h(
     "button",
@@ -82,7 +110,7 @@ function commandLine(text) {
   return { button, code: h("code", { id: "export-command" }, text()) };
 }
 
-/** Show what leaves with the language on display. */
+/** Show the contents of the export. */
 export async function openExport() {
   const language = state.gestures;
   if (!language?.gestures.length) {
@@ -106,6 +134,7 @@ export async function openExport() {
     download.href = api.languages.exportUrl(language.id, format);
     code.textContent = command();
   };
+  /** @param {any} event */
   const choose = (event) => {
     format = event.target.value;
     show();
@@ -147,7 +176,11 @@ export function bindExport() {
   byId("export").onclick = openExport;
 }
 
-/** Enable the button for a language with gestures. */
+/**
+ * Enable the button for a language with gestures.
+ *
+ * @param {State} state
+ */
 export function drawExportButton({ gestures }) {
   byId("export").disabled = !gestures?.gestures.length;
 }

@@ -1,6 +1,6 @@
 // The results of the test with clips: which takes count, and the table as CSV.
 
-/** What is tested of a language: the newest answer by its profile, untried, for each take that was told. */
+/** The newest recognition of each labelled take, by the language's profile and without trials. */
 export function testedOf(recognitions, clips, profile) {
   const names = new Map(clips.map(({ id, name }) => [id, name]));
   const newest = new Map();

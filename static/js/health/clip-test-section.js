@@ -1,9 +1,9 @@
-// The batch test on the page: drop clips, correct their labels, see what was confused, open the clips.
+// The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
 import { statusText } from "../clips/clip-store.js";
 import { h, iconButton } from "../core/dom.js";
 import { plural } from "../core/format.js";
-import { follow, state, update } from "../core/state.js";
+import { currentLanguage, follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
 import { csvOf, testedOf } from "./clip-test-results.js";
@@ -36,7 +36,7 @@ function drop() {
     className: "visually-hidden",
   });
   input.onchange = () => {
-    addTestClips([...input.files]);
+    addTestClips([...(input.files ?? [])]);
     input.value = "";
   };
   return h(
@@ -50,7 +50,7 @@ function drop() {
       h(
         "span",
         {},
-        "or choose files. \u201ccircle-2.mp4\u201d is taken to show circle; you can say otherwise.",
+        "or choose files. \u201ccircle-2.mp4\u201d is labelled circle; you can change the label.",
       ),
     ),
   );
@@ -92,7 +92,7 @@ function advances() {
         clip.status === "done"
           ? expected
             ? "Recognising"
-            : "What does it show?"
+            : "Choose its label"
           : statusText(clip, job),
       total: job?.total,
       done: job?.done,
@@ -250,13 +250,13 @@ function matrix(takes) {
 
 function download(takes) {
   const url = URL.createObjectURL(new Blob([csvOf(takes)], { type: "text/csv" }));
-  h("a", { href: url, download: `${state.gestures.name} test.csv` }).click();
+  h("a", { href: url, download: `${currentLanguage().name} test.csv` }).click();
   setTimeout(() => URL.revokeObjectURL(url), SAVED_BY);
 }
 
 function summary(takes) {
   const right = takes.filter((take) => take.right).length;
-  const old = takes.filter(({ revision }) => revision !== state.gestures.revision).length;
+  const old = takes.filter(({ revision }) => revision !== currentLanguage().revision).length;
   const again = h("button", { type: "button" }, old ? "Recognise again" : "Repeat the test");
   again.onclick = async () => {
     again.disabled = true;
@@ -339,8 +339,7 @@ export function batchSection() {
       .join();
   let drawn = "";
   const draw = () => {
-    if (content.contains(document.activeElement) && document.activeElement.matches("select"))
-      document.activeElement.blur();
+    /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
     const takes = testedOf(state.tested, state.clips, state.gestures?.profile);
     const uploads = uploadsHere();
     const empty = !takes.length && !waitingClips().length && !uploads.length;
@@ -349,7 +348,7 @@ export function batchSection() {
         ? []
         : [
             ...(takes.length ? [summary(takes), matrix(takes)] : []),
-            ...list(takes, uploads).filter(Boolean),
+            ...list(takes, uploads).filter((each) => each !== null),
           ]),
     );
     drawn = stages();
@@ -374,7 +373,7 @@ export function batchSection() {
       h(
         "p",
         { className: "dim" },
-        "Clips whose gesture you know, by other divers if you can: what is predicted above is measured here. A cell opens its clips.",
+        "Clips whose gesture you know, by other divers if you can: what is estimated above is measured here. A cell opens its clips.",
       ),
     ),
     drop(),

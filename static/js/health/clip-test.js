@@ -1,6 +1,6 @@
-// The batch test: labelled clips are recognised, and kept as what the server remembers anyway.
+// The test with labelled clips; its results are the recognitions that the server stores.
 //
-// A take is in the test as long as its newest recognition says what was meant. So the test is the
+// A take is in the test as long as its newest recognition has an expected label. So the test is the
 // same for everybody, survives reloads, and is repeated whenever the language has changed.
 
 import { labelInName } from "../clips/clip-label.js";
@@ -37,6 +37,7 @@ export async function loadTested() {
 }
 
 /** Recognise every take of a clip as `expected`; `ranges` when not all of it. */
+/** @type {(clip: string, expected: string | null, ranges?: { start: number, end: number }[] | null) => Promise<void>} */
 async function recognise(clip, expected, ranges = null) {
   const takes = ranges ?? (await api.clips.takes(clip));
   const asked = takes.length > 1 || ranges ? takes.map(({ start, end }) => ({ start, end })) : [{}];
@@ -56,12 +57,12 @@ export function addTestClips(files) {
   );
 }
 
-/** What a pending clip is taken for: what was chosen, or what its name says. */
+/** The expected label of a pending clip: as chosen, or as its name suggests. */
 export const meantBy = ({ clip, expected }) =>
   expected ??
   labelInName(state.clips.find(({ id }) => id === clip)?.name ?? "", state.gestures?.labels ?? []);
 
-/** Say what a clip that was not recognised yet shows. */
+/** Set the expected label of a pending clip. */
 export const means = (clip, expected) =>
   setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
 
@@ -123,16 +124,16 @@ export function waitingClips() {
       const clip = state.clips.find(({ id }) => id === each.clip);
       return clip && { clip, expected: meantBy(each), busy: BUSY.has(clip.status) };
     })
-    .filter(Boolean);
+    .filter((each) => each !== undefined);
 }
 
-/** Say that a take shows something else, or, by null, that it is no part of the test. */
+/** Set the expected label of a take; null removes it from the test. */
 export async function correct({ clip_id: clip, start, end }, expected) {
   await attempt("Recognising", () => recognise(clip, expected, [{ start, end }]));
   await loadTested();
 }
 
-/** Recognise all takes again, by the language as it is now; `advance(done)` hears of each. */
+/** Recognise all takes again, by the language as it is now; `advance(done)` is called before each. */
 export async function repeat(takes, advance) {
   for (const [done, { clip_id: clip, start, end, expected }] of takes.entries()) {
     advance(done);

@@ -100,7 +100,9 @@ export function confusionGrid({ label, corner, rows, columns, cell }) {
       ),
     ),
   );
-  const first = table.querySelector("td.opens") ?? table.querySelector("td");
+  const first =
+    /** @type {HTMLElement | null} */ (table.querySelector("td.opens")) ??
+    table.querySelector("td");
   if (first) first.tabIndex = 0;
   table.onkeydown = (event) => walk(table, event);
   return h("div", { className: "confusion-scroll" }, table);

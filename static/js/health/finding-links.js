@@ -1,4 +1,4 @@
-// Where a finding leads to: the editor of a gesture, or two gestures side by side.
+// Links of a finding: to the editor of a gesture, or to two gestures side by side.
 
 import { h } from "../core/dom.js";
 import { state, update } from "../core/state.js";
@@ -7,12 +7,17 @@ import { address, go, here, knows } from "../core/views.js";
 /** Two labels as the address names them; a comma in a label is not the one between them. */
 export const pairName = (one, other) => [one, other].map(encodeURIComponent).join(",");
 
-/** The two labels that `name` names, if there are two. */
+/**
+ * The two labels that `name` names, if there are two.
+ *
+ * @param {string | null} name
+ * @returns {[string, string] | null}
+ */
 export function pairOf(name) {
   const labels = (name ?? "").split(",");
   if (labels.length !== 2) return null;
   try {
-    return labels.map(decodeURIComponent);
+    return [decodeURIComponent(labels[0]), decodeURIComponent(labels[1])];
   } catch {
     return null;
   }
@@ -21,7 +26,7 @@ export function pairOf(name) {
 /** Show two gestures side by side. */
 export const compare = (one, other) => update({ pair: pairName(one, other) });
 
-/** A link to what mends a gesture, or nothing while there is no such view. */
+/** A link to the editor of a gesture; null where the language has no such gesture. */
 export function editLink(label, text = `Edit ${label}`) {
   if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
   return h(

@@ -7,9 +7,11 @@ import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 import { compare, editLink } from "./finding-links.js";
-import { told } from "./rates.js";
+import { rateText } from "./rates.js";
 
-const AT_FIRST = 5; // Warnings shown before the matrix and the map; the worst come first.
+/** @import { Finding } from "../core/types.d.ts" */
+
+const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
 const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.
 
 /** Let a switch of some gestures count; one undo takes it back. */
@@ -43,11 +45,11 @@ function remedy({ kind, gesture, text, before, after }, gestures) {
     h("span", { className: "remedy-text" }, text),
     h(
       "span",
-      { className: "effect num", title: `${told(before)} without, ${told(after)} with it` },
+      { className: "effect num", title: `${rateText(before)} without, ${rateText(after)} with it` },
       h("span", { className: "visually-hidden" }, "confused in "),
-      h("span", {}, told(before)),
+      h("span", {}, rateText(before)),
       h("span", { "aria-label": "then" }, "\u2192"),
-      h("b", {}, told(after)),
+      h("b", {}, rateText(after)),
     ),
     SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture),
   );
@@ -64,12 +66,12 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
     h(
       "div",
       { className: "finding-text" },
-      h("p", {}, h("b", {}, below ? "Below the bar: " : "Note: "), message),
+      h("p", {}, h("b", {}, below ? "Warning: " : "Note: "), message),
       remedies.length
         ? h(
             "p",
             { className: "dim remedies-title" },
-            "What would help, and how often the two would be confused then",
+            "What would help, and how often the two would then be confused",
           )
         : null,
       remedies.length
@@ -94,7 +96,12 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
   );
 }
 
-/** Draw the warnings of a report; `only` keeps those about the same gestures. */
+/**
+ * Draw the findings of a report; `only` keeps those about the same gestures.
+ *
+ * @param {Finding[]} warnings
+ * @param {string[] | null} [only]
+ */
 export function warningsList(warnings, only = null) {
   const shown = only
     ? warnings.filter(
@@ -105,14 +112,14 @@ export function warningsList(warnings, only = null) {
   if (!shown.length) return null;
   const list = h(
     "ul",
-    { className: "findings", "aria-label": "Warnings" },
+    { className: "findings", "aria-label": "Findings" },
     shown.slice(0, AT_FIRST).map(warning),
   );
   if (shown.length <= AT_FIRST) return list;
-  const rest = h("button", { type: "button" }, `Show all ${shown.length} warnings`);
+  const rest = h("button", { type: "button" }, `Show all ${shown.length} findings`);
   rest.onclick = () => {
     list.append(...shown.slice(AT_FIRST).map(warning));
-    list.children[AT_FIRST].querySelector("button, a").focus();
+    /** @type {HTMLElement | null} */ (list.children[AT_FIRST].querySelector("button, a"))?.focus();
     rest.remove();
   };
   return h("div", {}, list, rest);

@@ -1,29 +1,29 @@
-// What is to be expected of each gesture by itself.
+// The table of each gesture's estimated rates.
 
 import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
 import { editLink } from "./finding-links.js";
-import { percent, told } from "./rates.js";
+import { percent, rateText } from "./rates.js";
 
-/** A rate with a bar of that length and its interval; over the bar it is marked by a sign as well. */
-function rate(forecast, bar) {
-  if (!forecast) return h("td", { className: "dim" }, "not known");
-  const over = bar !== null && forecast.rate > bar;
+/** A rate with its bar and interval; above the threshold it is also marked by a sign. */
+function rate(estimate, bar) {
+  if (!estimate) return h("td", { className: "dim" }, "not known");
+  const over = bar !== null && estimate.rate > bar;
   return h(
     "td",
-    { className: `rate${over ? " over" : ""}`, title: told(forecast) },
+    { className: `rate${over ? " over" : ""}`, title: rateText(estimate) },
     h(
       "span",
       { className: "num" },
-      `${percent(forecast.rate)} %`,
-      over ? h("b", { title: `above the bar of ${percent(bar)} %` }, " !") : null,
+      `${percent(estimate.rate)} %`,
+      over ? h("b", { title: `above the threshold of ${percent(bar)} %` }, " !") : null,
     ),
     h("span", {
       className: "rate-bar",
       "aria-hidden": "true",
-      style: { "--share": `${100 * forecast.rate}%` },
+      style: { "--share": `${100 * estimate.rate}%` },
     }),
-    h("small", { className: "dim num" }, `${percent(forecast.low)} to ${percent(forecast.high)}`),
+    h("small", { className: "dim num" }, `${percent(estimate.low)} to ${percent(estimate.high)}`),
   );
 }
 
@@ -80,7 +80,7 @@ function row(gesture, image, bar) {
     h(
       "td",
       { className: "set-off" },
-      kinds.length ? kinds.join(", ") : h("span", { className: "dim" }, "none of those tried"),
+      kinds.length ? kinds.join(", ") : h("span", { className: "dim" }, "no simulated motion"),
     ),
     seen(landmarks),
     h("td", { className: "edit" }, editLink(label, "Edit")),
@@ -88,15 +88,23 @@ function row(gesture, image, bar) {
 }
 
 /** Draw the table of all gestures. */
-export function forecastTable({ gestures, bar }, imageOf) {
-  const heads = ["Gesture", "Missed", "of it refused", "False alarms", "Set off by", "Seen", ""];
+export function estimateTable({ gestures, bar }, imageOf) {
+  const heads = [
+    "Gesture",
+    "Missed",
+    "of it rejected",
+    "False alarms",
+    "False alarms from",
+    "Keypoints seen",
+    "",
+  ];
   return h(
     "div",
     { className: "confusion-scroll" },
     h(
       "table",
-      { className: "forecasts" },
-      h("caption", { className: "visually-hidden" }, "Predicted rates of each gesture"),
+      { className: "estimates" },
+      h("caption", { className: "visually-hidden" }, "Estimated rates of each gesture"),
       h(
         "thead",
         {},

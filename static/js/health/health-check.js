@@ -1,7 +1,7 @@
-// The health report of the language on display: asked for when looked at, with progress and cancel.
+// The health check of the language on display: request, progress and cancelling.
 
 import * as api from "../core/api.js";
-import { state, update } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
 
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
@@ -14,7 +14,7 @@ export const isCurrent = (health) =>
  * report of the revision before stays on display until the new one is there.
  */
 export async function check() {
-  const language = state.gestures;
+  const language = currentLanguage();
   const key = keyOf(language);
   const known = state.health?.id === language.id ? state.health : null;
   const base = {
@@ -47,4 +47,5 @@ export function keepChecked({ view, gestures, health }) {
 }
 
 /** Cancel the check that runs. */
-export const cancel = () => api.languages.cancelCheck(state.health.id, state.health.revision);
+export const cancel = () =>
+  state.health && api.languages.cancelCheck(state.health.id, state.health.revision);

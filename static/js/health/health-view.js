@@ -3,36 +3,38 @@
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
-import { follow, state } from "../core/state.js";
+import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { batchSection } from "./clip-test-section.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { compare } from "./finding-links.js";
 import { warningsList } from "./findings-list.js";
-import { forecastTable } from "./gesture-estimates.js";
+import { estimateTable } from "./gesture-estimates.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
 import { languageMap } from "./language-map.js";
 import { predicted, showPair } from "./pair-page.js";
-import { percent, told } from "./rates.js";
+import { percent, rateText } from "./rates.js";
+
+/** @import { State } from "../core/types.d.ts" */
 
 const STAGES = {
-  rehearsing: "Rehearsing takes of every gesture",
-  "accidental movements": "Trying accidental movements",
-  remedies: "Trying what would help",
+  rehearsing: "Simulating trials of every gesture",
+  "accidental movements": "Simulating background motion",
+  remedies: "Testing edits that would help",
 };
 
 const imageOf = (label) =>
   api.languages.image(
-    state.health?.id ?? state.gestures.id,
+    state.health?.id ?? currentLanguage().id,
     label,
-    state.health?.shown ?? state.gestures.revision,
+    state.health?.shown ?? currentLanguage().revision,
   );
 
 function verdict({ ok, warnings }) {
   const below = warnings.filter((warning) => warning.below_bar).length;
   const notes = warnings.length - below;
-  const text = ok ? "Nothing below the bar" : `${plural(below, "thing")} below the bar`;
+  const text = ok ? "No warnings" : plural(below, "warning");
   return h(
     "p",
     { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
@@ -42,7 +44,7 @@ function verdict({ ok, warnings }) {
   );
 }
 
-/** What stands above the report while there is a check, or when it was cancelled or failed. */
+/** The bar above the report while a check runs, and after it was cancelled or failed. */
 function progress({ health }) {
   if (!isCurrent(health) || health.status === "done") return null;
   const again = h(
@@ -83,7 +85,7 @@ function progress({ health }) {
   );
 }
 
-/** Say how far the check is; the button beside it stays where it is, since it may just be pressed. */
+/** Show the progress of the check in place, so that its button stays under the pointer. */
 function advance(bar, { health, checking }) {
   const running = bar.querySelector("progress");
   if (!running || checking?.id !== health.id || checking.revision !== health.revision) return;
@@ -110,20 +112,20 @@ function matrix(report) {
             : `${one.label} is read as itself in ${percent(right)} %`,
       };
     }
-    const forecast = predicted(report, one.label, other.label)?.forth;
-    const over = forecast && forecast.rate > report.bar.confusion;
+    const estimate = predicted(report, one.label, other.label)?.forth;
+    const over = estimate && estimate.rate > report.bar.confusion;
     return {
-      text: forecast ? percent(forecast.rate) : "?",
-      amount: forecast?.rate ?? 0,
+      text: estimate ? percent(estimate.rate) : "?",
+      amount: estimate?.rate ?? 0,
       className: over ? "over" : "",
-      label: forecast
-        ? `${one.label} taken for ${other.label}: ${told(forecast)}${over ? ", above the bar" : ""}`
+      label: estimate
+        ? `${one.label} taken for ${other.label}: ${rateText(estimate)}${over ? ", above the threshold" : ""}`
         : `${one.label} taken for ${other.label}: not known`,
       open: () => compare(one.label, other.label),
     };
   };
   return confusionGrid({
-    label: "Predicted confusions, per cent",
+    label: "Estimated confusions, per cent",
     corner: "shown \u2193  taken for \u2192",
     rows: heads,
     columns: heads,
@@ -164,20 +166,20 @@ function drawReport(report) {
           h(
             "p",
             { className: "dim" },
-            "Add a second one, and see here how well the two are told apart.",
+            "Add a second gesture to see here how often the two are confused.",
           ),
         )
       : h(
           "div",
           { className: "health-columns" },
           section(
-            "Predicted confusions",
-            `Of a hundred takes of the gesture at the left, how many would be nearer to the one above. Framed: above the bar of ${bar} %. Choose a cell to see the two side by side.`,
+            "Estimated confusions",
+            `Of a hundred simulated trials of the gesture at the left, how many are nearer to the one above. Framed: above the threshold of ${bar} %. Choose a cell to see the two side by side.`,
             matrix(report),
           ),
           section(
             "Map",
-            `Near gestures are alike.${worst.length ? ` Joined: pairs above the bar of ${bar} %.` : ""}`,
+            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${bar} %.` : ""}`,
             languageMap({
               points: report.map,
               worst,
@@ -188,10 +190,10 @@ function drawReport(report) {
         ),
     section(
       "Each gesture",
-      `Missed: read as another gesture, or refused. The bar is ${percent(report.bar.missed)} %. False alarms: accidental movements, as reaching or adjusting the mask, taken for it.`,
-      forecastTable(report, imageOf),
+      `Missed: recognised as another gesture, or rejected. The threshold is ${percent(report.bar.missed)} %. False alarms: background motion, such as reaching or adjusting the mask, that is recognised as the gesture.`,
+      estimateTable(report, imageOf),
     ),
-  ].filter(Boolean);
+  ].filter((each) => each !== null);
 }
 
 function nothing() {
@@ -202,7 +204,7 @@ function nothing() {
     h(
       "p",
       { className: "dim" },
-      "Save a gesture from a clip; with the second one you see here which are confused, before the dive.",
+      "Save a gesture from a clip. From the second gesture on, this page estimates which are confused, before the dive.",
     ),
     h(
       "button",
@@ -212,6 +214,14 @@ function nothing() {
   );
 }
 
+/**
+ * The report of the language on display, possibly of an older revision.
+ *
+ * @param {State} state
+ */
+const reportOf = ({ gestures, health }) =>
+  health && health.id === gestures?.id ? health.report : null;
+
 function overview() {
   const name = h("h1");
   const about = h("small", { className: "dim" });
@@ -220,23 +230,25 @@ function overview() {
   const body = h("div", { className: "report" });
   const head = () => {
     const { gestures, health } = state;
-    const report = health?.id === gestures?.id ? health?.report : null;
+    const report = reportOf(state);
     name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
     about.textContent = report
-      ? `Revision ${health.shown}, for another diver than the demonstrator, ${report.takes} rehearsed takes of each gesture`
+      ? `Revision ${health?.shown}, estimated for another diver by ${report.takes} simulated trials of each gesture`
       : "";
     says.replaceChildren(
-      ...(report && isCurrent(health) && health.status === "done" ? [verdict(report)] : []),
+      ...(report && isCurrent(health) && health?.status === "done" ? [verdict(report)] : []),
     );
-    bar.replaceChildren(...[gestures?.gestures.length ? progress(state) : null].filter(Boolean));
+    bar.replaceChildren(
+      ...[gestures?.gestures.length ? progress(state) : null].filter((each) => each !== null),
+    );
     advance(bar, state);
   };
   let drawn = null;
   const draw = () => {
     const { gestures, health, loaded } = state;
-    const report = health?.id === gestures?.id ? health?.report : null;
+    const report = reportOf(state);
     const now = gestures?.gestures.length ? report : "nothing";
-    body.classList.toggle("stale", Boolean(report) && health.status !== "done");
+    body.classList.toggle("stale", Boolean(report) && health?.status !== "done");
     if (now === drawn || (now === "nothing" && !loaded)) return;
     drawn = now;
     body.replaceChildren(...(now === "nothing" ? [nothing()] : report ? drawReport(report) : []));
@@ -270,6 +282,7 @@ export function open(root) {
     const before = shown;
     shown = now;
     if (opens) showPair(two, imageOf);
-    else if (before) all.querySelector("td[tabindex='0']")?.focus();
+    else if (before)
+      /** @type {HTMLElement | null} */ (all.querySelector("td[tabindex='0']"))?.focus();
   });
 }

@@ -1,4 +1,4 @@
-// A map of the language: near gestures near, each as its thumbnail; what would overlap is moved apart.
+// The map of the language: similar gestures are close; overlapping thumbnails are moved apart.
 
 import { h, svg } from "../core/dom.js";
 
@@ -59,7 +59,7 @@ export function apart(places, size) {
 }
 
 /**
- * Draw the map. `points` are the report's `map`, `worst` the pairs above the bar, which are joined
+ * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, which are joined
  * by a line; `imageOf(label)` and `open(label)` are what a thumbnail shows and does.
  */
 export function languageMap({ points, worst, imageOf, open }) {

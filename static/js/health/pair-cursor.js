@@ -1,4 +1,4 @@
-// One time cursor over two demonstrations that take their time differently.
+// The time cursor over two aligned demonstrations of different duration.
 
 import { h, icon, svg } from "../core/dom.js";
 import { moment } from "../core/format.js";
@@ -11,7 +11,7 @@ const HEIGHT = 24; // of the strip, in its own units
 
 let active = null;
 
-/** Which moments are shown together: `{ seconds: [one, other], cost }` each. */
+/** The steps of the cursor: `{ seconds: [one, other], cost }` each. */
 export function stepsOf({ gestures, alignment }) {
   if (!alignment) {
     return Array.from({ length: FREE + 1 }, (_, step) => ({
@@ -25,7 +25,7 @@ export function stepsOf({ gestures, alignment }) {
   }));
 }
 
-/** How much the two differ at each step; height says how much. */
+/** The difference of the two at each step, as a bar. */
 function strip(steps) {
   const most = Math.max(...steps.map(({ cost }) => cost));
   if (!most) return null;
@@ -71,7 +71,7 @@ export function timeCursor(steps, labels, show) {
   };
   const move = (to) => {
     const step = Math.max(0, Math.min(last, to));
-    slider.value = step;
+    slider.value = String(step);
     const { seconds } = steps[step];
     seconds.forEach((each, index) => {
       clocks[index].textContent = moment(each);

@@ -3,13 +3,13 @@
 import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
 import { bind } from "../core/keys.js";
-import { follow, state, update } from "../core/state.js";
+import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { editLink, pairOf } from "./finding-links.js";
 import { warningsList } from "./findings-list.js";
 import { boxOf, movingPaths } from "./movement-paths.js";
 import { stepsOf, timeCursor } from "./pair-cursor.js";
-import { told } from "./rates.js";
+import { rateText } from "./rates.js";
 
 const close = () => update({ pair: null });
 
@@ -21,7 +21,7 @@ bind({
   when: () => state.view === "health" && state.pair !== null,
 });
 
-/** What is predicted of two gestures, from the first's side. */
+/** The estimated confusion of two gestures, from the first's side. */
 export function predicted(report, one, other) {
   const pair = report?.pairs.find(
     ({ gestures }) => gestures.includes(one) && gestures.includes(other),
@@ -32,19 +32,21 @@ export function predicted(report, one, other) {
     : { forth: pair.second_as_first, back: pair.first_as_second };
 }
 
-/** How often each would be taken for the other; empty until the check is done. */
+/** The estimated rates of confusing the two; empty until the check is done. */
 function rateLines(report, one, other) {
   const rates = predicted(report, one, other);
-  const rate = (forecast, from, to) =>
-    forecast
+  const rate = (estimate, from, to) =>
+    estimate
       ? h(
           "li",
           {},
-          h("b", { className: "num" }, told(forecast)),
-          ` of all takes of ${from} would be nearer to ${to}.`,
+          h("b", { className: "num" }, rateText(estimate)),
+          ` of all trials of ${from} would be nearer to ${to}.`,
         )
       : null;
-  return rates ? [rate(rates.forth, one, other), rate(rates.back, other, one)].filter(Boolean) : [];
+  return rates
+    ? [rate(rates.forth, one, other), rate(rates.back, other, one)].filter((each) => each !== null)
+    : [];
 }
 
 function sentences([one, other], { differs, alignment }) {
@@ -58,7 +60,7 @@ function sentences([one, other], { differs, alignment }) {
       : h(
           "li",
           {},
-          "How they differ cannot be told: one of them came without its demonstration, or is shown with other joints.",
+          "The difference is not known: one of them has no demonstration, or follows other keypoints.",
         ),
     alignment?.mirrored ? h("li", {}, `${other} is compared as its mirror image.`) : null,
     alignment?.backward ? h("li", {}, `${other} is compared from its end to its start.`) : null,
@@ -114,10 +116,11 @@ follow(["health"], () => fill?.());
 
 /** Draw two gestures into a box, as soon as they are loaded. */
 export async function showPair(box, imageOf) {
-  const { pair, gestures } = state;
+  const { pair } = state;
+  const language = currentLanguage();
   fill = null;
   const labels = pairOf(pair);
-  const known = labels?.every((label) => gestures.labels.includes(label));
+  const known = labels !== null && labels.every((label) => language.labels.includes(label));
   const title = h(
     "h1",
     { tabIndex: -1 },
@@ -145,7 +148,7 @@ export async function showPair(box, imageOf) {
       ),
     );
   const found = await attempt("Comparing the gestures", () =>
-    api.languages.contrast(gestures.id, ...labels, gestures.revision),
+    api.languages.contrast(language.id, ...labels, language.revision),
   );
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
   const rates = h("ul", { className: "pair-words" });
@@ -154,9 +157,11 @@ export async function showPair(box, imageOf) {
     ...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings].filter(Boolean),
   );
   fill = () => {
-    const report = state.health?.id === gestures.id ? state.health.report : null;
+    const report = state.health?.id === language.id ? state.health.report : null;
     rates.replaceChildren(...rateLines(report, ...labels));
-    warnings.replaceChildren(...[warningsList(report?.warnings ?? [], labels)].filter(Boolean));
+    warnings.replaceChildren(
+      ...[warningsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
+    );
   };
   return fill();
 }

@@ -1,8 +1,8 @@
 // Estimated rates as text.
 
 /**
- * A predicted rate as a number of per cent, rounded as the warnings' own words are: a half to the
- * even number. What is hardly ever is told apart from never.
+ * An estimated rate in per cent, rounded half to even, as in the texts of the findings. A rate
+ * even number. What is hardly ever is rateText apart from never.
  */
 export function percent(rate) {
   const hundredths = 100 * rate;
@@ -11,6 +11,6 @@ export function percent(rate) {
   return rate > 0 && rounded === 0 ? "<1" : String(rounded);
 }
 
-/** A forecast in words, with its interval. */
-export const told = ({ rate, low, high }) =>
+/** A estimate in words, with its interval. */
+export const rateText = ({ rate, low, high }) =>
   `${percent(rate)} % (${percent(low)} to ${percent(high)})`;

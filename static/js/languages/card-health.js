@@ -1,4 +1,4 @@
-// The health of the languages on the cards: asked for when a card is seen, one after the other,
+// The health line of the cards: requested when a card becomes visible, one after the other,
 // since the first answer about a revision takes the server seconds.
 
 import * as api from "../core/api.js";
@@ -11,7 +11,7 @@ let asking = false;
 
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
-/** What the line says until the report is there. */
+/** Show that the report is pending. */
 function promise(line) {
   line.hidden = false;
   line.className = "health pending";
@@ -30,7 +30,7 @@ function write(line, report) {
     line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
   else
     line.textContent = warnings.length
-      ? `Healthy, with ${plural(warnings.length, "remark")}`
+      ? `Healthy, with ${plural(warnings.length, "note")}`
       : "Healthy";
   line.title = warnings.map((warning) => warning.message).join("\n");
 }
@@ -58,7 +58,8 @@ const seen = new IntersectionObserver((entries) => {
     const at = waiting.findIndex((each) => each.card === target);
     // Whoever scrolls past a hundred cards does not ask for a hundred reports.
     if (at >= 0) waiting.splice(at, 1);
-    if (isIntersecting && line) waiting.push({ card: target, language: target.language, line });
+    if (isIntersecting && line)
+      waiting.push({ card: target, language: /** @type {any} */ (target).language, line });
   }
   if (!asking) next();
 });

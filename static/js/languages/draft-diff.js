@@ -1,6 +1,14 @@
 // The diff of a language that is not saved yet against the revision it began from.
 
-/** Diff the gestures of two versions: `{ gesture, kind }` each, with the server's kinds. */
+/** @import { Gesture, Language } from "../core/types.d.ts" */
+
+/**
+ * Diff the gestures of two versions: `{ gesture, kind }` each, with the server's kinds.
+ *
+ * @param {Language} mine
+ * @param {Language} from
+ * @returns {{ gesture: Gesture, kind: string }[]}
+ */
 export function diffGestures(mine, from) {
   // A gesture that is renamed keeps its picture.
   const before = new Map(from.gestures.map((each) => [each.thumbnail, each]));
@@ -19,14 +27,23 @@ export function diffGestures(mine, from) {
   return [...after, ...[...before.values()].map((gesture) => ({ gesture, kind: "removed" }))];
 }
 
+/** @type {string[]} */
 const TEXTS = ["name", "author", "label", "description", "command"];
 
-/** List the texts that differ, as lines to read. */
+/**
+ * List the texts that differ, as lines to read.
+ *
+ * @param {Language} mine
+ * @param {Language} from
+ */
 export function changedTexts(mine, from) {
   const before = new Map(from.gestures.map((each) => [each.thumbnail, each]));
+  /** @type {[any, any][]} */
   const pairs = [
     [mine, from],
-    ...mine.gestures.map((each) => [each, before.get(each.thumbnail) ?? each]),
+    ...mine.gestures.map(
+      (each) => /** @type {[any, any]} */ ([each, before.get(each.thumbnail) ?? each]),
+    ),
   ];
   return pairs.flatMap(([now, then]) =>
     TEXTS.filter((name) => now[name] !== then[name]).map(

@@ -1,13 +1,16 @@
-// Two changed the same revision of a language: both versions side by side, and the user picks.
+// The dialog for an edit conflict: two edits of one revision side by side, for the user to choose.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { changedTexts, diffGestures } from "./draft-diff.js";
 
+/** @import { Gesture, Language } from "../core/types.d.ts" */
+
 const cancelled = () =>
   Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
 
+/** @param {string} doing */
 const undecided = (doing) =>
   Object.assign(
     new Error(
@@ -16,20 +19,27 @@ const undecided = (doing) =>
     { title: `${doing} failed`, status: 412 },
   );
 
-/** One version: what was done, and the gestures with what happened to each. */
-function version(title, told, gestures, choice) {
+/**
+ * One version: its changes, and its gestures with the kind of each.
+ *
+ * @param {string} title
+ * @param {string[]} lines
+ * @param {{ gesture: Gesture, kind: string }[]} gestures
+ * @param {HTMLElement} choice
+ */
+function version(title, lines, gestures, choice) {
   return h(
     "section",
     { "aria-label": title },
     h("h3", {}, title),
     h(
       "ul",
-      { className: "race-told" },
-      told.map((line) => h("li", {}, line)),
+      { className: "conflict-changes" },
+      lines.map((line) => h("li", {}, line)),
     ),
     h(
       "ul",
-      { className: "race-gestures" },
+      { className: "conflict-gestures" },
       gestures.map(({ gesture, kind }) =>
         h(
           "li",
@@ -44,7 +54,11 @@ function version(title, told, gestures, choice) {
   );
 }
 
-/** What was done since `from`, a line each. */
+/**
+ * The changes since `from`, one line each.
+ *
+ * @param {Language} from
+ */
 async function deedsSince(from) {
   const revisions = await api.languages.revisions(from.id);
   return revisions
@@ -56,27 +70,31 @@ async function deedsSince(from) {
 /**
  * Let the user pick. Resolves to `{ before, language }`: the revision that was changed, and the
  * language as it is now. Throws `cancelled` when theirs is kept, and a 412 when nothing is chosen.
+ *
+ * @param {{ doing: string, title: string, from: Language, mine: Language, change: (base: Language) => Promise<Language> }} edit
  */
 export async function settleConflict({ doing, title, from, mine, change }) {
   const [theirs, deeds] = await Promise.all([api.languages.get(from.id), deedsSince(from)]);
   const compared = await api.languages.compare(from.id, from.revision, theirs.revision);
   const theirGestures = compared.gestures.map(({ kind, before, after }) => ({
-    gesture: after ?? before,
+    gesture: /** @type {Gesture} */ (after ?? before),
     kind,
   }));
   const theirWords = [
     ...compared.words,
-    ...compared.gestures.flatMap(({ after, words }) =>
-      words.map((word) => `${after.label}: ${word}`),
+    ...compared.gestures.flatMap(({ before, after, words }) =>
+      words.map((word) => `${(after ?? before)?.label}: ${word}`),
     ),
   ];
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const dialog = h("dialog", { className: "race", "aria-labelledby": "race-title" });
+  const dialog = h("dialog", { className: "conflict", "aria-labelledby": "conflict-title" });
+  /** @type {(text: string, run: () => void, className?: string) => HTMLElement} */
   const button = (text, run, className = "") =>
     h("button", { type: "button", className, onclick: run }, text);
+  /** @type {{ before: number, language: Language } | "theirs" | null} */
   let outcome = null;
-  /** Do what was picked; where that fails, say why and let the user pick again. */
-  const pick = (made) => async () => {
+  /** Apply the choice; show the error and keep the dialog open if that fails. */
+  const pick = (/** @type {() => Promise<Language>} */ made) => async () => {
     try {
       outcome = { before: theirs.revision, language: await made() };
       dialog.close();
@@ -95,7 +113,7 @@ export async function settleConflict({ doing, title, from, mine, change }) {
     dialog.close();
   };
   dialog.append(
-    h("h2", { id: "race-title" }, "Changed in two places"),
+    h("h2", { id: "conflict-title" }, "Changed in two places"),
     h(
       "p",
       { className: "dim" },
@@ -103,7 +121,7 @@ export async function settleConflict({ doing, title, from, mine, change }) {
     ),
     h(
       "div",
-      { className: "race-versions" },
+      { className: "conflict-versions" },
       version(
         "Theirs, saved",
         [...deeds, ...theirWords],

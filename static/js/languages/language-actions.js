@@ -1,4 +1,4 @@
-// What can be done with a language as a whole; each can be taken back.
+// Actions on a whole language; each can be undone.
 
 import * as api from "../core/api.js";
 import { ask } from "../core/dialogs.js";
@@ -8,7 +8,13 @@ import { recordAction, showDone } from "../core/undo.js";
 import { begin, choose, reloadLanguages } from "./language-store.js";
 import { edit } from "./revision-edit.js";
 
-/** Ask for another name and author. */
+/** @import { LanguageSummary, SampleLanguage } from "../core/types.d.ts" */
+
+/**
+ * Ask for another name and author.
+ *
+ * @param {LanguageSummary} language
+ */
 export async function rename({ id }) {
   const language = await attempt("Loading the language", () => api.languages.get(id));
   if (!language) return null;
@@ -41,13 +47,21 @@ export async function rename({ id }) {
   });
 }
 
-/** Make a copy and work on it. */
+/**
+ * Make a copy and work on it.
+ *
+ * @param {LanguageSummary} language
+ */
 export async function duplicate({ id, name }) {
   const copy = await attempt("Duplicating the language", () => api.languages.duplicate(id));
   if (copy) await begin(copy, `Copy of ${name}`, "Language duplicated");
 }
 
-/** Delete a language, unless it changed since it was shown. */
+/**
+ * Delete a language, unless it changed since it was shown.
+ *
+ * @param {LanguageSummary} language
+ */
 export async function remove(language) {
   const done = await attempt("Deleting the language", async () => {
     await api.languages.remove(language);
@@ -60,13 +74,21 @@ export async function remove(language) {
   return showDone("Language deleted", language.name);
 }
 
-/** Show a language's history, compared with what was before its newest change. */
+/**
+ * Show a language's history, compared with what was before its newest change.
+ *
+ * @param {LanguageSummary} language
+ */
 export async function openHistory({ id }) {
   await choose(id);
   update({ panel: "history", older: null, newer: null });
 }
 
-/** Bring a sample language, also one that was deleted. */
+/**
+ * Add a sample language, also one that was deleted.
+ *
+ * @param {SampleLanguage} sample
+ */
 export async function addSampleLanguage({ name, title }) {
   const language = await attempt("Adding the sample", () => api.samples.addLanguage(name));
   if (language) await begin(language, `Sample ${title}`, "Sample language added");

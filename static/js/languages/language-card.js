@@ -1,4 +1,4 @@
-// A language as a card.
+// The card of a language in the library.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
@@ -10,8 +10,11 @@ import { showHealth } from "./card-health.js";
 import { duplicate, openHistory, remove, rename } from "./language-actions.js";
 import { choose } from "./language-store.js";
 
-const PICTURES = 5; // A row of a card; the rest are told by their number.
+/** @import { LanguageSummary } from "../core/types.d.ts" */
 
+const PICTURES = 5; // A row of a card; the others are given as a number.
+
+/** @param {LanguageSummary} language */
 function pictures({ id, revision, labels }) {
   if (!labels.length) return h("p", { className: "no-gestures dim" }, "No gestures yet");
   const shown = labels.slice(0, labels.length > PICTURES ? PICTURES - 1 : PICTURES);
@@ -39,11 +42,13 @@ function pictures({ id, revision, labels }) {
   );
 }
 
+/** @param {LanguageSummary} language */
 async function work(language) {
   await choose(language.id);
   go("studio");
 }
 
+/** @param {LanguageSummary} language */
 function commands(language) {
   return menu(`What to do with ${language.name}`, [
     { text: "Rename\u2026", run: () => rename(language) },
@@ -54,13 +59,18 @@ function commands(language) {
   ]);
 }
 
-/** Draw a card, or leave the one that shows the same. */
+/**
+ * Draw a card, or leave the one that shows the same.
+ *
+ * @param {LanguageSummary} language
+ * @param {HTMLElement} [element]
+ */
 export function drawCard(language, element) {
   const current = language.id === state.language;
   const signature = JSON.stringify([language, current, ago(language.updated)]);
   if (element?.dataset.signature === signature) return element;
   const focused = element?.contains(document.activeElement)
-    ? document.activeElement.className
+    ? document.activeElement?.className
     : null;
   const card = element ?? h("li", { className: "language" });
   card.dataset.signature = signature;
@@ -112,7 +122,7 @@ export function drawCard(language, element) {
       h("time", { dateTime: language.updated }, ago(language.updated)),
     ),
   );
-  if (focused) card.getElementsByClassName(focused)[0]?.focus();
+  if (focused) /** @type {any} */ (card.getElementsByClassName(focused)[0])?.focus();
   showHealth(card, language);
   return card;
 }

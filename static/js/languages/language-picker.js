@@ -3,6 +3,9 @@
 import { byId, h } from "../core/dom.js";
 import { choose, newLanguage } from "./language-store.js";
 
+/** @import { State } from "../core/types.d.ts" */
+
+/** @param {State} state */
 export function drawPicker({ languages, language }) {
   const picker = byId("language");
   picker.replaceChildren(...languages.map((each) => h("option", { value: each.id }, each.name)));

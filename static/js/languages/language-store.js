@@ -8,6 +8,8 @@ import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, registerUndo, showDone } from "../core/undo.js";
 
+/** @import { Language, LanguageSummary } from "../core/types.d.ts" */
+
 const LAST = "osg-studio.language"; // A new tab starts with the language used last.
 
 export async function reloadLanguages() {
@@ -20,7 +22,11 @@ export async function reloadLanguages() {
   await reloadLanguage();
 }
 
-/** Load one language that changed. */
+/**
+ * Load one language that changed.
+ *
+ * @param {string} id
+ */
 export const reloadOneLanguage = (id) =>
   refresh(id, {
     load: api.languages.get,
@@ -35,12 +41,15 @@ export const reloadOneLanguage = (id) =>
     },
   });
 
-/** The language with most gestures: on a first visit it knows what every sample clip shows. */
+/**
+ * The language with most gestures: on a first visit it knows what every sample clip shows.
+ *
+ * @param {LanguageSummary[]} languages
+ * @returns {LanguageSummary | null}
+ */
 function richest(languages) {
-  return languages.reduce(
-    (best, each) => (best && best.labels.length >= each.labels.length ? best : each),
-    null,
-  );
+  const most = Math.max(...languages.map(({ labels }) => labels.length));
+  return languages.find(({ labels }) => labels.length === most) ?? null;
 }
 
 /** Load the gestures of the language on display. */
@@ -53,13 +62,23 @@ export async function reloadLanguage() {
   return undefined;
 }
 
-/** Work on another language. */
+/**
+ * Work on another language.
+ *
+ * @param {string | null} id
+ */
 export function choose(id) {
   if (id !== state.language) update({ language: id, recognition: null });
   return reloadLanguage();
 }
 
-/** Work on a language that was just made; it can be taken back. */
+/**
+ * Work on a language that was just made; it can be taken back.
+ *
+ * @param {Language} language
+ * @param {string} title
+ * @param {string} words
+ */
 export async function begin(language, title, words) {
   recordAction({ title, kind: "created", id: language.id });
   update({ languages: await api.languages.list() });
@@ -82,7 +101,11 @@ export function newLanguage() {
   });
 }
 
-/** Import a language file, ours or the published format. */
+/**
+ * Import a language file, ours or the published format.
+ *
+ * @param {File} file
+ */
 export async function importLanguage(file) {
   const language = await attempt(`Importing ${file.name}`, async () =>
     api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()),
@@ -90,7 +113,9 @@ export async function importLanguage(file) {
   if (language) await begin(language, `Import of ${file.name}`, "Language imported");
 }
 
+/** @param {string} id */
 const remove = (id) => api.languages.remove({ id }).then(reloadLanguages);
+/** @param {string} id */
 const restore = (id) => api.languages.restore(id).then(reloadLanguages);
 
 registerUndo("language", { undo: ({ id }) => restore(id), redo: ({ id }) => remove(id) });

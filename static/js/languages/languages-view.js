@@ -19,7 +19,7 @@ function importButton() {
     className: "visually-hidden",
   });
   input.onchange = async () => {
-    for (const file of [...input.files]) await importLanguage(file);
+    for (const file of [...(input.files ?? [])]) await importLanguage(file);
     input.value = "";
   };
   return h(
@@ -30,7 +30,7 @@ function importButton() {
   );
 }
 
-/** Whether a language answers to what is typed: by its name, author or a gesture. */
+/** Whether a language's name, author or labels contain the words of a search. */
 function answers({ name, author, labels }, words) {
   const text = [name, author, ...labels].join(" ").toLowerCase();
   return words.every((word) => text.includes(word));

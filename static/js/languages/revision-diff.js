@@ -3,6 +3,8 @@
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 
+/** @import { GestureDiff, Revision, RevisionDiff } from "../core/types.d.ts" */
+
 const SIGNS = { added: "+", removed: "\u2212", changed: "\u2260", same: "=" };
 
 function picture(gesture, absent) {
@@ -22,6 +24,7 @@ function picture(gesture, absent) {
     : h("figure", { className: "absent" }, h("span", {}, absent), h("figcaption", {}, "\u00a0"));
 }
 
+/** @param {GestureDiff} gesture */
 function row({ kind, before, after, words }) {
   return h(
     "li",
@@ -32,7 +35,7 @@ function row({ kind, before, after, words }) {
       "div",
       { className: "compared-text" },
       h("span", { className: "kind" }, h("span", { "aria-hidden": "true" }, SIGNS[kind]), kind),
-      h("b", {}, (after ?? before).label),
+      h("b", {}, (after ?? before)?.label),
       words.length
         ? h(
             "ul",
@@ -44,22 +47,28 @@ function row({ kind, before, after, words }) {
   );
 }
 
+/** @param {Revision | null} revision */
 const heading = (revision) => (revision ? `Revision ${revision.revision}` : "Nothing");
 
-/** Draw what `GET /languages/{id}/comparison` answered. */
+/**
+ * Draw what `GET /languages/{id}/comparison` answered.
+ *
+ * @param {HTMLElement} box
+ * @param {RevisionDiff} diff
+ */
 export function drawComparison(box, { older, newer, words, gestures }) {
   const changed = gestures.filter((each) => each.kind !== "same");
   const same = gestures.filter((each) => each.kind === "same");
   const count = (kind) => gestures.filter((each) => each.kind === kind).length;
-  const told = ["added", "removed", "changed"]
+  const counts = ["added", "removed", "changed"]
     .map((kind) => (count(kind) ? `${count(kind)} ${kind}` : null))
     .filter(Boolean)
     .join(", ");
   box.replaceChildren(
     h(
       "p",
-      { className: "comparison-told" },
-      told ? `Gestures: ${told}.` : "The gestures are the same.",
+      { className: "diff-summary" },
+      counts ? `Gestures: ${counts}.` : "The gestures are the same.",
     ),
     words.length
       ? h(

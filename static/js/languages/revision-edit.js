@@ -1,10 +1,12 @@
 // Edits of a language: each makes a new revision, can be undone, and settles edit conflicts.
 
 import * as api from "../core/api.js";
-import { state, update } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
 import { recordAction, registerUndo } from "../core/undo.js";
 import { settleConflict } from "./edit-conflict.js";
 import { reloadLanguage, reloadLanguages } from "./language-store.js";
+
+/** @import { Language } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.heads"; // sessionStorage, beside what can be undone
 
@@ -17,8 +19,13 @@ const stored = () => {
 };
 
 // Per language its newest revision as this tab left it, and the one whose content that shows.
+/** @type {Record<string, { revision: number, shows: number }>} */
 const heads = stored() ?? {};
 
+/**
+ * @param {string} language
+ * @param {{ revision: number, shows: number }} head
+ */
 function setHead(language, head) {
   heads[language] = head;
   sessionStorage.setItem(KEY, JSON.stringify(heads));
@@ -27,6 +34,10 @@ function setHead(language, head) {
 /**
  * Revert a language from one revision's content to another's, as a new revision. Refused where the
  * language has changed since this tab left it: undo must not undo somebody else's edit.
+ *
+ * @param {string} language
+ * @param {number} from
+ * @param {number} to
  */
 async function revert(language, from, to) {
   const newest = await api.languages.get(language);
@@ -52,8 +63,13 @@ registerUndo("edit", {
  * Edit the language by `change(base)`, which calls the API with the revision `base`; undo names it
  * `title`. `from` is what the user saw when beginning, `mine` what the edit makes of it: on a
  * conflict the user chooses between `mine` and the newer revision.
+ *
+ * @param {string} doing
+ * @param {string} title
+ * @param {(base: Language) => Promise<Language>} change
+ * @param {{ from?: Language, mine?: Language }} [versions]
  */
-export async function edit(doing, title, change, { from = state.gestures, mine = from } = {}) {
+export async function edit(doing, title, change, { from = currentLanguage(), mine = from } = {}) {
   let made;
   try {
     made = { before: from.revision, language: await change(from) };

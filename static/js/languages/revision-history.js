@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { h, icon, reconcile } from "../core/dom.js";
 import { ago, dateAndTime } from "../core/format.js";
-import { follow, state, update } from "../core/state.js";
+import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, here } from "../core/views.js";
@@ -20,7 +20,7 @@ const shown = () =>
   state.gestures.id === state.language;
 const before = (number) => revisions.find((each) => each.revision < number)?.revision ?? null;
 
-/** Show what a revision did: compared with the one before it, or with nothing. */
+/** Show the diff of a revision against the one before it, or an empty language. */
 const select = (number) => update({ newer: number, older: before(number) });
 
 async function goBack({ revision }) {
@@ -93,7 +93,7 @@ function options(picker, numbers, value) {
 
 /** Load the history of the language on display when it is another, or has a new revision. */
 async function load() {
-  const { id, revision } = state.gestures;
+  const { id, revision } = currentLanguage();
   const [head, earlier] = [revisions[0]?.revision, of];
   if (of !== id || head !== revision) {
     const loaded = await attempt("Loading the history", () => api.languages.revisions(id));
@@ -163,7 +163,7 @@ export function openHistoryPanel(panel) {
 
   let drawn = "";
   const draw = async () => {
-    title.textContent = state.gestures.name;
+    title.textContent = currentLanguage().name;
     reconcile(list, revisions, (row) => row.revision, drawRevision);
     const numbers = revisions.map((row) => row.revision);
     options(newer, numbers, state.newer);
@@ -172,13 +172,13 @@ export function openHistoryPanel(panel) {
     if (wanted === drawn) return;
     drawn = wanted;
     const comparison = await attempt("Comparing", () =>
-      api.languages.compare(of, state.older, state.newer),
+      api.languages.compare(of ?? "", state.older, state.newer ?? 0),
     );
     if (comparison && drawn === wanted) drawComparison(result, comparison);
   };
   follow(["view", "panel", "gestures", "older", "newer"], async () => {
     if (!shown()) return;
     await load();
-    if (shown() && of === state.gestures.id) draw();
+    if (shown() && of === currentLanguage().id) draw();
   });
 }

@@ -1,6 +1,10 @@
-// What the robot should do: words, or a JSON object that it reads.
+// The command of a gesture or phrase: words, or a JSON object.
 
-/** A command as it is written in a text field. */
+/**
+ * A command as it is written in a text field.
+ *
+ * @param {unknown} command
+ */
 export const written = (command) =>
   command === null || command === undefined
     ? ""
@@ -11,6 +15,9 @@ export const written = (command) =>
 /**
  * Read what was typed: `{ command, kind }`, or `{ problem }`. What begins like an object must be
  * one: a missing brace must not reach the robot as words.
+ *
+ * @param {string} text
+ * @returns {{ command?: any, kind?: string, problem?: string }}
  */
 export function read(text) {
   const trimmed = text.trim();
@@ -23,7 +30,7 @@ export function read(text) {
     return { command, kind: "JSON object" };
   } catch (error) {
     return {
-      problem: `This begins like a JSON object but is none: ${error.message}. Mend it, or begin with a word.`,
+      problem: `This begins like a JSON object but is none: ${error.message}. Correct it, or begin with a word.`,
     };
   }
 }

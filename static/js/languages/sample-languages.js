@@ -1,4 +1,4 @@
-// The sample languages that are not in the library, each with a button that brings it.
+// The sample languages that are not in the library, each a button that adds it.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
@@ -7,11 +7,16 @@ import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { addSampleLanguage } from "./language-actions.js";
 
+/** @import { SampleLanguage } from "../core/types.d.ts" */
+
+/** @type {SampleLanguage[] | null} */
 let samples = null;
 
+/** @param {SampleLanguage} sample */
 const present = (sample) =>
   state.languages.some((language) => language.sample && language.name === sample.title);
 
+/** @param {SampleLanguage} sample */
 function offer(sample) {
   const button = h(
     "button",
@@ -31,7 +36,11 @@ function offer(sample) {
   return h("li", {}, button);
 }
 
-/** Draw the offer, or nothing where all are there. */
+/**
+ * Draw the buttons, or nothing where all samples are in the library.
+ *
+ * @param {HTMLElement} box
+ */
 export async function drawSampleLanguages(box) {
   samples ??= await attempt("Loading the samples", api.samples.languages);
   const missing = (samples ?? []).filter((sample) => !present(sample));

@@ -51,7 +51,7 @@ export function record(stream) {
       await stopped;
       const type = recorder.mimeType || mimeType;
       return parts.length
-        ? new File(parts, nameAt(began, type), { type: type.split(";")[0] })
+        ? new File(parts, nameAt(began, type), { type: type?.split(";")[0] })
         : null;
     },
   };

@@ -23,7 +23,7 @@ function picture() {
       playsInline: true,
       "aria-label": "What the camera sees",
     }),
-    h("p", { className: "live-idle", id: "live-idle" }, "Nothing is watched yet"),
+    h("p", { className: "live-idle", id: "live-idle" }, "No source is running"),
     h("p", {
       className: "live-count",
       id: "live-count",
@@ -50,13 +50,13 @@ function controls() {
     check(
       "live-every",
       "Every frame",
-      "Waits for each frame instead of leaving out what this machine cannot look at in time",
+      "Processes every frame, also when this machine is slower than the clip",
       false,
     ),
     check(
       "live-autostop",
       "Stop after the closing salute",
-      "Ends a recording by itself, since hands that salute cannot click",
+      "Ends a recording after the closing salute, without a click",
       true,
     ),
     h("span", { className: "spacer" }),
@@ -89,7 +89,7 @@ export function panel() {
           { className: "live-steps", id: "live-steps" },
           STEPS.map(([name, text]) => h("li", { id: `live-step-${name}` }, text)),
         ),
-        h("p", { id: "live-saying", role: "status" }),
+        h("p", { id: "live-instruction", role: "status" }),
         h(
           "label",
           { className: "live-salute" },
@@ -111,14 +111,14 @@ export function panel() {
         h("button", { type: "button", className: "link", id: "live-clear", hidden: true }, "Clear"),
       ),
       h("ol", {
-        className: "live-heard",
-        id: "live-heard",
+        className: "live-recognised",
+        id: "live-recognised",
         "aria-label": "Recognised, newest first",
       }),
       h(
         "p",
         { className: "live-slow", id: "live-slow", hidden: true },
-        "Too few frames to tell gestures apart. Close what else keeps this machine busy, or record a clip: it is read without hurry.",
+        "Too few frames per second to recognise gestures. Close other programs, or record a clip: all of its frames are used.",
       ),
       h("dl", { className: "live-speed", id: "live-speed" }),
     ),

@@ -1,4 +1,4 @@
-// What was recognised: the newest one large, the others in a list.
+// The recognitions of the live view: the newest one large, the others in a list.
 
 import { byId, h } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
@@ -68,14 +68,14 @@ export function addResult(result, clip) {
       : h("meter", { min: 0, max: 1, value: result.confidence, "aria-label": "Confidence" }),
     h("p", {}, text),
   );
-  const list = byId("live-heard");
+  const list = byId("live-recognised");
   list.prepend(entry(result, clip, new Date().toLocaleTimeString()));
   while (list.children.length > MOST) list.lastChild.remove();
   byId("live-clear").hidden = false;
 }
 
-/** Say that a clip was played to its end in vain; `rate` is how many frames a second were looked at. */
-export function nothingHeard(clip, rate) {
+/** Show that nothing was recognised in a clip; `rate` is the frames processed per second. */
+export function showNothingRecognised(clip, rate) {
   const looked =
     rate === null
       ? "No frame of it could be looked at in time"
@@ -91,7 +91,7 @@ export function nothingHeard(clip, rate) {
 
 /** Forget what was recognised. */
 export function clearResults(text) {
-  byId("live-heard").replaceChildren();
+  byId("live-recognised").replaceChildren();
   byId("live-clear").hidden = true;
   const box = byId("live-result");
   box.className = "live-result nothing";

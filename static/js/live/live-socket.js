@@ -1,4 +1,4 @@
-// The way to the server and back: frames go out, what was seen in them comes in.
+// The WebSocket of the live view: sends frames, receives poses and recognitions.
 
 const PER_LOOK = 3; // frames sent for each one looked at: the server takes the newest, so it is not old.
 const MOST_UNSENT = 500_000; // bytes: on a slow network frames are left out before they are sent.
@@ -10,10 +10,10 @@ const CLOSED = {
 };
 
 /**
- * Open a live view at the server. `heard` has a function per kind of answer: `seen(answer, seconds)`
+ * Open the live session. `handlers` has a function per kind of message: `seen(answer, seconds)`
  * with the seconds since the frame was captured, `recognized`, `listening`, and `ended(reason)`.
  */
-export function openLink(heard) {
+export function openLink(handlers) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const socket = new WebSocket(`${scheme}://${location.host}/api/v1/live`);
   const captured = new Map(); // Of the frames on their way: when, by the page's clock.
@@ -27,7 +27,7 @@ export function openLink(heard) {
     const at = captured.get(answer.time);
     rate = answer.frames_per_second;
     for (const time of captured.keys()) if (time <= answer.time) captured.delete(time);
-    heard.seen(answer, performance.now() / 1000 - (at ?? performance.now() / 1000));
+    handlers.seen(answer, performance.now() / 1000 - (at ?? performance.now() / 1000));
     for (const resolve of waiting.splice(0)) resolve();
   }
 
@@ -39,12 +39,12 @@ export function openLink(heard) {
   socket.onmessage = ({ data }) => {
     const answer = JSON.parse(data);
     if (answer.kind === "seen") seen(answer);
-    else heard[answer.kind]?.(answer);
+    else handlers[answer.kind]?.(answer);
   };
   socket.onclose = ({ code, reason }) => {
     for (const resolve of waiting.splice(0)) resolve();
     if (!closing)
-      heard.ended(
+      handlers.ended(
         reason
           ? `${reason[0].toUpperCase()}${reason.slice(1)}`
           : (CLOSED[code] ?? `The connection was closed (${code}).`),

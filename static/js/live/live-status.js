@@ -1,4 +1,4 @@
-// What goes on, in words: the salute, the take, and how fast frames are looked at.
+// The status of the live view in words: the salute, the take, the frame rate.
 
 import { byId, h } from "../core/dom.js";
 import { SALUTE } from "../core/salute-threshold.js";
@@ -6,7 +6,7 @@ import { state as page } from "../core/state.js";
 
 const FEW = 6; // frames a second: below, a stroke of a second is five points, and looks like any other.
 
-/** Which step the diver is in, and what to do, from an answer of the server. */
+/** The diver's step and the next instruction, from a message of the server. */
 function situation({ pose, salute, held, state }) {
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
   if (state === "recording" && held)
@@ -20,11 +20,11 @@ function situation({ pose, salute, held, state }) {
 }
 
 /** Show where the diver is between the salutes; null while nothing is watched. */
-export function sayState(answer) {
+export function drawState(answer) {
   const [step, text] = answer
     ? situation(answer)
     : ["", "Hold a Vulcan salute, show the gesture, salute again."];
-  const words = byId("live-saying");
+  const words = byId("live-instruction");
   if (words.textContent !== text) words.textContent = text;
   for (const each of byId("live-steps").children) {
     if (each.id === `live-step-${step}`) each.setAttribute("aria-current", "step");
@@ -34,7 +34,7 @@ export function sayState(answer) {
 }
 
 /** Show frames per second, and the seconds from the camera to the answer. */
-export function saySpeed(answer, seconds) {
+export function drawSpeed(answer, seconds) {
   const rows =
     answer === null
       ? []

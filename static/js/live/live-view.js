@@ -1,4 +1,4 @@
-// The view "Live": a camera, or a clip played as if it were one, and what the recogniser sees in it.
+// The live view: a camera, or a clip played as if live, and what is recognised in it.
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
@@ -9,9 +9,9 @@ import { go } from "../core/views.js";
 import { addFiles } from "../upload/upload-list.js";
 import { countDown, record } from "./camera-recording.js";
 import { panel } from "./live-layout.js";
-import { addResult, clearResults, nothingHeard } from "./live-results.js";
+import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
 import { openLink } from "./live-socket.js";
-import { saySpeed, sayState } from "./live-status.js";
+import { drawSpeed, drawState } from "./live-status.js";
 import { drawSeen, overlay } from "./pose-overlay.js";
 import {
   CAMERA_LOST,
@@ -37,7 +37,7 @@ let drawing = null;
 let recording = null;
 let counting = null;
 let ending = 0; // timer of a recording's end
-let heard = 0; // takes that were recognised since the source was started
+let recognised = 0; // takes that were recognised since the source was started
 let rate = null; // frames a second that were looked at of late
 
 const video = () => byId("live-video");
@@ -112,8 +112,8 @@ function stop() {
   release(video());
   stopFrames = link = null;
   drawing?.remove();
-  sayState(null);
-  saySpeed(null);
+  drawState(null);
+  drawSpeed(null);
   drawControls();
 }
 
@@ -136,8 +136,8 @@ async function lookAndWait(time) {
 
 function seen(answer, seconds) {
   drawSeen(drawing, answer);
-  sayState(answer);
-  saySpeed(answer, seconds);
+  drawState(answer);
+  drawSpeed(answer, seconds);
   rate = answer.frames_per_second;
   if (recording && answer.state === "done" && byId("live-autostop").checked && !ending)
     ending = setTimeout(endRecording, AFTER_SALUTE);
@@ -148,10 +148,10 @@ function lost(trouble) {
   problem(trouble);
 }
 
-/** A clip was played to its end; a machine too slow to look at it must not look like a blind one. */
+/** Stop at the end of a clip, and say how many frames were processed if nothing was recognised. */
 function clipEnded(clip) {
   stop();
-  if (!heard) nothingHeard(clip, rate);
+  if (!recognised) showNothingRecognised(clip, rate);
 }
 
 const ended = (reason) => lost({ title: "The live view ended", text: reason });
@@ -177,7 +177,7 @@ async function showSource() {
 /** Show the camera or the clip, and begin to look at its frames. */
 async function start() {
   stop();
-  [heard, rate] = [0, null];
+  [recognised, rate] = [0, null];
   problem(null);
   const clip = fromClip() ? chosenClip() : null;
   const button = byId("live-start");
@@ -204,7 +204,7 @@ async function start() {
     listening,
     ended,
     recognized: (result) => {
-      heard += 1;
+      recognised += 1;
       addResult(result, clip);
     },
   });
@@ -321,6 +321,6 @@ export function open(section) {
   });
   addEventListener("pagehide", stop);
   navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
-  sayState(null);
-  saySpeed(null);
+  drawState(null);
+  drawSpeed(null);
 }

@@ -1,4 +1,4 @@
-// What is seen, drawn over the picture: the body's skeleton and the hands.
+// The drawing over the live picture: the body's skeleton and the hands.
 
 import { svg } from "../core/dom.js";
 import { drawPose, skeleton } from "../core/skeleton.js";
@@ -35,7 +35,7 @@ export function overlay(width, height) {
   return drawing;
 }
 
-/** Draw what an answer tells; null clears the drawing. */
+/** Draw the pose and hands of a message; null clears the drawing. */
 export function drawSeen(drawing, answer) {
   drawPose(drawing, answer?.pose ?? null);
   const { width, height } = drawing.viewBox.baseVal;

@@ -1,4 +1,4 @@
-// Where live frames come from: a camera, or a clip played as if it were one.
+// The source of live frames: a camera, or a clip played as if live.
 
 const LONGEST_SIDE = 960; // px. The models look at a hand in 224; a smaller picture would blur it.
 const QUALITY = 0.8; // of the JPEG: a fifth of the bytes of 0.95, and the same landmarks.
@@ -38,7 +38,7 @@ export const CAMERA_LOST = {
   text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}`,
 };
 
-/** Say in words why there is no camera: `{ title, text }`. */
+/** Explain why there is no camera: `{ title, text }`. */
 export function whyNoCamera(error) {
   if (!cameraPossible()) {
     return {
@@ -102,7 +102,7 @@ export function grab(video) {
   const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
   canvas.width = Math.round(width * scale);
   canvas.height = Math.round(height * scale);
-  canvas.getContext("2d", { alpha: false }).drawImage(video, 0, 0, canvas.width, canvas.height);
+  canvas.getContext("2d", { alpha: false })?.drawImage(video, 0, 0, canvas.width, canvas.height);
   return new Promise((resolve) => {
     canvas.toBlob(resolve, "image/jpeg", QUALITY);
   });
@@ -121,6 +121,7 @@ export function watchFrames(video, seen) {
     if (video.requestVideoFrameCallback) video.requestVideoFrameCallback(frame);
     else requestAnimationFrame((now) => frame(now, {}));
   };
+  /** @type {(now: number, times: { captureTime?: number, mediaTime?: number }) => void} */
   const frame = (now, { captureTime, mediaTime }) => {
     if (!running) return;
     const captured = (captureTime ?? now) / 1000;

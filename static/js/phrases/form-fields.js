@@ -1,11 +1,12 @@
-// Controls of the form. Each saves when it is left or Enter is pressed; after a redraw the focus is where it was.
+// Fields of the phrases' form. Each saves when it loses the focus or Enter is pressed.
 
-import { h, icon } from "../core/dom.js";
+import { byId, h, icon } from "../core/dom.js";
 
 let drawing = false;
 
-/** Replace the content of `root`, and leave the focus, and what is being typed, where it is. */
+/** Replace the content of `root`, keeping the focus, the caret and unsaved input. */
 export function redraw(root, ...content) {
+  /** @type {any} */
   const active = root.contains(document.activeElement) ? document.activeElement : null;
   const typing =
     active &&
@@ -18,14 +19,18 @@ export function redraw(root, ...content) {
   drawing = true;
   root.replaceChildren(...content.filter(Boolean));
   drawing = false;
-  const again = active?.id ? document.getElementById(active.id) : null;
+  const again = active?.id ? byId(active.id) : null;
   if (!again) return;
   if (typing !== null) again.value = typing;
   again.focus();
   if (caret !== null && again.type !== "number") again.setSelectionRange(caret, caret);
 }
 
-/** A labelled text field; `commit(text)` saves what was typed and resolves to whether it could be. */
+/**
+ * A labelled text field; `commit(text)` saves what was typed and resolves to whether it could be.
+ *
+ * @param {any} field
+ */
 export function textField({
   id,
   label,
@@ -69,6 +74,7 @@ export function textField({
   );
 }
 
+/** @type {(field: any) => HTMLElement} */
 export const numberField = ({ min, max, step = 1, ...rest }) =>
   textField({
     ...rest,

@@ -5,6 +5,8 @@ import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { edit } from "../languages/revision-edit.js";
 
+/** @import { Grammar } from "../core/types.d.ts" */
+
 const EMPTY = {
   start: null,
   end: null,
@@ -26,9 +28,11 @@ export const followRefusals = (react) => {
 };
 
 // One after the other: a field may be left by pressing the next button.
+/** @type {Promise<any>} */
 let working = Promise.resolve();
 
 /** Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to whether it was. */
+/** @type {(title: string, step: (grammar: Grammar) => Grammar | null) => Promise<boolean>} */
 export function save(title, step) {
   working = working.then(async () => {
     try {

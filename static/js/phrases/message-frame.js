@@ -1,4 +1,4 @@
-// What frames a message: the gestures that open, close and drop it, and how long the diver may pause.
+// The panel of a message's frame: gestures that open, close and cancel it, and the longest pause.
 
 import { h } from "../core/dom.js";
 import { choice, numberField } from "./form-fields.js";
@@ -40,7 +40,7 @@ export function framePanel() {
     h(
       "p",
       { className: "dim" },
-      "An opening and a closing gesture keep accidents out: what is shown outside a message is not obeyed. A message may hold several phrases, each opened anew.",
+      "An opening and a closing gesture prevent false alarms: gestures outside a message are ignored. A message may hold several phrases, each with its own opening gesture.",
     ),
     h(
       "div",

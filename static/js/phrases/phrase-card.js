@@ -1,4 +1,4 @@
-// One phrase as a card: at a glance, or open with its form.
+// The card of a phrase: closed as a sequence, open as a form.
 
 import { h, icon } from "../core/dom.js";
 import { plural } from "../core/format.js";
@@ -53,7 +53,7 @@ function form(phrase, place) {
   const slots = slotsOf(phrase).map((slot) => `{${slot.slot}}`);
   const hint = slots.length
     ? `${slots.join(" and ")} ${slots.length > 1 ? "stand for the values" : "stands for the value"} shown. In the spoken text, put what is left out with a slot in [ ].`
-    : "Add a slot to tell the robot how often, how deep or which way.";
+    : "Add a slot for a value of the command: how often, how deep or which way.";
   const id = `phrase-${place}`;
   return h(
     "div",

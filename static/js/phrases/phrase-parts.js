@@ -1,4 +1,4 @@
-// The parts of a phrase, in the order in which they are shown: gestures, slots, and groups of both.
+// The form of a phrase's parts: gestures, slots, and groups of both.
 
 import { h, icon } from "../core/dom.js";
 import { checkbox, choice, numberField, textField, tool } from "./form-fields.js";
@@ -14,6 +14,8 @@ import {
   withSlotRenamed,
 } from "./grammar-edits.js";
 import { grammar, labels, save } from "./grammar-store.js";
+
+/** @import { Phrase } from "../core/types.d.ts" */
 
 const idOf = (path) => `part-${path.join("-")}`;
 
@@ -123,6 +125,7 @@ function group(phrase, path, part) {
   );
 }
 
+/** @type {[string, (phrase: Phrase, path: number[], part: any) => HTMLElement, string][]} */
 const KINDS = [
   ["gestures", gestures, "gesture"],
   ["slot", slot, "slot"],
@@ -130,7 +133,7 @@ const KINDS = [
 ];
 
 function partRow(phrase, path, part, count) {
-  const [, draw, noun] = KINDS.find(([key]) => part[key]);
+  const [, draw, noun] = KINDS.find(([key]) => part[key]) ?? KINDS[0];
   const [list, index] = [path.slice(0, -1), path.at(-1)];
   const id = idOf(path);
   const what = `${noun} ${path.map((place) => place + 1).join(".")}`;

@@ -1,4 +1,4 @@
-// A phrase at a glance: what is shown, one after the other.
+// A phrase as a sequence of chips.
 
 import { h } from "../core/dom.js";
 import { grammar } from "./grammar-store.js";

@@ -1,4 +1,4 @@
-// Trying phrases: gestures are shown by clicking them, and the robot's parser answers.
+// The trial of phrases: clicked gestures are parsed as on the robot.
 
 import * as api from "../core/api.js";
 import { h, reconcile } from "../core/dom.js";
@@ -11,7 +11,7 @@ import { grammar, saved } from "./grammar-store.js";
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
 const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
 
-let answer = null; // `{ key, view, settled }`: what the server says, and whether of what is shown now
+let answer = null; // `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
 const listeners = [];
 
 /** What is known of the phrases on display, or null. */
@@ -64,7 +64,7 @@ function speak(text) {
   speechSynthesis.speak(Object.assign(new SpeechSynthesisUtterance(text), { lang: "en" }));
 }
 
-function said(event) {
+function drawAnswer(event) {
   const over = event && OVER.has(event.kind);
   const kind = event?.kind ?? "nothing";
   const words = event ? event.text : "Show a gesture: click it below.";
@@ -88,7 +88,7 @@ function commands(event) {
   return h(
     "div",
     { className: "obeyed" },
-    h("h3", {}, "The robot is told"),
+    h("h3", {}, "Commands to the robot"),
     h(
       "ol",
       {},
@@ -161,7 +161,7 @@ export function trialPanel() {
       ...shown().map(chip),
       ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]),
     );
-    result.replaceChildren(...[said(event), commands(event)].filter(Boolean));
+    result.replaceChildren(...[drawAnswer(event), commands(event)].filter((each) => each !== null));
     reconcile(
       gestures,
       state.gestures.gestures,

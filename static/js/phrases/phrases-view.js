@@ -1,6 +1,6 @@
 // The phrases of the language: made in a form, checked as they change, and tried by clicking gestures.
 
-import { h, icon } from "../core/dom.js";
+import { byId, h, icon } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { showDone } from "../core/undo.js";
@@ -20,24 +20,24 @@ async function addPhrase() {
   );
   if (await save(`New ${name}`, (base) => withPhrase(base, name, labels()))) {
     update({ phrase: name });
-    document.getElementById(`phrase-${grammar().phrases.length - 1}-name`)?.select();
+    byId(`phrase-${grammar().phrases.length - 1}-name`)?.select();
   }
 }
 
 async function takeOut() {
   if (!(await save("Phrases taken out", () => null))) return;
   update({ phrase: null, shown: null, paused: null });
-  showDone("Phrases taken out", "Every gesture stands for itself.");
+  showDone("Phrases taken out", "Every gesture is a message of its own.");
 }
 
 /** What is ambiguous, each with the message that shows it. */
 function ambiguities() {
-  const told = found()?.ambiguities ?? [];
-  if (!told.length) return null;
+  const list = found()?.ambiguities ?? [];
+  if (!list.length) return null;
   return h(
     "ul",
     { className: "findings", "aria-label": "Ambiguities" },
-    told.map(({ message, gestures }, index) =>
+    list.map(({ message, gestures }, index) =>
       h(
         "li",
         { className: "finding below" },
@@ -82,7 +82,7 @@ function beginning() {
     h(
       "p",
       { className: "dim" },
-      "Without phrases every gesture stands for itself. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. It is opened and closed by a gesture of your choice, so that the robot obeys nothing by accident.",
+      "Without phrases every gesture is a message of its own. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. Gestures of your choice open and close it, so that background motion is not obeyed.",
     ),
     h(
       "button",
@@ -179,9 +179,9 @@ export function open(section) {
     columns.hidden = !able;
     none.hidden = able;
     none.replaceChildren(...(able ? [] : [noGestures()]));
-    says.replaceChildren(...[able ? verdict() : null].filter(Boolean));
+    says.replaceChildren(...[able ? verdict() : null].filter((each) => each !== null));
     if (!able) return;
-    drawForm(gestures.grammar);
+    drawForm(gestures?.grammar);
   };
   section.append(
     h(

@@ -1,4 +1,4 @@
-// What slots are filled with: gestures, and the value that each stands for.
+// The panel of slot types: gestures, each with the value it stands for.
 
 import { h, icon } from "../core/dom.js";
 import { choice, textField, tool } from "./form-fields.js";

@@ -4,14 +4,14 @@ import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
-import { selectedClip, state } from "../core/state.js";
+import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 
 async function remove(gesture) {
-  const from = state.gestures;
+  const from = currentLanguage();
   const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
   try {
     await edit(
@@ -27,7 +27,7 @@ async function remove(gesture) {
 }
 
 function draw(gesture, element) {
-  const { revision } = state.gestures;
+  const { revision } = currentLanguage();
   const mark =
     state.result &&
     (gesture.label === state.result.label
@@ -80,23 +80,24 @@ export function drawGestures({ gestures, result }) {
   drawExpected(members, result);
 }
 
+/** @type {{ result: string | null, clip: string | null | undefined }} */
 let shown = { result: null, clip: null };
 
-/** Offer the labels as what was meant; a recognition that is opened says it itself. */
+/** Fill the choice of the expected label; a recognition that is opened brings its own. */
 function drawExpected(members, result) {
   const expected = byId("expected");
   const clip = selectedClip();
-  let told = expected.value;
-  if (result && result.id !== shown.result) told = result.expected ?? "";
+  let expectedLabel = expected.value;
+  if (result && result.id !== shown.result) expectedLabel = result.expected ?? "";
   else if (clip?.id !== shown.clip)
-    told = labelInName(
+    expectedLabel = labelInName(
       clip?.name ?? "",
       members.map(({ label }) => label),
     );
   shown = { result: result?.id ?? null, clip: clip?.id };
   expected.replaceChildren(
-    h("option", { value: "" }, "not told"),
+    h("option", { value: "" }, "not known"),
     ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),
   );
-  expected.value = members.some((gesture) => gesture.label === told) ? told : "";
+  expected.value = members.some((gesture) => gesture.label === expectedLabel) ? expectedLabel : "";
 }

@@ -1,16 +1,21 @@
-// A change on trial: applied at once, recognised again, and then kept or taken back.
+// The trial of a counterfactual's intervention: applied, recognised again, then kept or discarded.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
-import { state, update } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { showDone, undo } from "../core/undo.js";
 import { keepTuning } from "../languages/language-tuning.js";
 import { edit } from "../languages/revision-edit.js";
 import { rangeOf, recogniseWith } from "./stage.js";
 
+/** @import { Recognition } from "../core/types.d.ts" */
+
+const currentResult = () => /** @type {Recognition} */ (state.result);
+
 /** What differs from the profile in the recognition on display. */
-const tuning = () => state.result.tuning ?? state.gestures.tuning ?? { weights: {} };
+/** @returns {any} */
+const tuning = () => currentResult().tuning ?? currentLanguage().tuning ?? { weights: {} };
 
 const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
 
@@ -42,10 +47,10 @@ async function changeGesture(change, body) {
   return { edited: true };
 }
 
-/** Apply a change and recognise again; until it is kept, one press takes it back. */
+/** Apply an intervention and recognise again; it can be discarded until it is kept. */
 export async function tryOut({ change }) {
   const { recognition, take, start, end, trial } = state;
-  const { profile, tuning: before } = state.result;
+  const { profile, tuning: before } = currentResult();
   try {
     const { edited = false, ...extra } = await APPLY[change.kind](change);
     const result = await recogniseWith({ profile, tuning: before, ...extra });
@@ -71,9 +76,9 @@ async function discard({ base, edited }) {
 }
 
 async function keep({ change, edited }) {
-  const { result } = state;
+  const result = currentResult();
   const { words } = change;
-  const where = `${words}, in ${state.gestures.name}`;
+  const where = `${words}, in ${currentLanguage().name}`;
   try {
     if (result.tuning !== null || TUNING.has(change.kind)) await keepTuning(result, words);
   } catch (error) {
@@ -82,21 +87,20 @@ async function keep({ change, edited }) {
   }
   update({ trial: null });
   if (TUNING.has(change.kind)) {
-    // By the language as it is now, so that what is shown is what a robot would say.
+    // By the saved language, so that the page shows the robot's result.
     await recogniseWith();
     showDone("Change kept", where);
   } else if (edited) toast("Change kept", where);
-  else
-    toast("Range kept", "The buttons act on it now; save it as a gesture or recognise it again.");
+  else toast("Range kept", "It is selected now: save it as a gesture, or recognise it again.");
 }
 
-/** Say what is on trial and what came of it, with both ways on. */
+/** Show the trial and its result, with buttons to keep or discard it. */
 export function trialBar(trial, result) {
   const read = result.label ?? `nothing; nearest is ${result.nearest}`;
   return h(
     "div",
     { className: "trial", role: "status" },
-    h("p", {}, h("b", {}, "On trial: "), `${trial.change.words}. It is read as ${read}.`),
+    h("p", {}, h("b", {}, "Trial: "), `${trial.change.words}. Recognised as ${read}.`),
     h(
       "span",
       { className: "joined" },

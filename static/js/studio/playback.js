@@ -1,4 +1,4 @@
-// The clock of the workspace: one for the 3D view, the timeline, and every key.
+// The playback clock of the workspace, shared by the 3D view, the timeline and the keys.
 
 import { state, update } from "../core/state.js";
 
@@ -6,8 +6,8 @@ const RETRY = 1000; // ms
 
 let socket = null;
 let workspace = null;
-let unsent = []; // wishes while this workspace's clock is not heard yet
-let wantedFrame = null; // what the URL said, until the clip is shown
+let unsent = []; // commands from before the connection opened
+let wantedFrame = null; // from the URL, until the clip is shown
 
 /** Follow the clock of a workspace, and of another one when that one is gone. */
 export function followClock(id) {
@@ -26,7 +26,7 @@ function connect(id) {
   opened.onopen = () => {
     for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish));
   };
-  opened.onmessage = ({ data }) => told(JSON.parse(data));
+  opened.onmessage = ({ data }) => received(JSON.parse(data));
   // A workspace that is gone is opened anew by whoever shows something next.
   opened.onclose = () => {
     if (socket === opened && workspace === id)
@@ -36,7 +36,7 @@ function connect(id) {
   };
 }
 
-function told(position) {
+function received(position) {
   const rests = !position.playing && wantedFrame === null && state.takes !== null;
   update(rests ? { position, frame: position.frame } : { position });
 }

@@ -1,4 +1,4 @@
-// The clip on display: its takes, what is done with them, and what came of it.
+// The stage: the clip on display, its takes, and the outcome of its recognition.
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
@@ -10,6 +10,8 @@ import { frameShown } from "./playback.js";
 import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
+
+/** @import { SelectedRange } from "../core/types.d.ts" */
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
 
@@ -37,7 +39,8 @@ export function showSelection() {
   clearTimeout(viewTimer);
   const clip = selectedClip();
   if (!clip || clip.status !== "done" || !state.takes) return;
-  const { shown } = selectedRange();
+  const { shown } = /** @type {SelectedRange} */ (selectedRange());
+  /** @type {{ clip_id: string, start?: number, end?: number, recognition_id?: string }} */
   const view = { clip_id: clip.id, start: shown[0], end: shown[1] };
   // Without a take or a choice the whole clip is meant, to its very last frame.
   if (state.take === null && state.start === null) delete view.start;
@@ -55,7 +58,7 @@ export function showSelection() {
 }
 
 function query() {
-  const { start, end } = selectedRange();
+  const { start, end } = /** @type {SelectedRange} */ (selectedRange());
   const whole = state.take === null && state.start === null && state.end === null;
   return whole && !state.takes?.length
     ? { clip_id: state.clip }
@@ -71,7 +74,7 @@ async function saveGesture() {
 /** The range on which the buttons act, as the API takes it. */
 export const rangeOf = () => query();
 
-/** Recognise what is selected; `extra` says what is done otherwise. */
+/** Recognise what is selected; `extra` overrides parts of the request. */
 export async function recogniseWith(extra = {}) {
   const body = {
     ...query(),
@@ -123,7 +126,7 @@ export async function loadResult() {
   }
 }
 
-/** Say in the page what was recognised; the reasons are in the workspace. */
+/** Show what was recognised; the votes are in the workspace. */
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
@@ -146,7 +149,7 @@ export function drawOutcome({ result }) {
             expected === label ? ", as expected" : "",
           ]
         : [
-            "Taken for ",
+            "Recognised as ",
             h("b", { className: "chosen" }, label),
             ", expected ",
             h("b", { className: "expected" }, expected),

@@ -1,4 +1,4 @@
-// The takes of a clip along its time, where the clock stands, and the range the buttons act on.
+// The timeline: takes, the playback position, and the selected range.
 
 import { filmstrip } from "../clips/filmstrip.js";
 import { byId, h, icon } from "../core/dom.js";
@@ -7,6 +7,8 @@ import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
+
+/** @import { SelectedRange, Timeline } from "../core/types.d.ts" */
 
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 
@@ -43,7 +45,7 @@ function takeButton(take, index, duration) {
       className: `take${chosen ? " chosen" : ""}${take.closed ? "" : " open"}`,
       "aria-pressed": String(chosen),
       "aria-label": `${name}, ${moment(take.start)} to ${moment(take.end)}${take.closed ? "" : ", no closing salute"}`,
-      title: `${name}: from salute to salute. The bright part is the gesture, without the hand's way from and to the salute.`,
+      title: `${name}: from salute to salute. The bright part is the gesture, without the hand's transit from and to the salute.`,
       style: {
         left: percent(take.start, duration),
         width: percent(take.end - take.start, duration),
@@ -75,10 +77,12 @@ const saluteMarks = (take, duration) =>
   ].filter(Boolean);
 
 /** When the last frame is shown: the right edge of the timeline. */
-const lastMoment = () => state.timeline.time.at(-1) || 1;
+const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
+
+const lastMoment = () => timeOfFrames().at(-1) || 1;
 
 /** The frame that is nearest to a moment. */
-const frameAt = (seconds) => nearestFrame(state.timeline.time, seconds);
+const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 
 function handle(which) {
   const label = which === "start" ? "Start of the range" : "End of the range";
@@ -103,7 +107,7 @@ function handle(which) {
     event.preventDefault();
     to(
       Math.min(
-        state.timeline.time.length - 1,
+        timeOfFrames().length - 1,
         Math.max(0, frameAt(Number(input.value)) + way * (event.shiftKey ? 10 : 1)),
       ),
     );
@@ -115,15 +119,15 @@ function placeHandles(track, range) {
   for (const which of ["start", "end"]) {
     const input = track.querySelector(`.handle.${which}`);
     const frame = frameAt(range[which]);
-    input.value = state.timeline.time[frame];
+    input.value = timeOfFrames()[frame];
     input.setAttribute("aria-valuetext", `frame ${frame}, ${moment(range[which])}`);
   }
 }
 
 /** Move one end of the range to a frame; from then on it is a range chosen by hand. */
 function move(which, frame) {
-  const { time } = state.timeline;
-  const range = selectedRange();
+  const time = timeOfFrames();
+  const range = /** @type {SelectedRange} */ (selectedRange());
   const last = time.length - 1;
   const [start, end] = [frameAt(range.start), frameAt(range.end)];
   const moved =
@@ -151,10 +155,10 @@ function summary(range, takes) {
   const where = `${moment(range.start)} \u2013 ${moment(range.end)}`;
   if (range.take) {
     const [from, to] = range.shown;
-    return `Take ${state.take + 1} of ${takes.length}: gesture ${moment(from)} \u2013 ${moment(to)}${range.take.closed ? "" : ", never closed by a salute"}`;
+    return `Take ${(state.take ?? 0) + 1} of ${takes.length}: gesture ${moment(from)} \u2013 ${moment(to)}${range.take.closed ? "" : ", without a closing salute"}`;
   }
   if (takes.length) return `Range by hand: ${where}`;
-  return `No Vulcan salute was found, so the range is yours to choose: ${where}`;
+  return `No Vulcan salute was found; choose the range by hand: ${where}`;
 }
 
 /** Follow the pointer along the thumbnails or curves with the clock. */
@@ -188,7 +192,7 @@ function redrawTrack(track, content, takes) {
 export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
-  const range = selectedRange();
+  const range = /** @type {SelectedRange} */ (selectedRange());
   if (clip?.status !== "done" || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
   const track = box.querySelector(".track");

@@ -1,4 +1,4 @@
-// A first visit's tour: a small card that points at what is really there. The page stays usable.
+// The tour of a first visit: a card that points at parts of the page, which stays usable.
 
 import { byId, h } from "../core/dom.js";
 import { go } from "../core/views.js";
@@ -10,12 +10,12 @@ const GAP = 12; // px between the card and what it points at.
 const STEPS = [
   {
     title: "One demonstration makes a gesture",
-    text: "You show it once, on a clip; the robot knows it from then on. Four places to know:",
+    text: "One clip of a gesture is enough for the robot to recognise it. The four steps:",
     places: [],
   },
   {
     title: "1. Give it a clip",
-    text: "Drop clips anywhere in the window: Vulcan salute, the gesture, Vulcan salute. Sample clips are below, for a first try.",
+    text: "Drop clips anywhere in the window: Vulcan salute, the gesture, Vulcan salute. Sample clips are below the list.",
     places: [".drop label", "#clips"],
   },
   {
@@ -25,12 +25,12 @@ const STEPS = [
   },
   {
     title: "3. Ask why",
-    text: "Every voter tells its distance to every gesture: see which took it for something else, and what would help.",
+    text: "Every voter has a distance to every gesture: see which voters were wrong, and which change would help.",
     places: ["#why", ".lab"],
   },
   {
     title: "4. Keep it in a language",
-    text: "Gestures make a language. Every change is kept and can be taken back; Export gives the file to the robot.",
+    text: "Gestures make a language. Every change is kept and can be undone; Export writes the file for the robot.",
     places: ["#views a:nth-child(2)", ".picker"],
   },
 ];

@@ -1,4 +1,4 @@
-// Play, step, speed and loop: the bar under the timeline, and the keys that do the same.
+// The playback controls under the timeline, and their keys.
 
 import { byId, h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
@@ -17,7 +17,7 @@ const toggle = () => play(state.position?.playing ? 0 : speed());
 
 /** J and L: the other way at normal speed, or twice as fast the same way. */
 function shuttle(direction) {
-  const { playing, speed: now } = state.position ?? {};
+  const { playing, speed: now } = state.position ?? { playing: false, speed: 1 };
   const same = playing && Math.sign(now) === direction;
   play(direction * (same ? Math.min(FASTEST, 2 * Math.abs(now)) : 1));
 }
@@ -59,7 +59,7 @@ export function buildTransport() {
       className: "dim num",
       id: "picture-of",
       title:
-        "Of a clip this long not every picture is kept. Choose a take or a shorter range to see them all.",
+        "Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them.",
     }),
     h("label", { className: "visually-hidden", for: "speed" }, "Speed"),
     h(

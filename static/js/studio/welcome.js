@@ -1,4 +1,4 @@
-// What stands in the middle while there is nothing to show yet: the way to begin, or the progress.
+// The panel in the middle while there is nothing to show: how to begin, or the progress.
 
 import { BUSY, needsTopic, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
@@ -14,7 +14,7 @@ const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
   ["Save", "Save the take between the salutes as a gesture. One demonstration is enough."],
   ["Ask why", "Recognise another clip, and see every voter\u2019s distance to every gesture."],
-  ["Export", "Give the language to the robot as one JSON file."],
+  ["Export", "Export the language for the robot as one JSON file."],
 ];
 
 /**
@@ -32,7 +32,7 @@ function offered(samples) {
   return [...kinds.values()];
 }
 
-/** The sample that is misread, and what its diver meant: the shortest way to what this is about. */
+/** The sample that is recognised wrongly, with its expected label. */
 const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
 
 /** A button that shows why the misread sample is misread; null where it, or its language, is gone. */
@@ -49,7 +49,7 @@ function question(samples, languages) {
     h(
       "span",
       {},
-      "A robot misread this sample clip. See which voters were wrong, when and why, and what would have helped.",
+      "This sample clip is recognised wrongly. See which voters were wrong, where, and which change would have helped.",
     ),
   );
   button.onclick = async () => {
@@ -106,7 +106,7 @@ function progressPanel(clip) {
       });
   if (video)
     firstMoment(video).then((start) => {
-      video.dataset.start = start;
+      video.dataset.start = String(start);
     });
   return h(
     "div",
@@ -141,7 +141,7 @@ function showPose(panel, clip, { time, pose }) {
 function showProgress(panel, clip, job) {
   const bar = panel.querySelector("progress");
   panel.querySelector("h1").textContent =
-    clip.status === "queued" ? "Waiting for its turn" : "Finding the diver\u2019s poses";
+    clip.status === "queued" ? "Waiting in the queue" : "Finding the diver\u2019s poses";
   panel.querySelector("[role=status]").textContent = statusText(clip, job);
   if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
   else bar.removeAttribute("value");

@@ -1,4 +1,4 @@
-// Why a recognition came out as it did, where the difference lies, and what would have helped.
+// The explanation of a recognition: its sentence, the differences in time, and counterfactuals.
 
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
@@ -11,7 +11,7 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
-/** Load why, as soon as it is known what was meant. */
+/** Load the explanation, once there is an expected label. */
 export async function loadWhy({ result }) {
   if (!result || result.expected === null) return update({ why: null });
   if (state.why?.id === result.id) return undefined;
@@ -20,7 +20,7 @@ export async function loadWhy({ result }) {
   return state.result?.id === result.id ? update({ why }) : undefined;
 }
 
-/** What each step of the take costs, joint by joint, for the expected gesture's paths. */
+/** The DTW cost of each step of the take and joint, against the expected gesture. */
 function costs({ alignments, expected }) {
   const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
   if (!alignment) return null;
@@ -44,7 +44,7 @@ function costs({ alignments, expected }) {
   };
 }
 
-/** Draw the costs along the clip's time; height and shade both say how much. */
+/** Draw the costs along the clip's time, as height and shade. */
 function lane({ time, steps }, { part, name }, most, last) {
   const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
   const bars = steps.map((step, index) => {
@@ -53,7 +53,7 @@ function lane({ time, steps }, { part, name }, most, last) {
     const amount = Math.sqrt(step[part] / most);
     return svg("rect", {
       x: share(from),
-      width: Math.max(0.5, share(to) - share(from)),
+      width: Math.max(0.5, Number(share(to)) - Number(share(from))),
       y: LANE * (1 - amount),
       height: LANE * amount,
       "fill-opacity": (0.35 + 0.65 * amount).toFixed(2),
@@ -94,7 +94,7 @@ export function drawCosts({ why, timeline }) {
   );
 }
 
-/** What a change of the language does to its other gestures, in words. */
+/** The side effect of an intervention on the other gestures, in words. */
 function effectOf(effect) {
   if (!effect) return null;
   if (effect.right_after < effect.right_before) {
@@ -157,12 +157,12 @@ function remediesOf(why) {
   if (why.right) return null;
   if (!why.counterfactuals.length)
     return note(
-      `None of the ${why.tried} changes that were tried would have helped: the take has to be shown again.`,
+      `None of the ${why.tried} changes that were tried would help: the gesture has to be demonstrated again.`,
     );
   return h(
     "div",
     { className: "remedies" },
-    h("h2", {}, `It would have been read as ${why.expected}`),
+    h("h2", {}, `It would have been recognised as ${why.expected}`),
     h("ul", {}, why.counterfactuals.map(remedy)),
   );
 }
@@ -170,9 +170,9 @@ function remediesOf(why) {
 const reasons = (why) => [h("p", { className: "why-sentence" }, why.sentence), remediesOf(why)];
 
 const ASK_EXPECTED =
-  "Was something else meant? Choose it as \u201cExpected\u201d and recognise again, to see why and what would help.";
+  "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";
 
-/** Draw why, under the take. */
+/** Draw the explanation under the take. */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;

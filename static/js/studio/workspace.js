@@ -1,4 +1,4 @@
-// The viser frame: one workspace per tab, kept over reloads, opened anew when the server forgot it.
+// The viser iframe: one workspace per tab, kept over reloads.
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";

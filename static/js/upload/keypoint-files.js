@@ -1,12 +1,14 @@
-// Other programs' keypoint files: which of the dropped files are some, and what they do not tell.
+// Keypoint files of other programs: recognising them, and asking for what they lack.
 
 import { ask } from "../core/dialogs.js";
 
 const HEAD = 65536; // bytes of a file that are looked at: what it is stands at its beginning.
 
 /**
- * Tell what a file ending in .json is: "language", "keypoints", or "frame", one frame of OpenPose.
+ * The kind of a .json file: "language", "keypoints", or "frame", one frame of OpenPose.
  * A language is an object of gestures; keypoints are a list of frames, or an object with one.
+ *
+ * @param {Blob} file
  */
 export async function kindOfJson(file) {
   const head = await file.slice(0, HEAD).text();
@@ -17,37 +19,50 @@ export async function kindOfJson(file) {
     : "language";
 }
 
+/** @type {Record<string, string>} */
 const NEEDS = {
-  frame_rate_needed: "It counts frames and tells no time.",
-  frame_size_needed: "It tells fractions of a picture, whose shape it does not tell.",
+  frame_rate_needed: "It numbers its frames and has no times.",
+  frame_size_needed:
+    "Its coordinates are fractions of the picture, and the picture\u2019s size is not in the file.",
 };
 
-/** Whether an upload was refused for what only its sender knows. */
-export const needsVideo = ({ code }) => code in NEEDS;
+/**
+ * Whether an upload was refused because its frame rate or size is not known.
+ *
+ * @param {{ code?: string }} error
+ */
+export const needsVideo = ({ code }) => (code ?? "") in NEEDS;
 
+/** @param {string} text */
 const size = (text) => text.trim().toLowerCase().replace("\u00d7", "x");
 
-/** Ask about the video that the keypoints were found in; resolves to fields of the upload, or null. */
-export function askForVideo(name, { code }, told = {}) {
+/**
+ * Ask about the video that the keypoints were found in; resolves to fields of the upload, or null.
+ *
+ * @param {string} name
+ * @param {{ code?: string }} error
+ * @param {Record<string, string>} [given]
+ */
+export function askForVideo(name, { code }, given = {}) {
   const required = code === "frame_size_needed";
   return ask({
     title: "What was the video like?",
-    text: `${name} holds keypoints and no video. ${NEEDS[code]}`,
+    text: `${name} holds keypoints and no video. ${NEEDS[code ?? ""]}`,
     fields: [
       {
         name: "frame_rate",
         label: "Frames a second",
-        value: told.frame_rate ?? "30",
+        value: given.frame_rate ?? "30",
         required: code === "frame_rate_needed",
         most: 12,
       },
       {
         name: "frame_size",
         label: "Width x height in pixels",
-        value: told.frame_size ?? "",
+        value: given.frame_size ?? "",
         required,
         most: 16,
-        hint: "As 1920x1080. Needed where places are told as fractions of the picture.",
+        hint: "As 1920x1080. Needed for coordinates that are fractions of the picture.",
       },
     ],
     action: "Add the clip",

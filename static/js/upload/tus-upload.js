@@ -1,6 +1,8 @@
-// Sending a file so that a lost connection, a reload or a restarted server loses nothing (tus 1.0.0).
+// Resumable uploads (tus 1.0.0): they survive a lost connection, a reload and a server's restart.
 
 import { ApiError, isAway, problemOf, unreachable } from "../core/api.js";
+
+/** @import { Stand } from "../core/types.d.ts" */
 
 const PLACE = "/api/v1/uploads";
 const VERSION = { "Tus-Resumable": "1.0.0" };
@@ -11,9 +13,17 @@ const LONGEST_PAUSE = 8000; // up to this: whoever comes back into the network's
 const cancelled = () =>
   new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
 
-/** Where the address of a file's upload is kept, so that the same file goes on after a reload. */
+/**
+ * Where the address of a file's upload is kept, so that the same file goes on after a reload.
+ *
+ * @param {File} file
+ */
 const keyOf = ({ name, size, lastModified }) => `osg-studio.upload.${size}.${lastModified}.${name}`;
 
+/**
+ * @param {File} file
+ * @param {string | null} place
+ */
 function keep(file, place) {
   try {
     if (place) localStorage.setItem(keyOf(file), place);
@@ -23,6 +33,7 @@ function keep(file, place) {
   }
 }
 
+/** @param {File} file */
 function kept(file) {
   try {
     return localStorage.getItem(keyOf(file));
@@ -31,6 +42,11 @@ function kept(file) {
   }
 }
 
+/**
+ * @param {string} method
+ * @param {string} place
+ * @param {Record<string, string>} [headers]
+ */
 async function ask(method, place, headers = {}) {
   let response;
   try {
@@ -42,32 +58,52 @@ async function ask(method, place, headers = {}) {
   return response.headers;
 }
 
-/** How far an upload is, by the headers of an answer. */
+/**
+ * How far an upload is, by the headers of an answer.
+ *
+ * @param {string} place
+ * @param {{ get: (name: string) => string | null }} headers
+ */
 export const standOf = (place, headers) => ({
   place,
   offset: Number(headers.get("Upload-Offset")),
   clip: headers.get("Content-Location")?.split("/").at(-1) ?? null,
 });
 
+/** @param {string} text */
 const base64 = (text) => btoa(String.fromCharCode(...new TextEncoder().encode(text)));
 
-/** The `Upload-Metadata` of a file: names, each with its text in base64 of UTF-8. */
+/**
+ * The `Upload-Metadata` of a file: names, each with its text in base64 of UTF-8.
+ *
+ * @param {string} name
+ * @param {Record<string, string>} fields
+ */
 export const metadataOf = (name, fields) =>
   Object.entries({ filename: name, ...fields })
     .map(([key, text]) => `${key} ${base64(text)}`)
     .join(",");
 
+/**
+ * @param {File} file
+ * @param {Record<string, string>} fields
+ */
 async function begin(file, fields) {
   const headers = await ask("POST", PLACE, {
     "Upload-Length": String(file.size),
     "Upload-Metadata": metadataOf(file.name, fields),
   });
-  const place = headers.get("Location");
+  const place = headers.get("Location") ?? "";
   keep(file, place);
   return { place, offset: 0, clip: null };
 }
 
-/** Ask how much of a file the server has; begin anew where it knows nothing of it. */
+/**
+ * Ask how much of a file the server has; begin anew where it knows nothing of it.
+ *
+ * @param {File} file
+ * @param {Record<string, string>} fields
+ */
 async function resume(file, fields) {
   const place = kept(file);
   if (!place) return begin(file, fields);
@@ -79,7 +115,15 @@ async function resume(file, fields) {
   }
 }
 
-/** Send the next part. `fetch` tells nothing of an upload's progress, so this is an XMLHttpRequest. */
+/**
+ * Send the next part, by XMLHttpRequest: `fetch` does not report an upload's progress.
+ *
+ * @param {XMLHttpRequest} call
+ * @param {File} file
+ * @param {Stand} at
+ * @param {(loaded: number) => void} onProgress
+ * @returns {Promise<Stand>}
+ */
 function send(call, file, { place, offset }, onProgress) {
   const sent = new Promise((resolve, reject) => {
     call.upload.onprogress = ({ loaded }) => onProgress(offset + loaded);
@@ -108,25 +152,37 @@ function send(call, file, { place, offset }, onProgress) {
   return sent;
 }
 
-/** Whether going on later may help: nobody answered, or the server and this page disagree how far it is. */
+/**
+ * Whether a retry may help: the server was unreachable, or the offsets disagree.
+ *
+ * @param {{ code?: string, status?: number }} error
+ */
 export const mayGoOn = (error) =>
   isAway(error) ||
-  [502, 503, 504].includes(error.status) ||
-  ["upload_offset", "upload_broken_off"].includes(error.code);
+  [502, 503, 504].includes(error.status ?? 0) ||
+  ["upload_offset", "upload_broken_off"].includes(error.code ?? "");
 
 /**
- * Upload a file. `fields` are what is told of it beside its bytes, as the API names them.
- * `onProgress(loaded, away)` hears of the bytes that came, and whether the server is away at
+ * Upload a file. `fields` are its metadata, named as in the API.
+ * `onProgress(loaded, away)` gets the bytes received, and whether the server is unreachable at
  * present. Returns `{ done, cancel }`; `done` resolves to the clip's id.
+ *
+ * @param {File} file
+ * @param {Record<string, string>} fields
+ * @param {(loaded: number, away: boolean) => void} onProgress
  */
 export function upload(file, fields, onProgress) {
+  /** @type {XMLHttpRequest | null} */
   let call = null;
+  /** @type {string | null} */
   let place = null;
   let came = 0; // bytes, as far as is known
+  /** @type {(value?: any) => void} */
   let wake = () => {};
   let gone = false;
 
   async function run() {
+    /** @type {Stand | null} */
     let at = null;
     let pause = FIRST_PAUSE;
     while (!at?.clip) {

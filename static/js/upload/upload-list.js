@@ -11,11 +11,14 @@ import { importLanguage } from "../languages/language-store.js";
 import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
 import { upload as send } from "./tus-upload.js";
 
+/** @import { State, Upload } from "../core/types.d.ts" */
+
 const AT_ONCE = 2; // More only share the same line, and each would finish later.
 
 let counter = 0;
 
 /** An upload that has not begun. */
+/** @type {(file: File, first: boolean, uploaded: Upload["uploaded"]) => Upload} */
 const waiting = (file, first, uploaded) => ({
   key: String(counter++),
   file,
@@ -31,22 +34,29 @@ const waiting = (file, first, uploaded) => ({
   cancel: null,
 });
 
-/** Import a file ending in .json as a language where it is one; tells whether it is a clip instead. */
+/**
+ * Import a .json file if it is a language; resolves to whether it is a clip instead.
+ *
+ * @param {File} file
+ */
 async function isClip(file) {
   const kind = await kindOfJson(file);
   if (kind === "language") importLanguage(file);
   else if (kind === "frame")
     toast(
-      "OpenPose\u2019s frames belong together",
-      "Pack the folder that --write_json wrote as a .zip, and drop that.",
+      "One frame of OpenPose is not a clip",
+      "Pack the folder that --write_json wrote as a .zip file, and drop the .zip.",
       { kind: "error" },
     );
   return kind === "keypoints";
 }
 
 /**
- * Take files in, whatever they are. `uploaded(id)` hears of each clip; without it the first clip
+ * Upload or import files of any kind. `uploaded(id)` is called for each clip; without it the first clip
  * is shown.
+ *
+ * @param {Iterable<File>} files
+ * @param {Upload["uploaded"]} [uploaded]
  */
 export async function addFiles(files, uploaded = null) {
   const added = [];
@@ -59,12 +69,17 @@ export async function addFiles(files, uploaded = null) {
   startNext();
 }
 
+/**
+ * @param {string} key
+ * @param {Partial<Upload>} patch
+ */
 function change(key, patch) {
   update({
     uploads: state.uploads.map((upload) => (upload.key === key ? { ...upload, ...patch } : upload)),
   });
 }
 
+/** @param {string} key */
 function forget(key) {
   update({ uploads: state.uploads.filter((upload) => upload.key !== key) });
 }
@@ -77,9 +92,12 @@ function startNext() {
     start(upload);
 }
 
+/** @param {Upload} upload */
 async function start(upload) {
   // The rate counts from where this attempt found the file, which may be its middle.
+  /** @type {Upload["began"]} */
   let began = null;
+  /** @type {(loaded: number, away: boolean) => void} */
   const advanced = (loaded, away) => {
     began = away ? null : (began ?? { loaded, at: performance.now() });
     change(upload.key, { loaded, away, began });
@@ -105,55 +123,71 @@ async function start(upload) {
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
     else change(upload.key, { status: "failed", error: error.message, refused: error });
-    if (needsVideo(error)) tellVideo(upload.key);
+    if (needsVideo(error)) askAboutVideo(upload.key);
   }
   startNext();
 }
 
-/** Ask what a refused keypoint file does not tell, and send it again with that. */
-async function tellVideo(key) {
+/**
+ * Ask for what a keypoint file lacks, and upload it again with the answer.
+ *
+ * @param {string} key
+ */
+async function askAboutVideo(key) {
   const { file, refused, fields } = state.uploads.find((each) => each.key === key) ?? {};
-  if (!refused || byId("dialog").open) return; // Retry asks again.
-  const told = await askForVideo(file.name, refused, fields);
-  if (!told) return;
-  change(key, { status: "waiting", fields: { ...fields, ...told } });
+  if (!file || !refused || byId("dialog").open) return; // Retry asks again.
+  const given = await askForVideo(file.name, refused, fields);
+  if (!given) return;
+  change(key, { status: "waiting", fields: { ...fields, ...given } });
   startNext();
 }
 
+/** @param {Upload} upload */
 function retry({ key, refused }) {
-  if (refused && needsVideo(refused)) return tellVideo(key);
+  if (refused && needsVideo(refused)) return askAboutVideo(key);
   change(key, { status: "waiting" });
   return startNext();
 }
 
-/** What is wrong; which file it is stands above already. */
+/**
+ * What is wrong; which file it is stands above already.
+ *
+ * @param {string} error
+ * @param {string} name
+ */
 function withoutName(error, name) {
   if (error.startsWith(`${name}: `)) return error.slice(name.length + 2);
   return error.startsWith(name) ? `It${error.slice(name.length)}` : error;
 }
 
+/** @param {Upload} upload */
 function stage(upload) {
   if (upload.status === "waiting") return "Waiting for the other uploads";
-  if (upload.status === "failed") return withoutName(upload.error, upload.file.name);
+  if (upload.status === "failed") return withoutName(upload.error ?? "", upload.file.name);
   if (upload.away)
-    return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; goes on by itself`;
-  if (upload.loaded >= upload.total) return "Checking what is in it";
+    return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; the upload continues by itself`;
+  if (upload.loaded >= upload.total) return "Checking the file";
   const { began } = upload;
   const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at); // bytes a ms
   const left = rate ? (upload.total - upload.loaded) / rate / 1000 : null;
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
 }
 
-/** Draw an upload. Its bar moves on in place: a button must not be replaced under the pointer. */
+/**
+ * Draw an upload. Its bar moves on in place: a button must not be replaced under the pointer.
+ *
+ * @param {Upload} upload
+ * @param {HTMLElement} [element]
+ */
 function draw(upload, element) {
   const failed = upload.status === "failed";
   const { key } = upload;
   if (!failed && element?.dataset.status === upload.status) {
-    element.querySelector(".stage-text").textContent = stage(upload);
-    element.querySelector("progress").value = upload.loaded;
+    /** @type {any} */ (element.querySelector(".stage-text")).textContent = stage(upload);
+    /** @type {any} */ (element.querySelector("progress")).value = upload.loaded;
     return element;
   }
-  const stop = () => (upload.status === "uploading" ? upload.cancel() : forget(key));
+  const stop = () => (upload.status === "uploading" ? upload.cancel?.() : forget(key));
   return h(
     "li",
     { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
@@ -180,20 +214,31 @@ function draw(upload, element) {
   );
 }
 
-/** Draw the uploads. */
+/**
+ * Draw the uploads.
+ *
+ * @param {State} state
+ */
 export function drawUploads({ uploads }) {
   reconcile(byId("uploads"), uploads, (upload) => upload.key, draw);
 }
 
+/** @type {Map<string | null, (files: Iterable<File>) => unknown>} */
 const takers = new Map();
 
-/** Let files that are dropped while a view is shown go to `take(files)`. */
+/**
+ * Pass files that are dropped on a view to `take(files)`.
+ *
+ * @param {string} view
+ * @param {(files: Iterable<File>) => unknown} take
+ */
 export const takeFilesIn = (view, take) => takers.set(view, take);
 
 /** Make the whole window a place to drop files. */
 export function acceptFiles() {
   const veil = byId("veil");
   let depth = 0; // dragenter and dragleave fire for every element on the way.
+  /** @param {DragEvent} event */
   const carriesFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
   addEventListener("dragenter", (event) => {
     if (carriesFiles(event)) veil.hidden = ++depth === 0;
@@ -208,7 +253,7 @@ export function acceptFiles() {
     depth = 0;
     veil.hidden = true;
     const take = takers.get(state.view) ?? addFiles;
-    Promise.resolve(take(event.dataTransfer.files)).catch((error) =>
+    Promise.resolve(take(event.dataTransfer?.files ?? [])).catch((error) =>
       complain(error, "Adding the files"),
     );
   });
