@@ -10,6 +10,15 @@ export default [
     rules: {
       complexity: ["error", 13],
       eqeqeq: "error",
+      "max-len": [
+        "error",
+        {
+          code: 100,
+          ignorePattern: "@(import|param|type|returns) ",
+          ignoreStrings: true,
+          ignoreTemplateLiterals: true,
+        },
+      ],
       "no-var": "error",
       "object-shorthand": "error",
       "prefer-const": "error",

@@ -2,7 +2,10 @@
 
 import { svg } from "./dom.js";
 
-/** Pairs of landmarks joined by a bone: `SKELETON` in app/recognition/landmarks.py, as positions in `POSE_LANDMARKS`. */
+/**
+ * Pairs of landmarks joined by a bone: `SKELETON` in app/recognition/landmarks.py, as positions in
+ * `POSE_LANDMARKS`.
+ */
 export const BONES = [
   [11, 12],
   [11, 13],

@@ -117,7 +117,7 @@ async function show() {
 export const loadViews = () => Promise.allSettled(views.map(({ load }) => load?.()));
 
 /**
- * Show the selected one of `list`, each `{ name, title, load, passing }`. `load()` imports the view's
+ * Show the selected one of `list`. `load()` imports the view's
  * module, which exports `open(section)`, called when the view is first shown. A passing view has a
  * tab only while it is open: elsewhere there is nothing it could show.
  *

@@ -183,7 +183,8 @@ export function take({ language, gesture, drawn, pick }) {
 
   function drawChoices() {
     const ready = state.clips.filter((clip) => clip.status === "done");
-    const own = gesture ? (saved().clip?.clip_id ?? "") : null; // where the saved demonstration comes from
+    // The clip of the saved demonstration.
+    const own = gesture ? (saved().clip?.clip_id ?? "") : null;
     const options = [
       ...(own === "" ? [["", "As it is saved"]] : []),
       ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name]),

@@ -217,7 +217,8 @@ function build(section, about) {
     valuesOf(about),
     changed,
   );
-  if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip }); // It was deleted since.
+  // The clip of a kept draft may have been deleted.
+  if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip });
   if (kept !== null) {
     restored.replaceChildren(
       `A draft that was not saved, last changed ${ago(kept)}, is restored.`,

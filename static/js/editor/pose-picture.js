@@ -6,7 +6,7 @@ import { readable } from "../core/format.js";
 import { firstMoment, insideFrame } from "../core/frame-times.js";
 import { drawPose, skeleton } from "../core/skeleton.js";
 
-const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side: a finger hits it at 390 px.
+const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side; touchable at 390 px.
 
 /** Build the picture; `onPick(landmark)` is called when one is clicked. */
 export function figure(onPick) {
@@ -57,7 +57,9 @@ export function figure(onPick) {
     else video.removeAttribute("src");
   }
 
-  /** Every landmark where `drawPose` of the page's skeleton expects it, as shares of the picture. */
+  /**
+   * Every landmark where `drawPose` of the page's skeleton expects it, as shares of the picture.
+   */
   function poseAt(frame) {
     const [width, height] = poses.frame_size;
     const at = new Map(poses.landmarks.map((name, index) => [name, poses.xy[frame][index]]));

@@ -6,7 +6,7 @@ const SETTLED = 120; // ms without a change: dragging a slider makes many.
 
 /**
  * Return `ask(request)`; `shown(preview, null)` is called with what the gesture would be, then
- * `shown(preview, estimate)` with what it would do to its language, `failed(error)` instead of them.
+ * `shown(preview, estimate)` with its estimated rates, `failed(error)` instead of them.
  */
 export function previewing({ shown, failed }) {
   let timer = 0;

@@ -101,7 +101,9 @@ function advances() {
   return [...uploads, ...clips];
 }
 
-/** Move texts and bars on in the rows that are there: what is just being pressed stays where it is. */
+/**
+ * Move texts and bars on in the rows that are there: what is just being pressed stays where it is.
+ */
 function advance(content) {
   const rows = new Map(
     [...content.querySelectorAll("tr.waiting")].map((row) => [row.dataset.key, row]),

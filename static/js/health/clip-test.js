@@ -10,7 +10,7 @@ import { state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { addFiles } from "../upload/upload-list.js";
 
-const KEY = "osg-studio.batch"; // sessionStorage: clips whose poses are still being found, over a reload.
+const KEY = "osg-studio.batch"; // sessionStorage: clips that wait for their poses.
 
 const stored = () => {
   try {
@@ -116,7 +116,10 @@ function ready() {
   );
 }
 
-/** Clips of the test that are not recognised yet, as `{ clip, expected, busy }` with the clip itself. */
+/**
+ * Clips of the test that are not recognised yet, as `{ clip, expected, busy }` with the clip
+ * itself.
+ */
 export function waitingClips() {
   return state.pending
     .filter(({ language }) => language === state.language)
@@ -133,7 +136,9 @@ export async function correct({ clip_id: clip, start, end }, expected) {
   await loadTested();
 }
 
-/** Recognise all takes again, by the language as it is now; `advance(done)` is called before each. */
+/**
+ * Recognise all takes again, by the language as it is now; `advance(done)` is called before each.
+ */
 export async function repeat(takes, advance) {
   for (const [done, { clip_id: clip, start, end, expected }] of takes.entries()) {
     advance(done);

@@ -12,7 +12,7 @@ import { rateText } from "./rates.js";
 /** @import { Finding } from "../core/types.d.ts" */
 
 const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
-const SWITCHES = new Set(["direction", "tempo"]); // Remedies of these kinds need nothing shown anew.
+const SWITCHES = new Set(["direction", "tempo"]); // Remedies that need no new demonstration.
 
 /** Let a switch of some gestures count; one undo takes it back. */
 async function switchOn(kind, gestures, text, button) {

@@ -10,7 +10,7 @@ export const isCurrent = (health) =>
   Boolean(health && state.gestures && health.key === keyOf(state.gestures));
 
 /**
- * Check the revision on display. `state.health` is `{ key, id, revision, status, report, error }`; the
+ * Check the revision on display, into `state.health`; the
  * report of the revision before stays on display until the new one is there.
  */
 export async function check() {

@@ -1,4 +1,4 @@
-// The health of the language: what will be confused before the dive, and what its test clips showed.
+// The health view: the estimates of the health check, and the test with clips.
 
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
@@ -133,7 +133,10 @@ function matrix(report) {
   });
 }
 
-/** Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with most. */
+/**
+ * Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with
+ * most.
+ */
 function openNearest(report, label) {
   const pair = report.pairs.find(({ gestures }) => gestures.includes(label));
   compare(

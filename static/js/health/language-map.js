@@ -59,7 +59,7 @@ export function apart(places, size) {
 }
 
 /**
- * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, which are joined
+ * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined
  * by a line; `imageOf(label)` and `open(label)` are what a thumbnail shows and does.
  */
 export function languageMap({ points, worst, imageOf, open }) {

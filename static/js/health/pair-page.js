@@ -110,7 +110,7 @@ function sideBySide(found, imageOf) {
   ];
 }
 
-let fill = null; // Puts what is predicted into the page; the report may come later than the gestures.
+let fill = null; // Draws the estimates; the report may come later than the gestures.
 
 follow(["health"], () => fill?.());
 

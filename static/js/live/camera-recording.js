@@ -1,10 +1,14 @@
 // A clip from the camera: a countdown, the recording, and the file that it becomes.
 
-const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"]; // first that works
+// The first that the browser supports.
+const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 const BITS_PER_SECOND = 6_000_000; // as a dive camera's 1080p; the default blurs a hand that moves.
 const CHUNK = 1000; // ms: what is lost at most when the tab crashes.
 
-/** Count down from `from` to 1, a second each; `show(null)` at the end. Resolves false when `signal` aborts. */
+/**
+ * Count down from `from` to 1, a second each; `show(null)` at the end. Resolves false when
+ * `signal` aborts.
+ */
 export function countDown(from, show, signal) {
   return new Promise((resolve) => {
     let left = from;

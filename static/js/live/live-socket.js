@@ -1,6 +1,6 @@
 // The WebSocket of the live view: sends frames, receives poses and recognitions.
 
-const PER_LOOK = 3; // frames sent for each one looked at: the server takes the newest, so it is not old.
+const PER_LOOK = 3; // frames sent for each one processed: the server takes the newest.
 const MOST_UNSENT = 500_000; // bytes: on a slow network frames are left out before they are sent.
 
 const CLOSED = {

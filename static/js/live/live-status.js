@@ -4,7 +4,7 @@ import { byId, h } from "../core/dom.js";
 import { SALUTE } from "../core/salute-threshold.js";
 import { state as page } from "../core/state.js";
 
-const FEW = 6; // frames a second: below, a stroke of a second is five points, and looks like any other.
+const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
 
 /** The diver's step and the next instruction, from a message of the server. */
 function situation({ pose, salute, held, state }) {

@@ -134,7 +134,9 @@ export function watchFrames(video, seen) {
   };
 }
 
-/** Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next. */
+/**
+ * Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next.
+ */
 export function stepFrames(video, seen) {
   let running = true;
   const shown = (time) =>

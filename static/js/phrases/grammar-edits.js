@@ -1,4 +1,4 @@
-// Edits of a grammar, each a function of the grammar: so it can be applied again to a newer revision.
+// Edits of a grammar, as functions of it: each can be applied again to a newer revision.
 
 export const ROLES = ["start", "end", "cancel"];
 
@@ -41,7 +41,10 @@ const inEntry = (key) => (name, change) => (whole) => {
 export const inPhrase = inEntry("phrases");
 export const inSlotType = inEntry("slot_types");
 
-/** Change the list of parts that `path` leads to: [] the phrase's own, [2] that of the group in third place. */
+/**
+ * Change the list of parts that `path` leads to: [] the phrase's own, [2] that of the group in
+ * third place.
+ */
 export const inParts = (path, change) => (phrase) =>
   path.length
     ? { ...phrase, parts: at(phrase.parts, path[0], inParts(path.slice(1), change)) }
@@ -102,7 +105,10 @@ export function withSlotType(whole, labels) {
   };
 }
 
-/** Add a slot to the parts at `path` of a phrase, and something to fill it with where there is nothing yet. */
+/**
+ * Add a slot to the parts at `path` of a phrase, and something to fill it with where there is
+ * nothing yet.
+ */
 export function withSlot(whole, phraseName, path, labels) {
   const ready = whole.slot_types.length ? whole : withSlotType(whole, labels);
   const type = ready.slot_types[0].name;

@@ -31,7 +31,10 @@ export const followRefusals = (react) => {
 /** @type {Promise<any>} */
 let working = Promise.resolve();
 
-/** Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to whether it was. */
+/**
+ * Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to
+ * whether it was.
+ */
 /** @type {(title: string, step: (grammar: Grammar) => Grammar | null) => Promise<boolean>} */
 export function save(title, step) {
   working = working.then(async () => {

@@ -11,7 +11,8 @@ import { grammar, saved } from "./grammar-store.js";
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
 const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
 
-let answer = null; // `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
+// `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
+let answer = null;
 const listeners = [];
 
 /** What is known of the phrases on display, or null. */
@@ -20,7 +21,10 @@ export const found = () => answer?.view ?? null;
 /** Call `react` whenever something new is known. */
 export const followFound = (react) => listeners.push(react);
 
-/** The gestures shown, "" for one that was not recognised. In the URL a line each: no label has two. */
+/**
+ * The gestures shown, "" for one that was not recognised. In the URL a line each: no label has
+ * two.
+ */
 const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
 export const show = (gestures) =>
@@ -106,7 +110,9 @@ function commands(event) {
   );
 }
 
-/** A gesture to click; one that is drawn stays the same button, so that no click on it gets lost. */
+/**
+ * A gesture to click; one that is drawn stays the same button, so that no click on it gets lost.
+ */
 function gestureButton({ label, thumbnail }, next, item) {
   if (!item) {
     item = h(

@@ -1,4 +1,4 @@
-// The phrases of the language: made in a form, checked as they change, and tried by clicking gestures.
+// The phrases view: a form for the phrases, their ambiguities, and a trial by clicked gestures.
 
 import { byId, h, icon } from "../core/dom.js";
 import { plural } from "../core/format.js";

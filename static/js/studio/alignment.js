@@ -1,4 +1,4 @@
-//The take beside the gestures it is held against: both paths, and which of their moments correspond.
+// The alignment of the take with two gestures: their paths, and which moments correspond.
 
 import { h, svg } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
@@ -6,13 +6,13 @@ import { nearestFrame } from "../core/frame-times.js";
 import { state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 
-const MARGIN = 0.12; //of the longer side, around all that moves
-const LETTERS = 0.075; //height of a number in the drawing, as a share of it
+const MARGIN = 0.12; // of the longer side, around all that moves
+const LETTERS = 0.075; // height of a number in the drawing, as a share of it
 
 const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
 
-let follower = null; //Moves the cursor of the drawings on display.
+let follower = null; // Moves the cursor of the drawings on display.
 
 /** The alignments of the paths, that with the expected gesture first. */
 const pathsOf = (why) => why.alignments.filter(({ voter, query }) => voter === "path" && query);
@@ -55,7 +55,7 @@ const line = (steps, part) =>
     .map((place, index) => `${index ? "L" : "M"}${at(place)}`)
     .join("");
 const between = (from, to) => (from && to ? `M${at(from)}L${at(to)}` : "");
-//A line without length has round ends: a dot.
+// A line without length has round ends: a dot.
 const dot = (place) => (place ? `M${at(place)}h0` : "");
 
 /** What each pair of moments costs at one joint, as a share of the whole distance. */

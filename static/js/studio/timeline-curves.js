@@ -19,7 +19,8 @@ export function linePath(values, top, share) {
         down = false;
         return "";
       }
-      const command = `${down ? "L" : "M"}${share(index)} ${(HEIGHT * (1 - Math.min(1, value / top))).toFixed(2)}`;
+      const y = (HEIGHT * (1 - Math.min(1, value / top))).toFixed(2);
+      const command = `${down ? "L" : "M"}${share(index)} ${y}`;
       down = true;
       return command;
     })
@@ -40,7 +41,10 @@ export function curves(timeline) {
   const last = time.at(-1) || 1;
   const share = (index) => ((1000 * time[index]) / last).toFixed(1);
   const top = topSpeed(timeline);
-  const area = `M0 ${HEIGHT}${salute.map((value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`).join("")}L1000 ${HEIGHT}Z`;
+  const tops = salute.map(
+    (value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`,
+  );
+  const area = `M0 ${HEIGHT}${tops.join("")}L1000 ${HEIGHT}Z`;
   const drawing = svg(
     "svg",
     {

@@ -6,7 +6,9 @@ import { go } from "../core/views.js";
 const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
 const GAP = 12; // px between the card and what it points at.
 
-/** Each step points at the first of its places that is visible; without one, the card stands alone. */
+/**
+ * Each step points at the first of its places that is visible; without one, the card stands alone.
+ */
 const STEPS = [
   {
     title: "One demonstration makes a gesture",

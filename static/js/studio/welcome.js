@@ -35,7 +35,9 @@ function offered(samples) {
 /** The sample that is recognised wrongly, with its expected label. */
 const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
 
-/** A button that shows why the misread sample is misread; null where it, or its language, is gone. */
+/**
+ * A button that shows why the misread sample is misread; null where it, or its language, is gone.
+ */
 function question(samples, languages) {
   const sample = samples.find(({ name }) => name === MISREAD.name);
   const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);

@@ -7,7 +7,7 @@ import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame } from "./playback.js";
 
-const KEY = "osg-studio.workspace"; // sessionStorage, over a reload: every tab is its own workspace.
+const KEY = "osg-studio.workspace"; // sessionStorage: each tab has a workspace of its own.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.
 
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");

@@ -6,9 +6,9 @@ import { ApiError, isAway, problemOf, unreachable } from "../core/api.js";
 
 const PLACE = "/api/v1/uploads";
 const VERSION = { "Tus-Resumable": "1.0.0" };
-const PART = 8 * 2 ** 20; // bytes of one request: what is sent again at most where a proxy holds bodies back.
-const FIRST_PAUSE = 500; // ms before the first attempt to go on; each further one waits twice as long,
-const LONGEST_PAUSE = 8000; // up to this: whoever comes back into the network's reach waits no longer.
+const PART = 8 * 2 ** 20; // bytes of one request, and at most sent again after a break.
+const FIRST_PAUSE = 500; // ms before the first retry; the pause doubles with each further one,
+const LONGEST_PAUSE = 8000; // up to this.
 
 const cancelled = () =>
   new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
@@ -217,7 +217,8 @@ export function upload(file, fields, onProgress) {
       wake();
       call?.abort();
       keep(file, null);
-      if (place) ask("DELETE", place).catch(() => {}); // The server forgets it by itself, a day later.
+      // Without an answer, the server drops the upload a day later.
+      if (place) ask("DELETE", place).catch(() => {});
     },
   };
 }

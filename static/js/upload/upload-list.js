@@ -52,7 +52,7 @@ async function isClip(file) {
 }
 
 /**
- * Upload or import files of any kind. `uploaded(id)` is called for each clip; without it the first clip
+ * Upload or import files. `uploaded(id)` is called for each clip; without it the first clip
  * is shown.
  *
  * @param {Iterable<File>} files
@@ -168,7 +168,8 @@ function stage(upload) {
     return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; the upload continues by itself`;
   if (upload.loaded >= upload.total) return "Checking the file";
   const { began } = upload;
-  const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at); // bytes a ms
+  // bytes a ms
+  const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at);
   const left = rate ? (upload.total - upload.loaded) / rate / 1000 : null;
   return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
 }
