@@ -6,1532 +6,1517 @@
 export type paths = Record<string, never>;
 export type webhooks = Record<string, never>;
 export interface components {
-  schemas: {
-    /**
-     * AmbiguityView
-     * @description Something that the robot could understand in two ways.
-     */
-    AmbiguityView: {
-      /**
-       * Kind
-       * @enum {string}
-       */
-      kind: "same_sequence" | "overlap" | "run_together" | "prefix" | "unreachable";
-      /** Phrases */
-      phrases: string[];
-      /**
-       * Gestures
-       * @description The message that shows it
-       */
-      gestures: string[];
-      /** Message */
-      message: string;
-    };
-    /**
-     * ClipAccepted
-     * @description A clip was stored; its poses are extracted by the job.
-     */
-    ClipAccepted: {
-      /** Id */
-      id: string;
-      /** Job Id */
-      job_id: string;
-    };
-    /**
-     * ClipView
-     * @description A clip, and how far the extraction of its poses is.
-     */
-    ClipView: {
-      /** Id */
-      id: string;
-      /**
-       * Name
-       * @description As the sender called the file, without what could do harm
-       */
-      name: string;
-      status: components["schemas"]["JobStatus"];
-      /**
-       * Error
-       * @description Why there are no poses, when the job failed
-       */
-      error: string | null;
-      /** Error Code */
-      error_code: string | null;
-      /**
-       * Warnings
-       * @description What was found wanting in the clip
-       */
-      warnings: string[];
-      /**
-       * Width
-       * @description Pixels of the upright picture
-       */
-      width: number;
-      /** Height */
-      height: number;
-      /**
-       * Duration
-       * @description Seconds, where the container says
-       */
-      duration: number | null;
-      /**
-       * Frames
-       * @description Frames decoded; before that, as the container says
-       */
-      frames: number | null;
-      /**
-       * Size
-       * @description Bytes
-       */
-      size: number;
-      /** Media Type */
-      media_type: string;
-      /**
-       * Topics
-       * @description Of a dive recording: what a clip can be made of; empty for a video
-       */
-      topics: components["schemas"]["TopicSeen"][];
-      /**
-       * Topic
-       * @description Of a dive recording: what the clip is made of; null while nobody chose
-       */
-      topic: string | null;
-      /**
-       * Shows Pictures
-       * @description Whether its video shows the diver; else it shows the keypoints that came
-       */
-      shows_pictures: boolean;
-      /** Job Id */
-      job_id: string;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-    };
-    /**
-     * ContrastView
-     * @description Two gestures of a language, and in what they differ.
-     */
-    ContrastView: {
-      /** Gestures */
-      gestures: [components["schemas"]["PathsView"], components["schemas"]["PathsView"]];
-      /**
-       * Differs
-       * @description In what the first differs from the second, and the second from the first; null where they cannot be compared
-       */
-      differs: [string | null, string | null];
-      /**
-       * Alignment
-       * @description Which moment of the first corresponds to which of the second
-       */
-      alignment: {
-        [key: string]: unknown;
-      } | null;
-    };
-    /**
-     * DescriptorView
-     * @description How one voter describes the trajectory image.
-     */
-    DescriptorView: {
-      /** Voter */
-      voter: string;
-      /**
-       * Unit
-       * @description What a distance of 1 between two descriptors means
-       */
-      unit: string;
-      /** Values */
-      values: number[];
-    };
-    /**
-     * ExplanationView
-     * @description Why a recognition came out as it did.
-     */
-    ExplanationView: {
-      /**
-       * Id
-       * @description The recognition's
-       */
-      id: string;
-      /** Profile */
-      profile: string;
-      /** Expected */
-      expected: string;
-      /** Label */
-      label: string | null;
-      /** Nearest */
-      nearest: string;
-      /** Right */
-      right: boolean;
-      /** Confidence */
-      confidence: number;
-      /**
-       * Other
-       * @description The gesture that the expected one is held against
-       */
-      other: string | null;
-      /**
-       * Margin
-       * @description Score of the other minus that of the expected
-       */
-      margin: number | null;
-      /** Sentence */
-      sentence: string;
-      /** Votes */
-      votes: {
-        [key: string]: number;
-      };
-      /**
-       * Verdicts
-       * @description Per voter, the most against it first
-       */
-      verdicts: {
-        [key: string]: unknown;
-      }[];
-      /** Alignments */
-      alignments: {
-        [key: string]: unknown;
-      }[];
-      /** Differences */
-      differences: {
-        [key: string]: unknown;
-      }[];
-      /**
-       * Counterfactuals
-       * @description Verified, the smallest first
-       */
-      counterfactuals: {
-        [key: string]: unknown;
-      }[];
-      /** Tried */
-      tried: number;
-    } & {
-      [key: string]: unknown;
-    };
-    /**
-     * ExportView
-     * @description What leaves with a language, and what it takes to use it.
-     */
-    ExportView: {
-      /** Name */
-      name: string;
-      /** Revision */
-      revision: number;
-      /** Schema Format */
-      schema_format: string;
-      /** Schema Version */
-      schema_version: number;
-      /** Files */
-      files: components["schemas"]["ExportedFile"][];
-      /**
-       * Salient
-       * @description Landmarks without which gestures are not recognised
-       */
-      salient: string[];
-      /**
-       * Limbs
-       * @description Landmarks that make recognition surer
-       */
-      limbs: string[];
-      /**
-       * Torso
-       * @description Landmarks that distance and drift are taken out by
-       */
-      torso: string[];
-      /** Models */
-      models: string[];
-      /**
-       * Without Command
-       * @description Gestures that tell a robot nothing to do
-       */
-      without_command: string[];
-    };
-    /**
-     * ExportedFile
-     * @description One of the files a language can leave as.
-     */
-    ExportedFile: {
-      format: components["schemas"]["FileFormat"];
-      /** Bytes */
-      bytes: number;
-      /**
-       * Complete
-       * @description Whether importing it again gives the same language
-       */
-      complete: boolean;
-    };
-    /**
-     * FileFormat
-     * @description The language files.
-     * @enum {string}
-     */
-    FileFormat: "osg-studio" | "osg-reference" | "proteus";
-    /**
-     * GestureChange
-     * @description What to change about a gesture; what is left out stays.
-     */
-    GestureChange: {
-      /** Label */
-      label?: string | null;
-      /** @description Takes the place of the one that made the gesture */
-      demonstration?: components["schemas"]["NewDemonstration"] | null;
-      /** Direction */
-      direction?: ("auto" | "on" | "off") | null;
-      /** Tempo */
-      tempo?: ("auto" | "on" | "off") | null;
-      /** Mirror */
-      mirror?: ("auto" | "on" | "off") | null;
-      /** Salient */
-      salient?: string[] | null;
-      /** Description */
-      description?: string | null;
-      /** Command */
-      command?:
-        | string
-        | {
+    schemas: {
+        /**
+         * AmbiguityView
+         * @description Something that the robot could understand in two ways.
+         */
+        AmbiguityView: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "same_sequence" | "overlap" | "run_together" | "prefix" | "unreachable";
+            /** Phrases */
+            phrases: string[];
+            /**
+             * Gestures
+             * @description The message that shows it
+             */
+            gestures: string[];
+            /** Message */
+            message: string;
+        };
+        /**
+         * ClipAccepted
+         * @description A clip was stored; its poses are extracted by the job.
+         */
+        ClipAccepted: {
+            /** Id */
+            id: string;
+            /** Job Id */
+            job_id: string;
+        };
+        /**
+         * ClipView
+         * @description A clip, and how far the extraction of its poses is.
+         */
+        ClipView: {
+            /** Id */
+            id: string;
+            /**
+             * Name
+             * @description As the sender called the file, without what could do harm
+             */
+            name: string;
+            status: components["schemas"]["JobStatus"];
+            /**
+             * Error
+             * @description Why there are no poses, when the job failed
+             */
+            error: string | null;
+            /** Error Code */
+            error_code: string | null;
+            /**
+             * Warnings
+             * @description What was found wanting in the clip
+             */
+            warnings: string[];
+            /**
+             * Width
+             * @description Pixels of the upright picture
+             */
+            width: number;
+            /** Height */
+            height: number;
+            /**
+             * Duration
+             * @description Seconds, where the container says
+             */
+            duration: number | null;
+            /**
+             * Frames
+             * @description Frames decoded; before that, as the container says
+             */
+            frames: number | null;
+            /**
+             * Size
+             * @description Bytes
+             */
+            size: number;
+            /** Media Type */
+            media_type: string;
+            /**
+             * Topics
+             * @description Of a dive recording: what a clip can be made of; empty for a video
+             */
+            topics: components["schemas"]["TopicSeen"][];
+            /**
+             * Topic
+             * @description Of a dive recording: what the clip is made of; null while nobody chose
+             */
+            topic: string | null;
+            /**
+             * Shows Pictures
+             * @description Whether its video shows the diver; else it shows the keypoints that came
+             */
+            shows_pictures: boolean;
+            /** Job Id */
+            job_id: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+        };
+        /**
+         * ContrastView
+         * @description Two gestures of a language, and in what they differ.
+         */
+        ContrastView: {
+            /** Gestures */
+            gestures: [
+                components["schemas"]["PathsView"],
+                components["schemas"]["PathsView"]
+            ];
+            /**
+             * Differs
+             * @description In what the first differs from the second, and the second from the first; null where they cannot be compared
+             */
+            differs: [
+                string | null,
+                string | null
+            ];
+            /**
+             * Alignment
+             * @description Which moment of the first corresponds to which of the second
+             */
+            alignment: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
+         * DescriptorView
+         * @description How one voter describes the trajectory image.
+         */
+        DescriptorView: {
+            /** Voter */
+            voter: string;
+            /**
+             * Unit
+             * @description What a distance of 1 between two descriptors means
+             */
+            unit: string;
+            /** Values */
+            values: number[];
+        };
+        /**
+         * ExplanationView
+         * @description Why a recognition came out as it did.
+         */
+        ExplanationView: {
+            /**
+             * Id
+             * @description The recognition's
+             */
+            id: string;
+            /** Profile */
+            profile: string;
+            /** Expected */
+            expected: string;
+            /** Label */
+            label: string | null;
+            /** Nearest */
+            nearest: string;
+            /** Right */
+            right: boolean;
+            /** Confidence */
+            confidence: number;
+            /**
+             * Other
+             * @description The gesture that the expected one is held against
+             */
+            other: string | null;
+            /**
+             * Margin
+             * @description Score of the other minus that of the expected
+             */
+            margin: number | null;
+            /** Sentence */
+            sentence: string;
+            /** Votes */
+            votes: {
+                [key: string]: number;
+            };
+            /**
+             * Verdicts
+             * @description Per voter, the most against it first
+             */
+            verdicts: {
+                [key: string]: unknown;
+            }[];
+            /** Alignments */
+            alignments: {
+                [key: string]: unknown;
+            }[];
+            /** Differences */
+            differences: {
+                [key: string]: unknown;
+            }[];
+            /**
+             * Counterfactuals
+             * @description Verified, the smallest first
+             */
+            counterfactuals: {
+                [key: string]: unknown;
+            }[];
+            /** Tried */
+            tried: number;
+        } & {
             [key: string]: unknown;
-          }
-        | null;
-    };
-    /**
-     * GestureComparison
-     * @description A gesture in two revisions of its language.
-     */
-    GestureComparison: {
-      /**
-       * Kind
-       * @enum {string}
-       */
-      kind: "added" | "removed" | "changed" | "same";
-      /** @description Null: the older revision does not have it */
-      before: components["schemas"]["GestureView"] | null;
-      /** @description Null: the newer revision does not have it */
-      after: components["schemas"]["GestureView"] | null;
-      /**
-       * Words
-       * @description What changed about it, a sentence each
-       */
-      words: string[];
-    };
-    /**
-     * GestureDraft
-     * @description A gesture to save from a clip.
-     */
-    GestureDraft: {
-      /** Clip Id */
-      clip_id: string;
-      /** Start */
-      start?: number | null;
-      /** End */
-      end?: number | null;
-      /**
-       * Keep Transit
-       * @description Keep the hand's way from and to the salute, where the range is a take's own
-       * @default false
-       */
-      keep_transit: boolean;
-      /** Label */
-      label: string;
-      /** Salient */
-      salient?: string[] | null;
-      /**
-       * Direction
-       * @default auto
-       * @enum {string}
-       */
-      direction: "auto" | "on" | "off";
-      /**
-       * Tempo
-       * @default auto
-       * @enum {string}
-       */
-      tempo: "auto" | "on" | "off";
-      /**
-       * Mirror
-       * @default auto
-       * @enum {string}
-       */
-      mirror: "auto" | "on" | "off";
-      /**
-       * Description
-       * @default
-       */
-      description: string;
-      /** Command */
-      command?:
-        | string
-        | {
+        };
+        /**
+         * ExportView
+         * @description What leaves with a language, and what it takes to use it.
+         */
+        ExportView: {
+            /** Name */
+            name: string;
+            /** Revision */
+            revision: number;
+            /** Schema Format */
+            schema_format: string;
+            /** Schema Version */
+            schema_version: number;
+            /** Files */
+            files: components["schemas"]["ExportedFile"][];
+            /**
+             * Salient
+             * @description Landmarks without which gestures are not recognised
+             */
+            salient: string[];
+            /**
+             * Limbs
+             * @description Landmarks that make recognition surer
+             */
+            limbs: string[];
+            /**
+             * Torso
+             * @description Landmarks that distance and drift are taken out by
+             */
+            torso: string[];
+            /** Models */
+            models: string[];
+            /**
+             * Without Command
+             * @description Gestures that tell a robot nothing to do
+             */
+            without_command: string[];
+        };
+        /**
+         * ExportedFile
+         * @description One of the files a language can leave as.
+         */
+        ExportedFile: {
+            format: components["schemas"]["FileFormat"];
+            /** Bytes */
+            bytes: number;
+            /**
+             * Complete
+             * @description Whether importing it again gives the same language
+             */
+            complete: boolean;
+        };
+        /**
+         * FileFormat
+         * @description The language files.
+         * @enum {string}
+         */
+        FileFormat: "osg-studio" | "osg-reference" | "proteus";
+        /**
+         * GestureChange
+         * @description What to change about a gesture; what is left out stays.
+         */
+        GestureChange: {
+            /** Label */
+            label?: string | null;
+            /** @description Takes the place of the one that made the gesture */
+            demonstration?: components["schemas"]["NewDemonstration"] | null;
+            /** Direction */
+            direction?: ("auto" | "on" | "off") | null;
+            /** Tempo */
+            tempo?: ("auto" | "on" | "off") | null;
+            /** Mirror */
+            mirror?: ("auto" | "on" | "off") | null;
+            /** Salient */
+            salient?: string[] | null;
+            /** Description */
+            description?: string | null;
+            /** Command */
+            command?: string | {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
+         * GestureComparison
+         * @description A gesture in two revisions of its language.
+         */
+        GestureComparison: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "added" | "removed" | "changed" | "same";
+            /** @description Null: the older revision does not have it */
+            before: components["schemas"]["GestureView"] | null;
+            /** @description Null: the newer revision does not have it */
+            after: components["schemas"]["GestureView"] | null;
+            /**
+             * Words
+             * @description What changed about it, a sentence each
+             */
+            words: string[];
+        };
+        /**
+         * GestureDraft
+         * @description A gesture to save from a clip.
+         */
+        GestureDraft: {
+            /** Clip Id */
+            clip_id: string;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+            /**
+             * Keep Transit
+             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @default false
+             */
+            keep_transit: boolean;
+            /** Label */
+            label: string;
+            /** Salient */
+            salient?: string[] | null;
+            /**
+             * Direction
+             * @default auto
+             * @enum {string}
+             */
+            direction: "auto" | "on" | "off";
+            /**
+             * Tempo
+             * @default auto
+             * @enum {string}
+             */
+            tempo: "auto" | "on" | "off";
+            /**
+             * Mirror
+             * @default auto
+             * @enum {string}
+             */
+            mirror: "auto" | "on" | "off";
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /** Command */
+            command?: string | {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
+         * GestureView
+         * @description A gesture of a language.
+         */
+        GestureView: {
+            /** Label */
+            label: string;
+            /** Description */
+            description: string;
+            /** Command */
+            command: string | {
+                [key: string]: unknown;
+            } | null;
+            /** Salient */
+            salient: string[];
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "auto" | "on" | "off";
+            /**
+             * Tempo
+             * @enum {string}
+             */
+            tempo: "auto" | "on" | "off";
+            /**
+             * Mirror
+             * @enum {string}
+             */
+            mirror: "auto" | "on" | "off";
+            /**
+             * Thumbnail
+             * @description Path of its trajectory image, a PNG
+             */
+            thumbnail: string;
+            /**
+             * Has Trajectory
+             * @description False when imported from a file that has none
+             */
+            has_trajectory: boolean;
+            /** @description The clip of its demonstration; null: not known, or deleted */
+            source?: components["schemas"]["SourceView"] | null;
+        };
+        /**
+         * GesturesEntry
+         * @description One gesture out of some, which carries no value.
+         */
+        GesturesEntry: {
+            /**
+             * Gestures
+             * @description Labels, any of which will do.
+             */
+            gestures: string[];
+            /**
+             * Least
+             * @description How often at least; 0: may be left out. Left out when 1.
+             * @default 1
+             */
+            least: number;
+            /**
+             * Most
+             * @description How often at most. Left out when 1.
+             * @default 1
+             */
+            most: number;
+        };
+        /**
+         * GrammarEntry
+         * @description Which sequences of gestures are phrases, and what each tells the robot.
+         */
+        GrammarEntry: {
+            /**
+             * Start
+             * @description A gesture's label. Left out when none.
+             */
+            start?: string | null;
+            /**
+             * End
+             * @description A gesture's label. Left out when none.
+             */
+            end?: string | null;
+            /**
+             * Cancel
+             * @description A gesture's label. Left out when none.
+             */
+            cancel?: string | null;
+            /**
+             * Timeout
+             * @description Most seconds between the end of a gesture and the start of the next.
+             */
+            timeout: number;
+            /**
+             * Most Phrases
+             * @description Phrases in one message. Left out when 1.
+             * @default 1
+             */
+            most_phrases: number;
+            /**
+             * Slot Types
+             * @default []
+             */
+            slot_types: components["schemas"]["SlotTypeEntry"][];
+            /** Phrases */
+            phrases: components["schemas"]["PhraseEntry"][];
+        };
+        /**
+         * GroupEntry
+         * @description Parts that are left out or repeated together.
+         */
+        GroupEntry: {
+            /** Parts */
+            parts: (components["schemas"]["GesturesEntry"] | components["schemas"]["SlotEntry"])[];
+            /**
+             * Least
+             * @description How often at least; 0: may be left out. Left out when 1.
+             * @default 1
+             */
+            least: number;
+            /**
+             * Most
+             * @description How often at most. Left out when 1.
+             * @default 1
+             */
+            most: number;
+        };
+        /**
+         * Health
+         * @description Whether the server works.
+         */
+        Health: {
+            /**
+             * Status
+             * @description ok, or models_missing: then clips cannot be extracted
+             */
+            status: string;
+            /** Version */
+            version: string;
+            /**
+             * Models
+             * @description ok, missing or damaged, per model file
+             */
+            models: {
+                [key: string]: string;
+            };
+        };
+        /**
+         * JobStatus
+         * @description Where a job stands; the last three are final.
+         * @enum {string}
+         */
+        JobStatus: "queued" | "running" | "done" | "failed" | "cancelled";
+        /**
+         * JobView
+         * @description How far a job is.
+         */
+        JobView: {
+            /** Id */
+            id: string;
+            /** Clip Id */
+            clip_id: string;
+            status: components["schemas"]["JobStatus"];
+            /**
+             * Stage
+             * @description queued, starting, poses, saving, or the final status
+             */
+            stage: string;
+            /**
+             * Done
+             * @description Frames
+             */
+            done: number;
+            /**
+             * Total
+             * @description Frames; an estimate where the container does not count them
+             */
+            total: number;
+            /**
+             * Eta S
+             * @description Seconds left at the present rate
+             */
+            eta_s: number | null;
+            /**
+             * Time
+             * @description Seconds after the clip's first frame, of the frame that `pose` was found in; null in every stage but poses
+             */
+            time: number | null;
+            /**
+             * Pose
+             * @description The newest pose: of each of the 33 landmarks of the body (in the order of `landmarks` in a clip's poses) x and y as fractions of the picture's width and height, x right, y down; null: not seen. Null as a whole where nobody is in the frame
+             */
+            pose: ([
+                number,
+                number
+            ] | null)[] | null;
+            /** Error */
+            error: string | null;
+            /** Error Code */
+            error_code: string | null;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /** Started */
+            started: string | null;
+            /** Finished */
+            finished: string | null;
+        };
+        /**
+         * KeypointView
+         * @description How much of a gesture one keypoint shows.
+         */
+        KeypointView: {
+            /** Landmark */
+            landmark: string;
+            /**
+             * Displacement
+             * @description Peak to peak, in the preview's unit
+             */
+            displacement: number;
+            /**
+             * Seen
+             * @description Share of the moments in which it was seen, 0 to 1
+             */
+            seen: number;
+            /**
+             * Usual
+             * @description Whether it may be proposed: the one that stands for its hand
+             */
+            usual: boolean;
+            /**
+             * Proposed
+             * @description Whether it moves enough to be proposed
+             */
+            proposed: boolean;
+        };
+        /**
+         * LanguageChange
+         * @description What to change about a language; what is left out stays.
+         */
+        LanguageChange: {
+            /** Name */
+            name?: string | null;
+            /** Author */
+            author?: string | null;
+            /** @description The phrases; null: none */
+            grammar?: components["schemas"]["GrammarEntry"] | null;
+            /**
+             * Profile
+             * @description The voters that recognise it
+             */
+            profile?: ("paper" | "full") | null;
+            /** @description What differs from the profile; null: nothing */
+            tuning?: components["schemas"]["TuningEntry"] | null;
+        };
+        /**
+         * LanguageDraft
+         * @description A new language.
+         */
+        LanguageDraft: {
+            /** Name */
+            name: string;
+            /**
+             * Author
+             * @default
+             */
+            author: string;
+        };
+        /**
+         * LanguageRevert
+         * @description Which revision to go back to.
+         */
+        LanguageRevert: {
+            /** Revision */
+            revision: number;
+        };
+        /**
+         * LanguageSummary
+         * @description A language in a list.
+         */
+        LanguageSummary: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Author */
+            author: string;
+            /** Revision */
+            revision: number;
+            /**
+             * Change
+             * @description What the newest revision did
+             */
+            change: string;
+            /** Labels */
+            labels: string[];
+            /**
+             * Sample
+             * @description Whether it came with the program
+             */
+            sample: boolean;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Updated
+             * Format: date-time
+             */
+            updated: string;
+        };
+        /**
+         * LanguageView
+         * @description A language with its gestures.
+         */
+        LanguageView: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Author */
+            author: string;
+            /** Revision */
+            revision: number;
+            /**
+             * Change
+             * @description What the newest revision did
+             */
+            change: string;
+            /** Labels */
+            labels: string[];
+            /**
+             * Sample
+             * @description Whether it came with the program
+             */
+            sample: boolean;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Updated
+             * Format: date-time
+             */
+            updated: string;
+            /** Gestures */
+            gestures: components["schemas"]["GestureView"][];
+            /** @description Null: gestures stand for themselves */
+            grammar: components["schemas"]["GrammarEntry"] | null;
+            /**
+             * Profile
+             * @description The voters that recognise it
+             * @enum {string}
+             */
+            profile: "paper" | "full";
+            /** @description What differs from the profile; null: nothing */
+            tuning: components["schemas"]["TuningEntry"] | null;
+            /**
+             * Tuning Words
+             * @description The same for people: recognised ...
+             */
+            tuning_words: string;
+        };
+        /**
+         * MeaningView
+         * @description One phrase of a message.
+         */
+        MeaningView: {
+            /** Phrase */
+            phrase: string;
+            /** Slots */
+            slots: {
+                [key: string]: unknown;
+            };
+            /** Command */
+            command: string | {
+                [key: string]: unknown;
+            } | null;
+            /** Spoken */
+            spoken: string;
+        };
+        /**
+         * NewDemonstration
+         * @description Where the demonstration of a gesture is.
+         */
+        NewDemonstration: {
+            /** Clip Id */
+            clip_id: string;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+            /**
+             * Keep Transit
+             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @default false
+             */
+            keep_transit: boolean;
+        };
+        /**
+         * OpenedWorkspace
+         * @description A workspace and where its viser page lies.
+         */
+        OpenedWorkspace: {
+            /** Id */
+            id: string;
+            /** Url */
+            url: string;
+        };
+        /**
+         * OutlookView
+         * @description What is to be expected of a gesture in its language.
+         */
+        OutlookView: {
+            /** Switches */
+            switches: {
+                [key: string]: components["schemas"]["SwitchView"];
+            };
+            /**
+             * Pairs
+             * @description As in the health report, the nearest first
+             */
+            pairs: {
+                [key: string]: unknown;
+            }[];
+            /**
+             * Missed
+             * @description Null: there is no demonstration to vary
+             */
+            missed: {
+                [key: string]: number;
+            } | null;
+            /** Refused */
+            refused: {
+                [key: string]: number;
+            } | null;
+            /**
+             * Most Confusion
+             * @description Share of takes from which confusion is warned of
+             */
+            most_confusion: number;
+            /**
+             * Most Missed
+             * @description The same for missed takes
+             */
+            most_missed: number;
+        };
+        /**
+         * PathsView
+         * @description A gesture's demonstration, as it is drawn.
+         */
+        PathsView: {
+            /** Label */
+            label: string;
+            /** Salient */
+            salient: string[];
+            /**
+             * Time
+             * @description Seconds of each moment
+             */
+            time: number[];
+            /**
+             * Paths
+             * @description Per landmark its place at each moment, torso lengths from the torso's centre
+             */
+            paths: {
+                [key: string]: ([
+                    number,
+                    number
+                ] | null)[];
+            };
+        };
+        /**
+         * PhraseEntry
+         * @description Sequences of gestures with one meaning.
+         */
+        PhraseEntry: {
+            /** Name */
+            name: string;
+            /** Parts */
+            parts: (components["schemas"]["GesturesEntry"] | components["schemas"]["SlotEntry"] | components["schemas"]["GroupEntry"])[];
+            /**
+             * Command
+             * @description What the robot should do: text or an object, in which {slot} stands for a value, or null. Left out when null.
+             */
+            command?: string | {
+                [key: string]: unknown;
+            } | null;
+            /**
+             * Says
+             * @description How it is spoken back: {slot} stands for a value, what is in [ ] is left out with its slots. Left out: the name and the values.
+             * @default
+             */
+            says: string;
+        };
+        /**
+         * PhraseEventView
+         * @description What came of one gesture.
+         */
+        PhraseEventView: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "continues" | "complete" | "ambiguous" | "cancelled" | "timed_out" | "unexpected" | "repeat" | "outside";
+            /**
+             * Gestures
+             * @description Of the message so far
+             */
+            gestures: string[];
+            /**
+             * Label
+             * @description Null when it was not recognised, and for a pause
+             */
+            label: string | null;
+            /**
+             * Expected
+             * @description What may come next
+             */
+            expected: string[];
+            /**
+             * Mission
+             * @description What to do; only when complete
+             */
+            mission: components["schemas"]["MeaningView"][] | null;
+            /**
+             * Text
+             * @description In words, for the diver
+             */
+            text: string;
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+        };
+        /**
+         * PhrasesView
+         * @description A language's phrases, checked and tried.
+         */
+        PhrasesView: {
+            /** Revision */
+            revision: number;
+            /** Ambiguities */
+            ambiguities: components["schemas"]["AmbiguityView"][];
+            /**
+             * Examples
+             * @description Per phrase a message with all its parts
+             */
+            examples: {
+                [key: string]: string[];
+            };
+            /**
+             * Events
+             * @description What came of the gestures shown
+             */
+            events: components["schemas"]["PhraseEventView"][];
+            /**
+             * Expected
+             * @description What may come after them
+             */
+            expected: string[];
+            /**
+             * May End
+             * @description Whether a pause now would end the message, not drop it
+             */
+            may_end: boolean;
+        };
+        /**
+         * PosesView
+         * @description Landmarks in every frame of a clip.
+         */
+        PosesView: {
+            /** Landmarks */
+            landmarks: string[];
+            /**
+             * Time
+             * @description Seconds since the first frame, one per frame
+             */
+            time: number[];
+            /**
+             * Xy
+             * @description Frames x landmarks x 2: pixels, x right, y down; null: not seen
+             */
+            xy: (number | null)[][][];
+            /**
+             * Confidence
+             * @description Frames x landmarks, 0 to 1
+             */
+            confidence: number[][] | null;
+            /**
+             * Frame Size
+             * @description Width and height in pixels
+             */
+            frame_size: number[];
+        };
+        /**
+         * PreviewRequest
+         * @description A gesture as it would be saved.
+         */
+        PreviewRequest: {
+            /**
+             * Label
+             * @description Which gesture is changed; null: a new
+             */
+            label?: string | null;
+            /** @description A new gesture needs its demonstration */
+            change: components["schemas"]["GestureChange"];
+        };
+        /**
+         * PreviewView
+         * @description What a gesture would be.
+         */
+        PreviewView: {
+            /**
+             * Problem
+             * @description Why it cannot be saved like this; null: it can
+             */
+            problem: string | null;
+            /**
+             * Image
+             * @description The trajectory image, a data URI of a PNG
+             */
+            image: string | null;
+            /**
+             * Salient
+             * @description The keypoints that are drawn
+             */
+            salient: string[];
+            /**
+             * Keypoints
+             * @description Empty without a demonstration
+             */
+            keypoints: components["schemas"]["KeypointView"][];
+            /**
+             * Threshold
+             * @description Displacement from which a keypoint is proposed
+             */
+            threshold: number | null;
+            /**
+             * Unit
+             * @description Of displacements: torso_length, or extent without a torso
+             */
+            unit: string;
+            /** Descriptors */
+            descriptors: components["schemas"]["DescriptorView"][];
+            /**
+             * Start
+             * @description Seconds of the clip; null without one
+             */
+            start: number | null;
+            /** End */
+            end: number | null;
+            /**
+             * Seconds
+             * @description How long the demonstration lasts
+             */
+            seconds: number | null;
+        };
+        /**
+         * RecognitionRequest
+         * @description What to recognise.
+         */
+        RecognitionRequest: {
+            /** Clip Id */
+            clip_id: string;
+            /** Language Id */
+            language_id: string;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+            /**
+             * Profile
+             * @description Null: the language's own
+             */
+            profile?: string | null;
+            /** @description Null: as the language says */
+            tuning?: components["schemas"]["TuningEntry"] | null;
+            /** Expected */
+            expected?: string | null;
+        };
+        /**
+         * RecognitionView
+         * @description The full answer of a recognition, kept as a record.
+         */
+        RecognitionView: {
+            /** Id */
+            id: string;
+            /** Clip Id */
+            clip_id: string;
+            /** Language Id */
+            language_id: string;
+            /** Revision */
+            revision: number;
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+            /** Profile */
+            profile: string;
+            /** @description Null: as the language says */
+            tuning?: components["schemas"]["TuningEntry"] | null;
+            /** Expected */
+            expected: string | null;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Label
+             * @description None when rejected
+             */
+            label: string | null;
+            /**
+             * Nearest
+             * @description The best label even when rejected
+             */
+            nearest: string | null;
+            /** Confidence */
+            confidence: number;
+            /** Voters */
+            voters: string[];
+            /** Gestures */
+            gestures: string[];
+            /**
+             * Distances
+             * @description Voters x gestures, smaller: more alike
+             */
+            distances: (number | null)[][];
+            /**
+             * Votes
+             * @description Each voter's nearest gesture
+             */
+            votes: {
+                [key: string]: string | null;
+            };
+            /**
+             * Weights
+             * @description Each voter's share in the decision; 0: has no say
+             */
+            weights?: {
+                [key: string]: number;
+            };
+            /**
+             * Findings
+             * @description What was repaired, in sentences
+             */
+            findings?: string[];
+            /**
+             * Fault
+             * @description Why the recording is too poor to judge, in words
+             */
+            fault?: string | null;
+        } & {
             [key: string]: unknown;
-          }
-        | null;
-    };
-    /**
-     * GestureView
-     * @description A gesture of a language.
-     */
-    GestureView: {
-      /** Label */
-      label: string;
-      /** Description */
-      description: string;
-      /** Command */
-      command:
-        | string
-        | {
+        };
+        /**
+         * RevisionComparison
+         * @description Two revisions of a language, side by side.
+         */
+        RevisionComparison: {
+            /** @description Null: compared with nothing */
+            older: components["schemas"]["RevisionView"] | null;
+            newer: components["schemas"]["RevisionView"];
+            /**
+             * Words
+             * @description What changed about the language itself
+             */
+            words: string[];
+            /**
+             * Gestures
+             * @description In the newer revision's order, then those it does not have any more
+             */
+            gestures: components["schemas"]["GestureComparison"][];
+        };
+        /**
+         * RevisionView
+         * @description One revision in a language's history.
+         */
+        RevisionView: {
+            /** Revision */
+            revision: number;
+            /** Name */
+            name: string;
+            /** Author */
+            author: string;
+            /** Labels */
+            labels: string[];
+            /** Change */
+            change: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+        };
+        /**
+         * SampleChoice
+         * @description Which sample to add.
+         */
+        SampleChoice: {
+            /** Name */
+            name: string;
+        };
+        /**
+         * SampleLanguageView
+         * @description A language that comes with the program.
+         */
+        SampleLanguageView: {
+            /**
+             * Name
+             * @description By which it is asked for
+             */
+            name: string;
+            /**
+             * Title
+             * @description The language's own name
+             */
+            title: string;
+            /** Labels */
+            labels: string[];
+        };
+        /**
+         * SampleView
+         * @description A clip that comes with the program.
+         */
+        SampleView: {
+            /** Name */
+            name: string;
+            /**
+             * Size
+             * @description Bytes
+             */
+            size: number;
+        };
+        /**
+         * SlotEntry
+         * @description A gesture that carries a value for the command.
+         */
+        SlotEntry: {
+            /**
+             * Slot
+             * @description Name by which command and spoken text refer to the value.
+             */
+            slot: string;
+            /**
+             * Type
+             * @description Name of the slot type that may stand here.
+             */
+            type: string;
+            /**
+             * Least
+             * @description How often at least; 0: may be left out. Left out when 1.
+             * @default 1
+             */
+            least: number;
+            /**
+             * Most
+             * @description How often at most. Left out when 1.
+             * @default 1
+             */
+            most: number;
+            /**
+             * Default
+             * @description The command's value where the slot was left out. Left out when none.
+             */
+            default?: (string | number) | null;
+        };
+        /**
+         * SlotTypeEntry
+         * @description The gestures that may fill a slot.
+         */
+        SlotTypeEntry: {
+            /** Name */
+            name: string;
+            /**
+             * Reads As
+             * @description A number or a text each, or digits that make one number together.
+             * @enum {string}
+             */
+            reads_as: "number" | "text" | "digits";
+            /** Values */
+            values: components["schemas"]["SlotValueEntry"][];
+        };
+        /**
+         * SlotValueEntry
+         * @description What a gesture stands for in a slot.
+         */
+        SlotValueEntry: {
+            /** Gesture */
+            gesture: string;
+            /**
+             * Value
+             * @description Text or a number, as the slot type says.
+             */
+            value: string | number;
+        };
+        /**
+         * SourceView
+         * @description Where a demonstration comes from.
+         */
+        SourceView: {
+            /** Clip Id */
+            clip_id: string;
+            /**
+             * Start
+             * @description Seconds in the clip
+             */
+            start: number;
+            /** End */
+            end: number;
+            /** Keep Transit */
+            keep_transit: boolean;
+        };
+        /**
+         * SwitchView
+         * @description A switch, and what comes of it in this language.
+         */
+        SwitchView: {
+            /**
+             * Position
+             * @enum {string}
+             */
+            position: "auto" | "on" | "off";
+            /**
+             * Counts
+             * @description Null: only the drawing is compared
+             */
+            counts: boolean | null;
+            /** Words */
+            words: string;
+        };
+        /**
+         * TakeView
+         * @description What lies between two salutes, in seconds of the clip.
+         */
+        TakeView: {
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+            /**
+             * Closed
+             * @description Whether a second salute ended it
+             */
+            closed: boolean;
+            /**
+             * Stroke Start
+             * @description Where the gesture begins: after the hand's way to it
+             */
+            stroke_start: number;
+            /** Stroke End */
+            stroke_end: number;
+        };
+        /**
+         * TimelineView
+         * @description What lies along a clip's time, one value a frame.
+         */
+        TimelineView: {
+            /**
+             * Time
+             * @description Seconds, by the container
+             */
+            time: number[];
+            /**
+             * Salute
+             * @description Confidence of the salute, 0 to 1
+             */
+            salute: number[];
+            /**
+             * Speed
+             * @description Per wrist, torso lengths a second; null where it was not seen
+             */
+            speed: {
+                [key: string]: (number | null)[];
+            };
+            /**
+             * Unit
+             * @description Of the speed's lengths: torso_length, or extent without a torso
+             */
+            unit: string;
+            /**
+             * Thumbnails
+             * @description How many the filmstrip has
+             */
+            thumbnails: number;
+        };
+        /**
+         * TopicChoice
+         * @description Which topic of a dive recording a clip is to be made of.
+         */
+        TopicChoice: {
+            /** Topic */
+            topic: string;
+        };
+        /**
+         * TopicSeen
+         * @description A topic of a dive recording that a clip can be made of.
+         */
+        TopicSeen: {
+            /**
+             * Name
+             * @description As in ROS, with its leading slash
+             */
+            name: string;
+            /**
+             * Type
+             * @description Of its messages, such as sensor_msgs/msg/Image
+             */
+            type: string;
+            /**
+             * Use
+             * @enum {string}
+             */
+            use: "pictures" | "keypoints";
+            /** Messages */
+            messages: number;
+            /**
+             * Duration
+             * @description Seconds from its first message to its last
+             */
+            duration: number;
+            /**
+             * Width
+             * @description Pixels of the upright picture
+             */
+            width: number;
+            /** Height */
+            height: number;
+        };
+        /**
+         * TuningEntry
+         * @description How recognition deviates from the profile.
+         */
+        TuningEntry: {
+            /**
+             * Weights
+             * @description Factor per voter on its say, 0: off. Voters left out keep 1.
+             * @default {}
+             */
+            weights: {
+                [key: string]: number;
+            };
+            /**
+             * Simplification
+             * @description Tolerance in pixels with which the paths are simplified before they are drawn. Left out: as in `settings`.
+             */
+            simplification?: number | null;
+            /**
+             * Keypoints Repaired
+             * @description Whether bad keypoints are repaired before they are looked at. Left out: as the profile does.
+             */
+            keypoints_repaired?: boolean | null;
+        };
+        /**
+         * ViewRequest
+         * @description What a workspace is to show.
+         */
+        ViewRequest: {
+            /** Clip Id */
+            clip_id: string;
+            /** Recognition Id */
+            recognition_id?: string | null;
+            /** Language Id */
+            language_id?: string | null;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+        };
+        /**
+         * WorkspaceOptions
+         * @description How a workspace looks.
+         */
+        WorkspaceOptions: {
+            /**
+             * Dark
+             * @default true
+             */
+            dark: boolean;
+        };
+        /**
+         * Fault
+         * @description One thing that is wrong with a request.
+         */
+        Fault: {
+            /**
+             * Pointer
+             * @description JSON pointer (RFC 6901) into the body; empty: all of it
+             */
+            pointer: string;
+            /**
+             * Detail
+             * @description What is wrong there
+             */
+            detail: string;
+            /**
+             * Parameter
+             * @description Name of the query, path or header parameter, outside the body
+             * @default null
+             */
+            parameter: string | null;
+        };
+        /**
+         * Problem
+         * @description What went wrong, in the shape of RFC 9457.
+         */
+        Problem: {
+            /**
+             * Type
+             * @description URI of this kind of problem
+             */
+            type: string;
+            /**
+             * Title
+             * @description The kind of problem in words
+             */
+            title: string;
+            /**
+             * Status
+             * @description The HTTP status
+             */
+            status: number;
+            /**
+             * Detail
+             * @description What is wrong here, why, and what to do next
+             */
+            detail: string;
+            /**
+             * Code
+             * @description Stable word for programs
+             */
+            code: string;
+            /**
+             * Errors
+             * @description Each fault of the request
+             * @default null
+             */
+            errors: components["schemas"]["Fault"][] | null;
+        } & {
             [key: string]: unknown;
-          }
-        | null;
-      /** Salient */
-      salient: string[];
-      /**
-       * Direction
-       * @enum {string}
-       */
-      direction: "auto" | "on" | "off";
-      /**
-       * Tempo
-       * @enum {string}
-       */
-      tempo: "auto" | "on" | "off";
-      /**
-       * Mirror
-       * @enum {string}
-       */
-      mirror: "auto" | "on" | "off";
-      /**
-       * Thumbnail
-       * @description Path of its trajectory image, a PNG
-       */
-      thumbnail: string;
-      /**
-       * Has Trajectory
-       * @description False when imported from a file that has none
-       */
-      has_trajectory: boolean;
-      /** @description The clip of its demonstration; null: not known, or deleted */
-      source?: components["schemas"]["SourceView"] | null;
+        };
     };
-    /**
-     * GesturesEntry
-     * @description One gesture out of some, which carries no value.
-     */
-    GesturesEntry: {
-      /**
-       * Gestures
-       * @description Labels, any of which will do.
-       */
-      gestures: string[];
-      /**
-       * Least
-       * @description How often at least; 0: may be left out. Left out when 1.
-       * @default 1
-       */
-      least: number;
-      /**
-       * Most
-       * @description How often at most. Left out when 1.
-       * @default 1
-       */
-      most: number;
-    };
-    /**
-     * GrammarEntry
-     * @description Which sequences of gestures are phrases, and what each tells the robot.
-     */
-    GrammarEntry: {
-      /**
-       * Start
-       * @description A gesture's label. Left out when none.
-       */
-      start?: string | null;
-      /**
-       * End
-       * @description A gesture's label. Left out when none.
-       */
-      end?: string | null;
-      /**
-       * Cancel
-       * @description A gesture's label. Left out when none.
-       */
-      cancel?: string | null;
-      /**
-       * Timeout
-       * @description Most seconds between the end of a gesture and the start of the next.
-       */
-      timeout: number;
-      /**
-       * Most Phrases
-       * @description Phrases in one message. Left out when 1.
-       * @default 1
-       */
-      most_phrases: number;
-      /**
-       * Slot Types
-       * @default []
-       */
-      slot_types: components["schemas"]["SlotTypeEntry"][];
-      /** Phrases */
-      phrases: components["schemas"]["PhraseEntry"][];
-    };
-    /**
-     * GroupEntry
-     * @description Parts that are left out or repeated together.
-     */
-    GroupEntry: {
-      /** Parts */
-      parts: (components["schemas"]["GesturesEntry"] | components["schemas"]["SlotEntry"])[];
-      /**
-       * Least
-       * @description How often at least; 0: may be left out. Left out when 1.
-       * @default 1
-       */
-      least: number;
-      /**
-       * Most
-       * @description How often at most. Left out when 1.
-       * @default 1
-       */
-      most: number;
-    };
-    /**
-     * Health
-     * @description Whether the server works.
-     */
-    Health: {
-      /**
-       * Status
-       * @description ok, or models_missing: then clips cannot be extracted
-       */
-      status: string;
-      /** Version */
-      version: string;
-      /**
-       * Models
-       * @description ok, missing or damaged, per model file
-       */
-      models: {
-        [key: string]: string;
-      };
-    };
-    /**
-     * JobStatus
-     * @description Where a job stands; the last three are final.
-     * @enum {string}
-     */
-    JobStatus: "queued" | "running" | "done" | "failed" | "cancelled";
-    /**
-     * JobView
-     * @description How far a job is.
-     */
-    JobView: {
-      /** Id */
-      id: string;
-      /** Clip Id */
-      clip_id: string;
-      status: components["schemas"]["JobStatus"];
-      /**
-       * Stage
-       * @description queued, starting, poses, saving, or the final status
-       */
-      stage: string;
-      /**
-       * Done
-       * @description Frames
-       */
-      done: number;
-      /**
-       * Total
-       * @description Frames; an estimate where the container does not count them
-       */
-      total: number;
-      /**
-       * Eta S
-       * @description Seconds left at the present rate
-       */
-      eta_s: number | null;
-      /**
-       * Time
-       * @description Seconds after the clip's first frame, of the frame that `pose` was found in; null in every stage but poses
-       */
-      time: number | null;
-      /**
-       * Pose
-       * @description The newest pose: of each of the 33 landmarks of the body (in the order of `landmarks` in a clip's poses) x and y as fractions of the picture's width and height, x right, y down; null: not seen. Null as a whole where nobody is in the frame
-       */
-      pose: ([number, number] | null)[] | null;
-      /** Error */
-      error: string | null;
-      /** Error Code */
-      error_code: string | null;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-      /** Started */
-      started: string | null;
-      /** Finished */
-      finished: string | null;
-    };
-    /**
-     * KeypointView
-     * @description How much of a gesture one keypoint shows.
-     */
-    KeypointView: {
-      /** Landmark */
-      landmark: string;
-      /**
-       * Displacement
-       * @description Peak to peak, in the preview's unit
-       */
-      displacement: number;
-      /**
-       * Seen
-       * @description Share of the moments in which it was seen, 0 to 1
-       */
-      seen: number;
-      /**
-       * Usual
-       * @description Whether it may be proposed: the one that stands for its hand
-       */
-      usual: boolean;
-      /**
-       * Proposed
-       * @description Whether it moves enough to be proposed
-       */
-      proposed: boolean;
-    };
-    /**
-     * LanguageChange
-     * @description What to change about a language; what is left out stays.
-     */
-    LanguageChange: {
-      /** Name */
-      name?: string | null;
-      /** Author */
-      author?: string | null;
-      /** @description The phrases; null: none */
-      grammar?: components["schemas"]["GrammarEntry"] | null;
-      /**
-       * Profile
-       * @description The voters that recognise it
-       */
-      profile?: ("paper" | "full") | null;
-      /** @description What differs from the profile; null: nothing */
-      tuning?: components["schemas"]["TuningEntry"] | null;
-    };
-    /**
-     * LanguageDraft
-     * @description A new language.
-     */
-    LanguageDraft: {
-      /** Name */
-      name: string;
-      /**
-       * Author
-       * @default
-       */
-      author: string;
-    };
-    /**
-     * LanguageRevert
-     * @description Which revision to go back to.
-     */
-    LanguageRevert: {
-      /** Revision */
-      revision: number;
-    };
-    /**
-     * LanguageSummary
-     * @description A language in a list.
-     */
-    LanguageSummary: {
-      /** Id */
-      id: string;
-      /** Name */
-      name: string;
-      /** Author */
-      author: string;
-      /** Revision */
-      revision: number;
-      /**
-       * Change
-       * @description What the newest revision did
-       */
-      change: string;
-      /** Labels */
-      labels: string[];
-      /**
-       * Sample
-       * @description Whether it came with the program
-       */
-      sample: boolean;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-      /**
-       * Updated
-       * Format: date-time
-       */
-      updated: string;
-    };
-    /**
-     * LanguageView
-     * @description A language with its gestures.
-     */
-    LanguageView: {
-      /** Id */
-      id: string;
-      /** Name */
-      name: string;
-      /** Author */
-      author: string;
-      /** Revision */
-      revision: number;
-      /**
-       * Change
-       * @description What the newest revision did
-       */
-      change: string;
-      /** Labels */
-      labels: string[];
-      /**
-       * Sample
-       * @description Whether it came with the program
-       */
-      sample: boolean;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-      /**
-       * Updated
-       * Format: date-time
-       */
-      updated: string;
-      /** Gestures */
-      gestures: components["schemas"]["GestureView"][];
-      /** @description Null: gestures stand for themselves */
-      grammar: components["schemas"]["GrammarEntry"] | null;
-      /**
-       * Profile
-       * @description The voters that recognise it
-       * @enum {string}
-       */
-      profile: "paper" | "full";
-      /** @description What differs from the profile; null: nothing */
-      tuning: components["schemas"]["TuningEntry"] | null;
-      /**
-       * Tuning Words
-       * @description The same for people: recognised ...
-       */
-      tuning_words: string;
-    };
-    /**
-     * MeaningView
-     * @description One phrase of a message.
-     */
-    MeaningView: {
-      /** Phrase */
-      phrase: string;
-      /** Slots */
-      slots: {
-        [key: string]: unknown;
-      };
-      /** Command */
-      command:
-        | string
-        | {
-            [key: string]: unknown;
-          }
-        | null;
-      /** Spoken */
-      spoken: string;
-    };
-    /**
-     * NewDemonstration
-     * @description Where the demonstration of a gesture is.
-     */
-    NewDemonstration: {
-      /** Clip Id */
-      clip_id: string;
-      /** Start */
-      start?: number | null;
-      /** End */
-      end?: number | null;
-      /**
-       * Keep Transit
-       * @description Keep the hand's way from and to the salute, where the range is a take's own
-       * @default false
-       */
-      keep_transit: boolean;
-    };
-    /**
-     * OpenedWorkspace
-     * @description A workspace and where its viser page lies.
-     */
-    OpenedWorkspace: {
-      /** Id */
-      id: string;
-      /** Url */
-      url: string;
-    };
-    /**
-     * OutlookView
-     * @description What is to be expected of a gesture in its language.
-     */
-    OutlookView: {
-      /** Switches */
-      switches: {
-        [key: string]: components["schemas"]["SwitchView"];
-      };
-      /**
-       * Pairs
-       * @description As in the health report, the nearest first
-       */
-      pairs: {
-        [key: string]: unknown;
-      }[];
-      /**
-       * Missed
-       * @description Null: there is no demonstration to vary
-       */
-      missed: {
-        [key: string]: number;
-      } | null;
-      /** Refused */
-      refused: {
-        [key: string]: number;
-      } | null;
-      /**
-       * Most Confusion
-       * @description Share of takes from which confusion is warned of
-       */
-      most_confusion: number;
-      /**
-       * Most Missed
-       * @description The same for missed takes
-       */
-      most_missed: number;
-    };
-    /**
-     * PathsView
-     * @description A gesture's demonstration, as it is drawn.
-     */
-    PathsView: {
-      /** Label */
-      label: string;
-      /** Salient */
-      salient: string[];
-      /**
-       * Time
-       * @description Seconds of each moment
-       */
-      time: number[];
-      /**
-       * Paths
-       * @description Per landmark its place at each moment, torso lengths from the torso's centre
-       */
-      paths: {
-        [key: string]: ([number, number] | null)[];
-      };
-    };
-    /**
-     * PhraseEntry
-     * @description Sequences of gestures with one meaning.
-     */
-    PhraseEntry: {
-      /** Name */
-      name: string;
-      /** Parts */
-      parts: (
-        | components["schemas"]["GesturesEntry"]
-        | components["schemas"]["SlotEntry"]
-        | components["schemas"]["GroupEntry"]
-      )[];
-      /**
-       * Command
-       * @description What the robot should do: text or an object, in which {slot} stands for a value, or null. Left out when null.
-       */
-      command?:
-        | string
-        | {
-            [key: string]: unknown;
-          }
-        | null;
-      /**
-       * Says
-       * @description How it is spoken back: {slot} stands for a value, what is in [ ] is left out with its slots. Left out: the name and the values.
-       * @default
-       */
-      says: string;
-    };
-    /**
-     * PhraseEventView
-     * @description What came of one gesture.
-     */
-    PhraseEventView: {
-      /**
-       * Kind
-       * @enum {string}
-       */
-      kind:
-        | "continues"
-        | "complete"
-        | "ambiguous"
-        | "cancelled"
-        | "timed_out"
-        | "unexpected"
-        | "repeat"
-        | "outside";
-      /**
-       * Gestures
-       * @description Of the message so far
-       */
-      gestures: string[];
-      /**
-       * Label
-       * @description Null when it was not recognised, and for a pause
-       */
-      label: string | null;
-      /**
-       * Expected
-       * @description What may come next
-       */
-      expected: string[];
-      /**
-       * Mission
-       * @description What to do; only when complete
-       */
-      mission: components["schemas"]["MeaningView"][] | null;
-      /**
-       * Text
-       * @description In words, for the diver
-       */
-      text: string;
-      /** Start */
-      start: number;
-      /** End */
-      end: number;
-    };
-    /**
-     * PhrasesView
-     * @description A language's phrases, checked and tried.
-     */
-    PhrasesView: {
-      /** Revision */
-      revision: number;
-      /** Ambiguities */
-      ambiguities: components["schemas"]["AmbiguityView"][];
-      /**
-       * Examples
-       * @description Per phrase a message with all its parts
-       */
-      examples: {
-        [key: string]: string[];
-      };
-      /**
-       * Events
-       * @description What came of the gestures shown
-       */
-      events: components["schemas"]["PhraseEventView"][];
-      /**
-       * Expected
-       * @description What may come after them
-       */
-      expected: string[];
-      /**
-       * May End
-       * @description Whether a pause now would end the message, not drop it
-       */
-      may_end: boolean;
-    };
-    /**
-     * PosesView
-     * @description Landmarks in every frame of a clip.
-     */
-    PosesView: {
-      /** Landmarks */
-      landmarks: string[];
-      /**
-       * Time
-       * @description Seconds since the first frame, one per frame
-       */
-      time: number[];
-      /**
-       * Xy
-       * @description Frames x landmarks x 2: pixels, x right, y down; null: not seen
-       */
-      xy: (number | null)[][][];
-      /**
-       * Confidence
-       * @description Frames x landmarks, 0 to 1
-       */
-      confidence: number[][] | null;
-      /**
-       * Frame Size
-       * @description Width and height in pixels
-       */
-      frame_size: number[];
-    };
-    /**
-     * PreviewRequest
-     * @description A gesture as it would be saved.
-     */
-    PreviewRequest: {
-      /**
-       * Label
-       * @description Which gesture is changed; null: a new
-       */
-      label?: string | null;
-      /** @description A new gesture needs its demonstration */
-      change: components["schemas"]["GestureChange"];
-    };
-    /**
-     * PreviewView
-     * @description What a gesture would be.
-     */
-    PreviewView: {
-      /**
-       * Problem
-       * @description Why it cannot be saved like this; null: it can
-       */
-      problem: string | null;
-      /**
-       * Image
-       * @description The trajectory image, a data URI of a PNG
-       */
-      image: string | null;
-      /**
-       * Salient
-       * @description The keypoints that are drawn
-       */
-      salient: string[];
-      /**
-       * Keypoints
-       * @description Empty without a demonstration
-       */
-      keypoints: components["schemas"]["KeypointView"][];
-      /**
-       * Threshold
-       * @description Displacement from which a keypoint is proposed
-       */
-      threshold: number | null;
-      /**
-       * Unit
-       * @description Of displacements: torso_length, or extent without a torso
-       */
-      unit: string;
-      /** Descriptors */
-      descriptors: components["schemas"]["DescriptorView"][];
-      /**
-       * Start
-       * @description Seconds of the clip; null without one
-       */
-      start: number | null;
-      /** End */
-      end: number | null;
-      /**
-       * Seconds
-       * @description How long the demonstration lasts
-       */
-      seconds: number | null;
-    };
-    /**
-     * RecognitionRequest
-     * @description What to recognise.
-     */
-    RecognitionRequest: {
-      /** Clip Id */
-      clip_id: string;
-      /** Language Id */
-      language_id: string;
-      /** Start */
-      start?: number | null;
-      /** End */
-      end?: number | null;
-      /**
-       * Profile
-       * @description Null: the language's own
-       */
-      profile?: string | null;
-      /** @description Null: as the language says */
-      tuning?: components["schemas"]["TuningEntry"] | null;
-      /** Expected */
-      expected?: string | null;
-    };
-    /**
-     * RecognitionView
-     * @description The full answer of a recognition, kept as a record.
-     */
-    RecognitionView: {
-      /** Id */
-      id: string;
-      /** Clip Id */
-      clip_id: string;
-      /** Language Id */
-      language_id: string;
-      /** Revision */
-      revision: number;
-      /** Start */
-      start: number;
-      /** End */
-      end: number;
-      /** Profile */
-      profile: string;
-      /** @description Null: as the language says */
-      tuning?: components["schemas"]["TuningEntry"] | null;
-      /** Expected */
-      expected: string | null;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-      /**
-       * Label
-       * @description None when rejected
-       */
-      label: string | null;
-      /**
-       * Nearest
-       * @description The best label even when rejected
-       */
-      nearest: string | null;
-      /** Confidence */
-      confidence: number;
-      /** Voters */
-      voters: string[];
-      /** Gestures */
-      gestures: string[];
-      /**
-       * Distances
-       * @description Voters x gestures, smaller: more alike
-       */
-      distances: (number | null)[][];
-      /**
-       * Votes
-       * @description Each voter's nearest gesture
-       */
-      votes: {
-        [key: string]: string | null;
-      };
-      /**
-       * Weights
-       * @description Each voter's share in the decision; 0: has no say
-       */
-      weights?: {
-        [key: string]: number;
-      };
-      /**
-       * Findings
-       * @description What was repaired, in sentences
-       */
-      findings?: string[];
-      /**
-       * Fault
-       * @description Why the recording is too poor to judge, in words
-       */
-      fault?: string | null;
-    } & {
-      [key: string]: unknown;
-    };
-    /**
-     * RevisionComparison
-     * @description Two revisions of a language, side by side.
-     */
-    RevisionComparison: {
-      /** @description Null: compared with nothing */
-      older: components["schemas"]["RevisionView"] | null;
-      newer: components["schemas"]["RevisionView"];
-      /**
-       * Words
-       * @description What changed about the language itself
-       */
-      words: string[];
-      /**
-       * Gestures
-       * @description In the newer revision's order, then those it does not have any more
-       */
-      gestures: components["schemas"]["GestureComparison"][];
-    };
-    /**
-     * RevisionView
-     * @description One revision in a language's history.
-     */
-    RevisionView: {
-      /** Revision */
-      revision: number;
-      /** Name */
-      name: string;
-      /** Author */
-      author: string;
-      /** Labels */
-      labels: string[];
-      /** Change */
-      change: string;
-      /**
-       * Created
-       * Format: date-time
-       */
-      created: string;
-    };
-    /**
-     * SampleChoice
-     * @description Which sample to add.
-     */
-    SampleChoice: {
-      /** Name */
-      name: string;
-    };
-    /**
-     * SampleLanguageView
-     * @description A language that comes with the program.
-     */
-    SampleLanguageView: {
-      /**
-       * Name
-       * @description By which it is asked for
-       */
-      name: string;
-      /**
-       * Title
-       * @description The language's own name
-       */
-      title: string;
-      /** Labels */
-      labels: string[];
-    };
-    /**
-     * SampleView
-     * @description A clip that comes with the program.
-     */
-    SampleView: {
-      /** Name */
-      name: string;
-      /**
-       * Size
-       * @description Bytes
-       */
-      size: number;
-    };
-    /**
-     * SlotEntry
-     * @description A gesture that carries a value for the command.
-     */
-    SlotEntry: {
-      /**
-       * Slot
-       * @description Name by which command and spoken text refer to the value.
-       */
-      slot: string;
-      /**
-       * Type
-       * @description Name of the slot type that may stand here.
-       */
-      type: string;
-      /**
-       * Least
-       * @description How often at least; 0: may be left out. Left out when 1.
-       * @default 1
-       */
-      least: number;
-      /**
-       * Most
-       * @description How often at most. Left out when 1.
-       * @default 1
-       */
-      most: number;
-      /**
-       * Default
-       * @description The command's value where the slot was left out. Left out when none.
-       */
-      default?: (string | number) | null;
-    };
-    /**
-     * SlotTypeEntry
-     * @description The gestures that may fill a slot.
-     */
-    SlotTypeEntry: {
-      /** Name */
-      name: string;
-      /**
-       * Reads As
-       * @description A number or a text each, or digits that make one number together.
-       * @enum {string}
-       */
-      reads_as: "number" | "text" | "digits";
-      /** Values */
-      values: components["schemas"]["SlotValueEntry"][];
-    };
-    /**
-     * SlotValueEntry
-     * @description What a gesture stands for in a slot.
-     */
-    SlotValueEntry: {
-      /** Gesture */
-      gesture: string;
-      /**
-       * Value
-       * @description Text or a number, as the slot type says.
-       */
-      value: string | number;
-    };
-    /**
-     * SourceView
-     * @description Where a demonstration comes from.
-     */
-    SourceView: {
-      /** Clip Id */
-      clip_id: string;
-      /**
-       * Start
-       * @description Seconds in the clip
-       */
-      start: number;
-      /** End */
-      end: number;
-      /** Keep Transit */
-      keep_transit: boolean;
-    };
-    /**
-     * SwitchView
-     * @description A switch, and what comes of it in this language.
-     */
-    SwitchView: {
-      /**
-       * Position
-       * @enum {string}
-       */
-      position: "auto" | "on" | "off";
-      /**
-       * Counts
-       * @description Null: only the drawing is compared
-       */
-      counts: boolean | null;
-      /** Words */
-      words: string;
-    };
-    /**
-     * TakeView
-     * @description What lies between two salutes, in seconds of the clip.
-     */
-    TakeView: {
-      /** Start */
-      start: number;
-      /** End */
-      end: number;
-      /**
-       * Closed
-       * @description Whether a second salute ended it
-       */
-      closed: boolean;
-      /**
-       * Stroke Start
-       * @description Where the gesture begins: after the hand's way to it
-       */
-      stroke_start: number;
-      /** Stroke End */
-      stroke_end: number;
-    };
-    /**
-     * TimelineView
-     * @description What lies along a clip's time, one value a frame.
-     */
-    TimelineView: {
-      /**
-       * Time
-       * @description Seconds, by the container
-       */
-      time: number[];
-      /**
-       * Salute
-       * @description Confidence of the salute, 0 to 1
-       */
-      salute: number[];
-      /**
-       * Speed
-       * @description Per wrist, torso lengths a second; null where it was not seen
-       */
-      speed: {
-        [key: string]: (number | null)[];
-      };
-      /**
-       * Unit
-       * @description Of the speed's lengths: torso_length, or extent without a torso
-       */
-      unit: string;
-      /**
-       * Thumbnails
-       * @description How many the filmstrip has
-       */
-      thumbnails: number;
-    };
-    /**
-     * TopicChoice
-     * @description Which topic of a dive recording a clip is to be made of.
-     */
-    TopicChoice: {
-      /** Topic */
-      topic: string;
-    };
-    /**
-     * TopicSeen
-     * @description A topic of a dive recording that a clip can be made of.
-     */
-    TopicSeen: {
-      /**
-       * Name
-       * @description As in ROS, with its leading slash
-       */
-      name: string;
-      /**
-       * Type
-       * @description Of its messages, such as sensor_msgs/msg/Image
-       */
-      type: string;
-      /**
-       * Use
-       * @enum {string}
-       */
-      use: "pictures" | "keypoints";
-      /** Messages */
-      messages: number;
-      /**
-       * Duration
-       * @description Seconds from its first message to its last
-       */
-      duration: number;
-      /**
-       * Width
-       * @description Pixels of the upright picture
-       */
-      width: number;
-      /** Height */
-      height: number;
-    };
-    /**
-     * TuningEntry
-     * @description How recognition deviates from the profile.
-     */
-    TuningEntry: {
-      /**
-       * Weights
-       * @description Factor per voter on its say, 0: off. Voters left out keep 1.
-       * @default {}
-       */
-      weights: {
-        [key: string]: number;
-      };
-      /**
-       * Simplification
-       * @description Tolerance in pixels with which the paths are simplified before they are drawn. Left out: as in `settings`.
-       */
-      simplification?: number | null;
-      /**
-       * Keypoints Repaired
-       * @description Whether bad keypoints are repaired before they are looked at. Left out: as the profile does.
-       */
-      keypoints_repaired?: boolean | null;
-    };
-    /**
-     * ViewRequest
-     * @description What a workspace is to show.
-     */
-    ViewRequest: {
-      /** Clip Id */
-      clip_id: string;
-      /** Recognition Id */
-      recognition_id?: string | null;
-      /** Language Id */
-      language_id?: string | null;
-      /** Start */
-      start?: number | null;
-      /** End */
-      end?: number | null;
-    };
-    /**
-     * WorkspaceOptions
-     * @description How a workspace looks.
-     */
-    WorkspaceOptions: {
-      /**
-       * Dark
-       * @default true
-       */
-      dark: boolean;
-    };
-    /**
-     * Fault
-     * @description One thing that is wrong with a request.
-     */
-    Fault: {
-      /**
-       * Pointer
-       * @description JSON pointer (RFC 6901) into the body; empty: all of it
-       */
-      pointer: string;
-      /**
-       * Detail
-       * @description What is wrong there
-       */
-      detail: string;
-      /**
-       * Parameter
-       * @description Name of the query, path or header parameter, outside the body
-       * @default null
-       */
-      parameter: string | null;
-    };
-    /**
-     * Problem
-     * @description What went wrong, in the shape of RFC 9457.
-     */
-    Problem: {
-      /**
-       * Type
-       * @description URI of this kind of problem
-       */
-      type: string;
-      /**
-       * Title
-       * @description The kind of problem in words
-       */
-      title: string;
-      /**
-       * Status
-       * @description The HTTP status
-       */
-      status: number;
-      /**
-       * Detail
-       * @description What is wrong here, why, and what to do next
-       */
-      detail: string;
-      /**
-       * Code
-       * @description Stable word for programs
-       */
-      code: string;
-      /**
-       * Errors
-       * @description Each fault of the request
-       * @default null
-       */
-      errors: components["schemas"]["Fault"][] | null;
-    } & {
-      [key: string]: unknown;
-    };
-  };
-  responses: never;
-  parameters: never;
-  requestBodies: never;
-  headers: never;
-  pathItems: never;
+    responses: never;
+    parameters: never;
+    requestBodies: never;
+    headers: never;
+    pathItems: never;
 }
 export type $defs = Record<string, never>;
 export type operations = Record<string, never>;
