@@ -22,7 +22,7 @@ LOCKS = (
 # Where packages come from is the user's pip configuration, mirrors and all, never ours.
 REGISTRY = re.compile(rb"pypi\.org|pythonhosted\.org|anaconda\.org|npmjs\.|--(extra-)?index-url")
 
-MOST_LINES = {".py": 400, ".js": 300}
+MOST_LINES = {".py": 400, ".js": 500}
 
 
 def tracked_files() -> list[Path]:

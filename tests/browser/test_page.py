@@ -72,14 +72,14 @@ def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
 ) -> None:
     page = open_page({**library.address, "recognition": library.recognise("line")})
     lab = page.frame_locator("#lab")
-    expect(lab.get_by_text("Recognised as circle, expected line")).to_be_visible()
+    expect(lab.get_by_text("Taken for circle, expected line")).to_be_visible()
     expect(page.get_by_label("Expected")).to_have_value("line")
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_have_attribute(
         "aria-pressed", "true"
     )
     workspace = workspace_of(page)
     page.reload()
-    expect(lab.get_by_text("Recognised as circle, expected line")).to_be_visible()
+    expect(lab.get_by_text("Taken for circle, expected line")).to_be_visible()
     assert workspace_of(page) == workspace
 
 
