@@ -1,5 +1,7 @@
-/* Browsers start no Worker for a page of a disk (file:). There, this one runs the search's script in a
-   hidden frame instead. Material's own stand-in of the same name would be loaded from the network. */
+/*
+ * Browsers start no Worker for a page on disk (file:). There, this one runs the search's script in a
+ * hidden frame instead. Material's own stand-in of the same name would be loaded from the network.
+ */
 if (location.protocol === "file:") {
   window.IFrameWorker = class extends EventTarget {
     #frame = document.createElement("iframe");
@@ -14,8 +16,7 @@ if (location.protocol === "file:") {
       page.write("<!doctype html><body></body>");
       page.close();
       const inside = this.#frame.contentWindow;
-      inside.postMessage = (data) =>
-        this.dispatchEvent(new MessageEvent("message", { data }));
+      inside.postMessage = (data) => this.dispatchEvent(new MessageEvent("message", { data }));
       inside.importScripts = () => {
         throw new Error("the search in other languages needs a web server");
       };
