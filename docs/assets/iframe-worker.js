@@ -1,6 +1,6 @@
 /*
- * Browsers start no Worker for a page on disk (file:). There, this one runs the search's script in a
- * hidden frame instead. Material's own stand-in of the same name would be loaded from the network.
+ * Browsers start no Worker for a page on disk (file:). There, this one runs the search's script in
+ * a hidden frame instead. Material's stand-in of the same name would be loaded from the network.
  */
 if (location.protocol === "file:") {
   window.IFrameWorker = class extends EventTarget {
