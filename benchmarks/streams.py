@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from app.recognition.simulation.background_motion import simulate_background_motion
 
 from app.recognition import PoseSequence
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.simulation.background_motion import simulate_background_motion
 from benchmarks.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0

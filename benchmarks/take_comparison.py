@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.decision.fused_vote import VOTERS
-from app.recognition.decision.fusion import fused, says
+from app.recognition.decision.fusion import fuse, weigh_voters
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
 from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")
 """How a take looks by itself, see `looks`."""
@@ -21,7 +20,7 @@ LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")
 SCORE = "score"
 """The voters' distances fused, each over its typical distance between gestures."""
 
-FEATURES = (*VOTERS, SCORE, *LOOKS)
+FEATURES = (*VOTER_NAMES, SCORE, *LOOKS)
 
 _PATH = [voter.name for voter in MOTION_VOTERS].index("path")
 
@@ -42,8 +41,8 @@ class TakeComparison:
         self._shapes = ShapeReferences([gesture])
         self._motions = MotionReferences.of([gesture])
         self._looks = looks(self.demonstration, gesture.salient)
-        none = [np.empty(0)] * len(VOTERS)
-        self._say, self._between = says(VOTERS, none, len(self._motions.landmarks))
+        none = [np.empty(0)] * len(VOTER_NAMES)
+        self._weights, self._between = weigh_voters(VOTERS, none, len(self._motions.landmarks))
 
     def features(self, take: Trajectory) -> FloatArray:
         """Return ``(F,)`` numbers, named by `FEATURES`.
@@ -53,7 +52,7 @@ class TakeComparison:
         motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
         nearest = motion[:, motion[_PATH].argmin()]
         distances = np.concatenate([self._shapes.distances(take)[:, 0], nearest])
-        score = fused(distances[:, None], self._say, self._between)
+        score = fuse(distances[:, None], self._weights, self._between)
         return np.concatenate([distances, score, looks(take, self._salient) - self._looks])
 
     def of_recording(self, poses: PoseSequence) -> FloatArray:

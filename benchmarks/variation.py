@@ -34,12 +34,13 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition.decision.calibration import calibrate
-from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person
+from app.recognition.voters.registry import VOTER_NAMES
 from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
@@ -156,7 +157,7 @@ def compared(
 def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report how near each model comes to people."""
     yield "set | model | voters differ | looks differ | told by voters | by looks"
-    voters = tuple(name for name in VOTERS if relation.measured[FEATURES.index(name)])
+    voters = tuple(name for name in VOTER_NAMES if relation.measured[FEATURES.index(name)])
     seen = tuple(name for name in LOOKS if relation.measured[FEATURES.index(name)])
     for name, model in {"people": None, **MODELS}.items():
         found = compared(relation, model, pairs, count, seed)
@@ -195,7 +196,7 @@ def confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str
     real, variants = Share(0, 0), Share(0, 0)
     for draw in draws(recorded, max(1, pairs // QUERIES), QUERIES, seed):
         gestures = demonstrated(recorded, draw.templates)
-        vote = CalibratedVote(gestures)
+        vote = FusedVote(gestures)
         queries = draw.others if relation.kind == "another" else draw.own
         for number, query in enumerate(queries):
             take = condense(Trajectory.from_poses(recorded.recordings[query]))
@@ -206,7 +207,7 @@ def confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str
     yield f"{relation} | real {real} | variants {variants} | n = {real.asked}"
 
 
-def _named(vote: CalibratedVote, take: Trajectory, label: str) -> Share:
+def _named(vote: FusedVote, take: Trajectory, label: str) -> Share:
     result = vote.recognize(take)
     return Share(int(result is not None and result.nearest == label), 1)
 
@@ -220,7 +221,7 @@ def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[s
         first = int(random.integers(len(recordings)))
         takes = random.permutation(relation.others(first))[:count]
         gestures = calibrate(demonstrated(relation.recorded, [first]))
-        vote = CalibratedVote(gestures)
+        vote = FusedVote(gestures)
         for take in takes:
             real += _refused(vote, Trajectory.from_poses(recordings[take]))
         # Other draws than the variants that the thresholds are made from.
@@ -230,7 +231,7 @@ def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[s
     yield f"{relation} | real {real} of {real.asked} | variants {varied} of {varied.asked}"
 
 
-def _refused(vote: CalibratedVote, take: Trajectory) -> Share:
+def _refused(vote: FusedVote, take: Trajectory) -> Share:
     compared = vote.compare(condense(take), drawn=False)
     return Share(int(is_rejected(float(compared.novelty[0]))), 1)
 
@@ -241,7 +242,7 @@ def scale(every: list[Relation], pairs: int, count: int, seed: int) -> Iterator[
         [
             [
                 compared(relation, scaled(factor), pairs, count, seed).differences(
-                    tuple(name for name in VOTERS if relation.measured[FEATURES.index(name)])
+                    tuple(name for name in VOTER_NAMES if relation.measured[FEATURES.index(name)])
                 )
                 for factor in SCALES
             ]

@@ -2,6 +2,7 @@
 
 import re
 import runpy
+import tomllib
 from importlib.metadata import distribution
 from importlib.util import find_spec
 from pathlib import Path
@@ -10,9 +11,11 @@ import pytest
 
 from tests.conftest import ROOT
 
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+PAGES = sorted(
+    [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").rglob("*.md")]
+)
 EXAMPLES = [
-    pytest.param(code, id=f"{page.stem}-{number}")
+    pytest.param(code, id=f"{page.relative_to(ROOT).with_suffix('')}-{number}")
     for page in PAGES
     for number, code in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL))
 ]
@@ -33,7 +36,7 @@ def test_an_example_runs(
     assert bool(capsys.readouterr().out) == ("print(" in code)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_inside_the_repository_lead_somewhere(page: Path) -> None:
     links = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text())
     inside = [link for link in links if "://" not in link]
@@ -50,7 +53,13 @@ def test_extras_modules_and_files_that_commands_name_exist() -> None:
     modules = set(re.findall(r"python -m ((?:benchmarks|languages)[.\w]*)", text))
     assert modules
     assert {module for module in modules if find_spec(module) is None} == set()
-    files = set(re.findall(r"(?:languages/[\w/]+|requirements[\w-]*)\.(?:json|mp4|txt)", text))
+    files = set(
+        re.findall(
+            r"(?<![\w/])(?:languages/[\w/-]+|requirements[\w-]*|benchmarks/[\w/-]+|docs/[\w/-]+)"
+            r"\.(?:json|mp4|txt|md|py)",
+            text,
+        )
+    )
     assert files
     assert {file for file in files if not (ROOT / file).is_file()} == set()
 
@@ -59,15 +68,8 @@ def test_every_voter_is_documented() -> None:
     from app.recognition.gestures.profile import PROFILES
 
     text = (ROOT / "docs" / "recognizer.md").read_text()
-    voters = {voter.name for profile in PROFILES.values() for voter in profile}
+    voters = {voter.name for profile in PROFILES.values() for voter in profile.voters}
     assert {voter for voter in voters if f"`{voter}`" not in text} == set()
-
-
-def test_every_setting_is_documented() -> None:
-    from app.settings import Settings
-
-    text = (ROOT / "docs" / "server.md").read_text()
-    assert {name for name in Settings.model_fields if f"`{name}`" not in text} == set()
 
 
 def test_every_command_is_documented() -> None:
@@ -80,3 +82,32 @@ def test_every_command_is_documented() -> None:
         if command.callback
     ]
     assert [name for name in names if f"osg-studio {name}" not in pages] == []
+
+
+def test_no_folder_of_pages_is_long_and_every_page_begins_with_its_title() -> None:
+    for folder in {page.parent for page in PAGES}:
+        assert len([page for page in PAGES if page.parent == folder]) < 20
+    for page in PAGES:
+        assert page.read_text(encoding="utf-8").startswith("# ")
+
+
+def test_the_architecture_names_every_layer_in_its_order() -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    picture = (ROOT / "docs" / "images" / "rooms.svg").read_text(encoding="utf-8")
+    layered = {
+        container: contract["layers"]
+        for contract in contracts["contracts"]
+        for container in contract.get("containers", ())
+    }
+    assert layered.keys() == {"app.recognition", "app.api"}
+    for container, layers in layered.items():
+        rooms = [re.findall(r"\w+", layer) for layer in layers]
+        section = page.split(f"`{container.replace('.', '/')}`", 2)[2].split("## ")[0]
+        places = [[section.index(f"`{room}") for room in layer] for layer in rooms]
+        assert [sorted(layer) for layer in places] == places
+        assert places == sorted(places)
+        if container == "app.recognition":
+            drawn = re.findall(r'class="n">(\w+)<', picture)
+            in_order = [room for layer in rooms for room in layer]
+            assert drawn[-len(in_order) :] == in_order

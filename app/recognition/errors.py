@@ -1,15 +1,19 @@
 """The exceptions of the domain core: one tree, so that callers can catch as widely as they mean."""
 
 
-class RecognitionError(ValueError):
-    """Base of every error the core raises on purpose.
+class OsgError(ValueError):
+    """Base of every error that OSG Studio raises on purpose.
 
     Its message is one line for a person: what is wrong (with the value seen), why that
     matters where it is not obvious, and what to do next.
     """
 
 
-class PoseError(RecognitionError):
+RecognitionError = OsgError
+"""The name of the base up to version 0.1; kept for scripts that catch it."""
+
+
+class PoseError(OsgError):
     """Raised when a pose sequence is malformed or cannot be used for what was asked."""
 
 
@@ -30,7 +34,7 @@ class LandmarkError(PoseError):
         self.landmark = landmark
 
 
-class KeypointFileError(RecognitionError):
+class KeypointFileError(OsgError):
     """Raised when another program's keypoint file cannot be read, or does not tell enough."""
 
 
@@ -42,11 +46,11 @@ class FrameSizeError(KeypointFileError):
     """Raised when a keypoint file tells fractions of a picture whose size nobody tells."""
 
 
-class VideoError(RecognitionError):
+class VideoError(OsgError):
     """Raised when a clip cannot be read: no video in it, damaged, or beyond the limits."""
 
 
-class BagError(RecognitionError):
+class BagError(OsgError):
     """Raised when a dive recording (rosbag2, MCAP) cannot be read, or holds nothing to use."""
 
 
@@ -54,11 +58,11 @@ class TopicError(BagError):
     """Raised when a dive recording holds several usable topics and none, or another, was named."""
 
 
-class GestureError(RecognitionError):
+class GestureError(OsgError):
     """Raised when a demonstration cannot become a gesture, for instance because nothing moves."""
 
 
-class LanguageError(RecognitionError):
+class LanguageError(OsgError):
     """Raised when a language file or a language is invalid.
 
     Parameters
@@ -75,17 +79,17 @@ class LanguageError(RecognitionError):
         self.pointer = pointer
 
 
-class ModelError(RecognitionError):
+class ModelError(OsgError):
     """Raised when a pose or hand model file is missing, truncated or not the pinned one."""
 
 
-class EstimatorError(RecognitionError):
+class EstimatorError(OsgError):
     """Raised when a pose estimator cannot be had as asked, or is given what is no image."""
 
 
-class SourceError(RecognitionError):
+class SourceError(OsgError):
     """Raised when a camera or stream cannot be opened, or stops giving frames."""
 
 
-class PublishError(RecognitionError):
+class PublishError(OsgError):
     """Raised when what was recognised cannot be published as asked."""

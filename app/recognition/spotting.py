@@ -13,17 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.decision.rejection import calibrated_confidence
+from app.recognition.decision.rejection import estimate_confidence
 from app.recognition.decision.result import Recognition
-from app.recognition.errors import PoseError, RecognitionError
-from app.recognition.features.motion import followed_landmarks
+from app.recognition.errors import OsgError, PoseError
+from app.recognition.features.motion import find_followed_landmarks
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import other_side
-from app.recognition.poses.sequence import PoseSequence, joined
+from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.outliers import body_unit
-from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, displacements
+from app.recognition.preprocessing.outliers import measure_body_unit
+from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recognizer import Recognizer
-from app.recognition.recording.trimming import GRID_STEP, Motion, Span, motion_along, pieces_of
+from app.recognition.recording.trimming import GRID_STEP, Motion, Span, measure_motion, split_pieces
 
 CONFIDENT = 0.8
 """Least confidence of a spotted gesture: below, another one of the language is about as near."""
@@ -113,22 +114,22 @@ class Spotter:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the profile is another one, whose confidence tells nothing about movements that mean
         nothing, or when no gesture of the language has a demonstration.
 
     """
 
     def __init__(self, recognizer: Recognizer, *, confident: float = CONFIDENT) -> None:
-        if recognizer.profile != "full":
-            raise RecognitionError(
+        if not PROFILES[recognizer.profile].rejects:
+            raise OsgError(
                 f"profile {recognizer.profile!r} names every movement, also those that mean "
                 f"nothing; listen without salutes by profile full"
             )
         gestures = recognizer.language.gestures
         lasts = [each.trajectory.time[-1] for each in gestures if each.trajectory is not None]
         if not lasts:
-            raise RecognitionError(
+            raise OsgError(
                 f"language {recognizer.language.name!r} has only images and no demonstrations, so "
                 f"nobody knows how long its gestures take: define one from a clip"
             )
@@ -140,7 +141,7 @@ class Spotter:
             if gesture.switches.mirror == "on"
         ]
         shown = [gesture.salient for gesture in gestures]
-        self._landmarks = followed_landmarks([*shown, *mirrored])
+        self._landmarks = find_followed_landmarks([*shown, *mirrored])
         self._shortest = FASTER * float(min(lasts))
         self._longest = min(SLOWER * float(max(lasts)), LONGEST_MEMORY)
         self._seen: deque[PoseSequence] = deque()
@@ -211,7 +212,7 @@ class Spotter:
 
         Raises
         ------
-        RecognitionError
+        OsgError
             As for a new one.
 
         """
@@ -249,22 +250,22 @@ class Spotter:
 
     def _motion(self) -> Motion | None:
         """Follow the language's landmarks through what is remembered."""
-        poses = joined(self._seen)
+        poses = join_sequences(self._seen)
         names = [name for name in self._landmarks if name in poses.landmarks]
         count = int(np.ceil(poses.duration / GRID_STEP)) + 1
         if count < 3 or not names or not poses.select(names).seen.any():
             return None
         trajectory = Trajectory.from_poses(poses)
         even = trajectory.select(names).filled().resampled_in_time(count)
-        paths = np.moveaxis(even.xy / body_unit(trajectory), 1, 0)
+        paths = np.moveaxis(even.xy / measure_body_unit(trajectory), 1, 0)
         shown = [path for path in paths if np.isfinite(path).any()]
-        return motion_along(shown, even.time + poses.time[0])
+        return measure_motion(shown, even.time + poses.time[0])
 
     def _recognize_one(self) -> None:
         """Put the stretch that waits longest to the recogniser."""
         while self._waiting:
             span = self._waiting.popleft()
-            poses = joined(self._seen).between(span.start - BEAT, span.end + BEAT)
+            poses = join_sequences(self._seen).between(span.start - BEAT, span.end + BEAT)
             if span.start < self._reported - SLOW_EDGE or len(poses) < 2:
                 continue
             try:
@@ -287,13 +288,13 @@ class Spotter:
         usual = float(gesture.trajectory.time[-1])
         if not FASTER * usual <= spotted.end - spotted.start <= SLOWER * usual:
             return False
-        trajectory = Trajectory.from_poses(joined(self._seen))
+        trajectory = Trajectory.from_poses(join_sequences(self._seen))
         part = trajectory.between(
             spotted.start - self._seen[0].time[0], spotted.end - self._seen[0].time[0]
         )
-        moved = displacements(part)
+        moved = measure_displacements(part)
         most = max(moved.get(name, 0.0) for name in self._landmarks)
-        return most >= MIN_DISPLACEMENT * body_unit(trajectory)
+        return most >= MIN_DISPLACEMENT * measure_body_unit(trajectory)
 
     def _ended(self, now: float) -> tuple[Spotted, ...]:
         """Report the best candidates that nothing better can replace any more."""
@@ -314,7 +315,7 @@ class Spotter:
 
 def strokes_in(motion: Motion) -> list[Span]:
     """Return the strokes of a motion in order, each with its slow beginning and end."""
-    pieces = pieces_of(motion)
+    pieces = split_pieces(motion)
     firsts = np.array([motion.time[piece.first] for piece in pieces])
     lasts = np.array([motion.time[piece.last] for piece in pieces])
     halves = np.concatenate([motion.time[:1], (firsts[1:] + lasts[:-1]) / 2, motion.time[-1:]])
@@ -328,4 +329,4 @@ def _familiarity(result: Recognition) -> float:
     """Return the confidence that the nearest gesture was shown rather than none."""
     at = result.gestures.index(result.nearest)
     asked = np.fmax.reduce([result.novelty_by_view[view][at] for view in ASKED])
-    return calibrated_confidence(float(asked), float(result.scores[at]), np.inf)
+    return estimate_confidence(float(asked), float(result.scores[at]), np.inf)

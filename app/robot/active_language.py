@@ -21,7 +21,7 @@ class SpokenLanguage:
     recognizer
         Of that language.
     sha256
-        The language's id: the seal of its file (`docs/language-file.md`), the same here, in the
+        The language's id: the seal of its file (see the docs), the same here, in the
         studio that exported it, and in whatever a log is compared with.
 
     """

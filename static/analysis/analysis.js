@@ -1,6 +1,8 @@
 // Plays the frames that the file carries, with the skeleton and the salient trails over them.
 
-const { frames, times, poses, bones, trails, size } = JSON.parse(document.getElementById("recording").textContent);
+const { frames, times, poses, bones, trails, size } = JSON.parse(
+  document.getElementById("recording").textContent,
+);
 const canvas = document.querySelector("canvas");
 const slider = document.querySelector("input");
 const button = document.querySelector("button");
@@ -12,6 +14,9 @@ const REST = 600; // ms that the last frame stands before it starts over
 [canvas.width, canvas.height] = size;
 slider.max = String(frames.length - 1);
 
+const styles = getComputedStyle(document.documentElement);
+const colour = (name) => styles.getPropertyValue(name);
+
 const at = (landmark) => landmark && [landmark[0] * canvas.width, landmark[1] * canvas.height];
 
 function line(points, colour, width) {
@@ -20,17 +25,31 @@ function line(points, colour, width) {
   for (const point of points) {
     if (!point) down = false;
     else if (down) context.lineTo(...point);
-    else { context.moveTo(...point); down = true; }
+    else {
+      context.moveTo(...point);
+      down = true;
+    }
   }
-  Object.assign(context, { strokeStyle: colour, lineWidth: width, lineCap: "round", lineJoin: "round" });
+  Object.assign(context, {
+    strokeStyle: colour,
+    lineWidth: width,
+    lineCap: "round",
+    lineJoin: "round",
+  });
   context.stroke();
 }
 
 function draw(index) {
   context.drawImage(images[index], 0, 0, canvas.width, canvas.height);
   const pose = poses[index];
-  for (const [from, to] of bones) if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], "#ffffffcc", 2);
-  for (const landmark of trails) line(poses.slice(0, index + 1).map((each) => at(each[landmark])), "#3a86ff", 4);
+  for (const [from, to] of bones)
+    if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], colour("--bone"), 2);
+  for (const landmark of trails)
+    line(
+      poses.slice(0, index + 1).map((each) => at(each[landmark])),
+      colour("--trail"),
+      4,
+    );
   clock.textContent = `${times[index].toFixed(2)} s`;
   slider.value = String(index);
 }
@@ -47,11 +66,16 @@ function step(now) {
 }
 
 function play(on) {
-  started = on ? performance.now() - 1000 * (times[Number(slider.value) % (frames.length - 1 || 1)] - times[0]) : 0;
+  started = on
+    ? performance.now() - 1000 * (times[Number(slider.value) % (frames.length - 1 || 1)] - times[0])
+    : 0;
   button.textContent = on ? "Pause" : "Play";
   if (on) requestAnimationFrame(step);
 }
 
 button.onclick = () => play(!started);
-slider.oninput = () => { play(false); draw(Number(slider.value)); };
+slider.oninput = () => {
+  play(false);
+  draw(Number(slider.value));
+};
 Promise.all(images.map((image) => image.decode())).then(() => draw(0));

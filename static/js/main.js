@@ -1,38 +1,69 @@
-// Start: load what there is, follow what changes, and keep every part of the page in step.
+// The start of the page: loads the data, registers the views, and binds drawing to the state.
 
-import { showJoint, showMoment } from "./alignment.js";
-import * as api from "./api.js";
-import { copyLink } from "./clipboard.js";
-import { drawClips, drawSamples, findClips } from "./clips.js";
-import { byId, icon } from "./dom.js";
-import { drawGestures } from "./gestures.js";
-import { drawExport, drawPicker, manageLanguages, reloadLanguages } from "./languages.js";
-import { answerQuestion, drawOutcome, drawStage, loadResult, loadTakes, showSelection, stageButtons } from "./stage.js";
-import { listenToKeys, showKeys } from "./keys.js";
-import { rememberFrame } from "./playback.js";
-import { drawConnection, followServer } from "./server.js";
-import { follow, followHistory, readUrl, selectedClip, state, update } from "./state.js";
-import { drawNow } from "./timeline.js";
-import { attempt, toast } from "./toasts.js";
-import { offerTour } from "./tour.js";
-import { drawTransport } from "./transport.js";
-import { drawTuning } from "./tuning.js";
-import { bindUndo } from "./undo.js";
-import { acceptFiles, drawUploads } from "./uploads.js";
-import { followViews, go } from "./views.js";
-import { drawWelcome } from "./welcome.js";
-import { drawCosts, drawWhy, loadWhy } from "./why.js";
-import { followTheme, openWorkspace } from "./workspace.js";
+import { drawClips, findClips } from "./clips/clip-list.js";
+import { followJob, reloadClip, reloadClips } from "./clips/clip-store.js";
+import { drawSampleClips } from "./clips/sample-clips.js";
+import * as api from "./core/api.js";
+import { copyLink } from "./core/clipboard.js";
+import { byId, icon } from "./core/dom.js";
+import { bindKeyList } from "./core/key-list.js";
+import { listenToKeys } from "./core/keys.js";
+import { drawConnection, followServer } from "./core/server-events.js";
+import { follow, followHistory, readUrl, selectedClip, state, update } from "./core/state.js";
+import { attempt, toast } from "./core/toasts.js";
+import { bindUndo } from "./core/undo.js";
+import { followViews, go, loadViews } from "./core/views.js";
+import { bindExport, drawExportButton } from "./export/export-dialog.js";
+import { bindPicker, drawPicker } from "./languages/language-picker.js";
+import { reloadLanguages, reloadOneLanguage } from "./languages/language-store.js";
+import { drawTuning } from "./languages/language-tuning.js";
+import { showJoint, showMoment } from "./studio/alignment.js";
+import { drawGestures } from "./studio/gesture-cards.js";
+import { rememberFrame } from "./studio/playback.js";
+import {
+  answerQuestion,
+  drawOutcome,
+  drawStage,
+  loadResult,
+  loadTakes,
+  showSelection,
+  stageButtons,
+} from "./studio/stage.js";
+import { drawNow } from "./studio/timeline.js";
+import { offerTour, startTour } from "./studio/tour.js";
+import { drawTransport } from "./studio/transport.js";
+import { drawWelcome } from "./studio/welcome.js";
+import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
+import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
+import { acceptFiles, drawUploads } from "./upload/upload-list.js";
+
+const VIEWS = [
+  { name: "studio", title: "Studio" },
+  {
+    name: "languages",
+    title: "Languages",
+    load: () => import("./languages/languages-view.js"),
+  },
+  {
+    name: "gesture",
+    title: "Gesture",
+    load: () => import("./editor/gesture-editor.js"),
+    passing: true,
+  },
+  { name: "phrases", title: "Phrases", load: () => import("./phrases/phrases-view.js") },
+  { name: "health", title: "Health", load: () => import("./health/health-view.js") },
+  { name: "live", title: "Live", load: () => import("./live/live-view.js") },
+];
 
 /** What is drawn, and which values it depends on. */
 function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
-  follow(["samples"], drawSamples);
+  follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
-  follow(["gestures"], drawExport);
+  follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
   follow(["gestures", "result", "clip"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
@@ -69,13 +100,20 @@ function loadWithSelection() {
 
 const OF_A_CLIP = new Set([null, "studio", "gesture"]); // Views that show the clip on display.
 
-/** Who follows a link must not take what is shown instead for what was meant. */
-function tellWhatIsGone({ clip, language }) {
+/** Show which clip or language of a link is missing. */
+function reportMissing({ clip, language }) {
   const gone = [
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,
     language && language !== state.language ? "language" : null,
-  ].filter(Boolean).join(" and the ");
-  if (gone) toast(`The ${gone} of this link cannot be found`, `It was deleted, or is in another studio.${state.clips.length ? " Another one is shown instead." : ""}`, { kind: "error" });
+  ]
+    .filter(Boolean)
+    .join(" and the ");
+  if (gone)
+    toast(
+      `The ${gone} of this link cannot be found`,
+      `It was deleted, or is in another studio.${state.clips.length ? " Another one is shown instead." : ""}`,
+      { kind: "error" },
+    );
 }
 
 async function start() {
@@ -86,16 +124,17 @@ async function start() {
   const { clip, language } = state;
   followHistory();
   addEventListener("popstate", reloadLanguages);
-  followViews();
+  followViews(VIEWS);
   listenToKeys();
   byId("copy-link").append(icon("link"));
   byId("copy-link").onclick = copyLink;
-  byId("keys").onclick = showKeys;
+  bindKeyList({ loadAll: loadViews, startTour });
   byId("record-clip").onclick = () => go("live", { source: null });
   bindUndo();
   acceptFiles();
   findClips();
-  manageLanguages();
+  bindPicker();
+  bindExport();
   stageButtons();
   followTheme();
   drawEverything();
@@ -106,12 +145,22 @@ async function start() {
     openWorkspace().catch(() => null),
   ]);
   update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
-  if (linked && clips) tellWhatIsGone({ clip, language });
-  if (state.clip && clips && !selectedClip()) update({ clip: null, take: null, start: null, end: null, recognition: null });
+  if (linked && clips) reportMissing({ clip, language });
+  if (state.clip && clips && !selectedClip())
+    update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();
-  followServer();
-  // Whoever comes by a link came to see what it shows.
+  followServer({
+    clips: reloadClip,
+    languages: reloadOneLanguage,
+    jobs: followJob,
+    opened: () => {
+      reloadClips();
+      reloadLanguages();
+    },
+    returned: restart,
+  });
+  // A link is opened for what it shows, so no tour then.
   if (!linked) offerTour();
 }
 

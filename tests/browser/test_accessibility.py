@@ -21,7 +21,7 @@ SHOWN = {
     "Studio": "role=button[name=/^Take 1/]",
     "Languages": "role=link[name='accessible']",
     "Phrases": "role=button[name='Add the first phrase']",
-    "Health": "role=grid[name=/^Predicted confusions/]",
+    "Health": "role=grid[name=/^Estimated confusions/]",
     "Live": "role=button[name='Start the camera']",
 }
 """By view what stands in it once all is loaded."""

@@ -33,7 +33,7 @@ def revision(library: Library) -> int:
 def editing(open_page: OpenPage, library: Library, label: str = "circle") -> Page:
     page = open_page(library.address | {"view": "gesture", "gesture": label}, scene=False)
     expect(page.get_by_role("heading", name=f"Edit {label}")).to_be_visible()
-    expect(page.get_by_text("Missed: read as")).to_be_visible()
+    expect(page.get_by_text("Missed: recognised as")).to_be_visible()
     return page
 
 
@@ -205,7 +205,7 @@ def test_a_gesture_whose_clip_is_deleted_is_shown_as_the_language_keeps_it(
     expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
     library.client.delete(f"/api/v1/clips/{library.clip}")
     page.reload()
-    expect(page.get_by_text("its clip is not here, or no longer")).to_be_visible()
+    expect(page.get_by_text("its clip is not in this studio")).to_be_visible()
     expect(page.get_by_label("Clip", exact=True).locator("option:checked")).to_have_text(
         "As it is saved"
     )
@@ -220,8 +220,10 @@ def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(
     answer = library.client.post("/api/v1/languages/import", content=exported).json()
     query = {"language": str(answer["id"]), "view": "gesture", "gesture": "circle"}
     page = open_page(query, scene=False)
-    expect(page.get_by_text("Imported as a drawing")).to_be_visible()
-    expect(page.get_by_text("which keypoints are followed cannot be changed")).to_be_visible()
+    expect(
+        page.get_by_text("Imported without its demonstration: it cannot be played")
+    ).to_be_visible()
+    expect(page.get_by_text("Imported without its demonstration: its keypoints")).to_be_visible()
     page.get_by_label("Label").fill("ring")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()

@@ -33,7 +33,7 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     open_page: OpenPage, library: Library
 ) -> None:
     page = open_page(health_of(library), scene=False)
-    grid = page.get_by_role("grid", name="Predicted confusions")
+    grid = page.get_by_role("grid", name="Estimated confusions")
     cell = grid.get_by_role("gridcell", name="circle taken for line")
     expect(cell).to_be_visible()
     assert faults(page) == []
@@ -94,7 +94,7 @@ def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
     page = open_page(scene=False)
     rates = [takes / 40 for takes in range(41)]
     rounded = page.evaluate(
-        "async (rates) => rates.map((await import('/static/js/health/report.js')).percent)", rates
+        "async (rates) => rates.map((await import('/static/js/health/rates.js')).percent)", rates
     )
     assert rounded == [f"{rate:.0%}".removesuffix("%") for rate in rates]
 
@@ -106,7 +106,7 @@ def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Libr
     eight = next(each["id"] for each in listed if each["name"] == "Table 2: eight signs")
     copy = client.post(f"/api/v1/languages/{eight}/duplicate").json()["id"]
     page = open_page({"view": "health", "language": copy}, scene=False)
-    told = page.get_by_text(re.compile(r"TrialRunner takes of every gesture, \d+ of \d+"))
+    told = page.get_by_text(re.compile(r"Simulating trials of every gesture, \d+ of \d+"))
     cancelled = page.get_by_text("The check was cancelled")
     expect(told).to_be_visible()
     page.get_by_role("button", name="Cancel").click()

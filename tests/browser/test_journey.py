@@ -106,7 +106,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_label("Label").fill("our circle")
     page.get_by_label("Command").fill("Hold your depth")
-    expect(page.get_by_text("Missed: read as")).to_be_visible(timeout=EXTRACTION_MS)
+    expect(page.get_by_text("Missed: recognised as")).to_be_visible(timeout=EXTRACTION_MS)
     picture(page, "editor")
     page.get_by_role("button", name="Save gesture").click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()
@@ -124,7 +124,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     assert len(votes) == 9
     assert 7 <= sum(votes.values()) == lab.locator("tr:not(.mute) td.choice").count()
     outcome = page.locator("#outcome")
-    expect(outcome).to_have_text(re.compile(r"(Recognised as|Taken for) .*\d+ of \d+ voters"))
+    expect(outcome).to_have_text(re.compile(r"Recognised as .*\d+ of \d+ voters"))
     winner = outcome.locator("b.chosen").inner_text()
     expect(table.locator("th.chosen")).to_have_attribute("title", winner)
     expect(table.locator("th", has_text="expected")).to_have_attribute("title", "circle")

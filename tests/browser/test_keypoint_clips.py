@@ -86,7 +86,7 @@ def test_a_language_of_other_landmarks_and_files_of_other_kinds_are_told_apart(
     frame = tmp_path / "one_0_keypoints.json"
     frame.write_text('{"version": 1.3, "people": []}')
     drop(page, frame)
-    expect(page.get_by_text("OpenPose\u2019s frames belong together")).to_be_visible()
+    expect(page.get_by_text("One frame of OpenPose is not a clip")).to_be_visible()
     landmarks = tmp_path / "landmarks.json"
     landmarks.write_text('{"frames": []}')
     drop(page, landmarks)

@@ -90,7 +90,7 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
         uploads = page.get_by_role("list", name="Uploads")
         until(lambda: sum(path.stat().st_size for path in data.glob("uploads/*")) > 500_000)
         process.kill()
-        expect(uploads).to_contain_text("goes on by itself")
+        expect(uploads).to_contain_text("continues by itself")
     came = max(path.stat().st_size for path in data.glob("uploads/*"))
     network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
     with ExitStack() as stack:
@@ -128,7 +128,7 @@ def test_every_view_survives_a_server_that_is_killed(
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
         studio.keyboard.press(".")
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
-        confusions = pages["health"].get_by_role("grid", name="Predicted confusions")
+        confusions = pages["health"].get_by_role("grid", name="Estimated confusions")
         expect(confusions).to_be_visible()
         pages["health"].close()
         editor = pages["gesture"]

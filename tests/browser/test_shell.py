@@ -107,10 +107,10 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     page.route("**/explanation", lambda route: held.append(route))
     why.get_by_role("listitem").first.get_by_role("button").click()
     trial = why.get_by_role("status")
-    expect(trial).to_contain_text("It is read as line")
+    expect(trial).to_contain_text("Recognised as line")
     expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
     trial.get_by_role("button", name=re.compile("Discard|Back to as it was")).click()
-    expect(page.locator("#outcome")).to_contain_text("Taken for circle, expected line")
+    expect(page.locator("#outcome")).to_contain_text("Recognised as circle, expected line")
     while not held:
         page.wait_for_timeout(10)
     with page.expect_response("**/explanation") as told:

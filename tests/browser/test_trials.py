@@ -63,11 +63,11 @@ def test_every_kind_of_change_is_tried_and_taken_back(
         "with drawings simplified by 16 pixels",
         "with the profile full",
     ):
-        expect(outcome).to_contain_text("Taken for line, expected circle")
+        expect(outcome).to_contain_text("Recognised as line, expected circle")
         trial = try_out(page, re.compile(words))
         expect(outcome).to_contain_text("Recognised as circle, as expected")
         trial.get_by_role("button", name="Discard").click()
-    expect(outcome).to_contain_text("Taken for line, expected circle")
+    expect(outcome).to_contain_text("Recognised as line, expected circle")
     assert library.client.get(f"/api/v1/languages/{library.language}").json()["tuning"] is None
 
 

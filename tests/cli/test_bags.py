@@ -106,8 +106,8 @@ def test_the_documented_commands_do_what_they_say(
         *as_another_diver("leader", published_rows(recording_of("circle"))),
     ]
     write_bag(tmp_path / "dives" / "reef", sorted(divers, key=lambda row: row[2]))
-    defining = documented("define", below="Recordings")
-    for command in (*defining, *documented("recognize", below="Recordings")):
+    defining = documented("define", page="guides/dive-recordings.md")
+    for command in (*defining, *documented("recognize", page="guides/dive-recordings.md")):
         ended = osg_studio(*command)
         assert ended.code == 0, ended.error
     assert ended.out.split("\t")[2] == "line"
@@ -127,7 +127,7 @@ def test_the_documented_robot_looks_at_the_pictures_of_a_bag(
     ]
     write_bag(tmp_path / "dives" / "camera", rows)
     language.rename(tmp_path / "pool.json")
-    (command,) = documented("robot", below="Recordings")
+    (command,) = documented("robot", page="guides/dive-recordings.md")
     ended = osg_studio(*command)
     assert ended.code == 1, ended.error  # nobody is in these pictures
     told = [json.loads(line) for line in ended.out.splitlines()]

@@ -40,7 +40,9 @@ def test_a_language_is_defined_and_recognised_by_yolo_pose_as_documented(
         clip.rename(clip.with_suffix(".mp4"))
     (tmp_path / "yolo11n-pose.onnx").symlink_to(model)
     monkeypatch.chdir(tmp_path)
-    (define,), (recognize,) = (documented(word, below="Models") for word in ("define", "recognize"))
+    (define,), (recognize,) = (
+        documented(word, page="guides/pose-estimators.md") for word in ("define", "recognize")
+    )
     defined = osg_studio(*define, *WITHOUT_HANDS)
     assert defined.code == 0, defined.error
     language = Language.load(tmp_path / "pool.json")

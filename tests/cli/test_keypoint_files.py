@@ -77,10 +77,10 @@ def test_the_documented_commands_do_what_they_say(
     xy = np.where(unseen[:, np.newaxis], np.nan, whole.xy)
     write_numbered(tmp_path / "landmarks.csv", replace(whole, xy=xy, frame_size=(1920, 1080)))
     monkeypatch.chdir(tmp_path)
-    (define,) = documented("define", below="Keypoint files")
+    (define,) = documented("define", page="guides/keypoint-files.md")
     defined = osg_studio(*define)
     assert defined.code == 0, defined.error
-    of_openpose, of_mediapipe = documented("recognize", below="Keypoint files")
+    of_openpose, of_mediapipe = documented("recognize", page="guides/keypoint-files.md")
     ended = osg_studio(*of_openpose)
     assert ended.out.split("\t")[2] == "circle", ended.error
     assert "openpose-output: the folder gives no left_pinky" in " ".join(ended.error.split())

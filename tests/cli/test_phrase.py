@@ -17,7 +17,7 @@ def test_a_complete_message_is_spoken_back(
     osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(ROOT)
-    (command,) = documented("phrase")
+    (command,) = documented("phrase", page="robots/without-ros.md")
     ended = osg_studio(*command)
     assert (ended.code, ended.out) == (0, "mission: align yourself, 3 times\n")
     assert "circle, square: then circle, three or infinity" in " ".join(ended.error.split())

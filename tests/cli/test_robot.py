@@ -28,7 +28,7 @@ from tests.robot.mjpeg_server import MjpegServer
 from tests.test_layers import modules_of, requirements_of
 
 DOCUMENTED = [apart(command)[0] for command in documented()]
-ON_A_CLIP = documented("robot", below="Try a clip, then a camera")[0]
+ON_A_CLIP = documented("robot", page="robots/without-ros.md")[0]
 
 WITHOUT_THE_WEB_APP = f"""
 import sys
@@ -160,7 +160,7 @@ def test_the_cost_of_each_stage_is_one_object_and_a_table(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    (command,) = documented("robot", below="What each stage costs")
+    (command,) = documented("robot", page="robots/performance.md")
     spoken, clip = (Path(command[command.index(it) + 1]) for it in ("--language", "--source"))
     (tmp_path / clip).parent.mkdir(parents=True)
     (tmp_path / spoken).symlink_to(ROOT / spoken)

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from app.recognition import PoseSequence
-from app.recognition.preprocessing.side_swaps import sides_of
+from app.recognition.preprocessing.side_swaps import pair_sides
 
 
 def with_sides_exchanged(poses: PoseSequence, frames: Iterable[int]) -> PoseSequence:
     """Take the left landmarks for the right ones, and these for the left, in some frames."""
-    left, right = sides_of(poses.landmarks)
+    left, right = pair_sides(poses.landmarks)
     order = np.arange(len(poses.landmarks))
     order[[*left, *right]] = [*right, *left]
     rows = list(frames)

@@ -10,7 +10,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from app.recognition import LanguageError
-from app.recognition.phrases.automaton import Reading, Said
+from app.recognition.phrases.automaton import Contribution, Reading
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 
@@ -115,7 +115,7 @@ def sentences(grammar: Grammar) -> Iterator[Sentence]:
     opening = () if grammar.start is None else (grammar.start,)
     closing = () if grammar.end is None else (grammar.end,)
     single = [
-        (opening + labels, (Said(index), *said))
+        (opening + labels, (Contribution(index), *said))
         for index, phrase in enumerate(grammar.phrases)
         for labels, said in _sequences(phrase.parts, index, types)
     ]
@@ -144,7 +144,7 @@ def _repetitions(part: Part, phrase: int, types: Mapping[str, SlotType]) -> Iter
         once = list(_sequences(part.parts, phrase, types))
     elif isinstance(part, Slot):
         values = types[part.slot_type].values.items()
-        once = [((label,), (Said(phrase, part.name, value),)) for label, value in values]
+        once = [((label,), (Contribution(phrase, part.name, value),)) for label, value in values]
     else:
         once = [((label,), ()) for label in part.gestures]
     for count in range(part.least, part.most + 1):

@@ -12,15 +12,17 @@ from app.recognition import (
     Gesture,
     Language,
     LanguageError,
+    OsgError,
     PoseError,
     PoseSequence,
-    RecognitionError,
+    Recognition,
     Recognizer,
 )
+from app.recognition.decision.majority_vote import MajorityVote, weigh_relative_distances
 from app.recognition.features.trajectory_image import Drawing, draw
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.recognizer import relative_contributions
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, rest, wedge
 
 VOTERS = (
@@ -167,7 +169,7 @@ def test_an_empty_language_cannot_recognise() -> None:
 
 
 def test_an_unknown_profile_is_named_with_the_known_ones(language: Language) -> None:
-    with pytest.raises(RecognitionError, match=r"no profile 'best'; .* paper and full"):
+    with pytest.raises(OsgError, match=r"no profile 'best'; .* paper and full"):
         Recognizer(language, profile="best")
 
 
@@ -221,11 +223,16 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
 
 
 def test_relative_distances_put_voters_on_one_scale() -> None:
-    never = [np.inf] * 3  # a voter that abstains has no say
+    never = [np.inf] * 3  # a voter that abstains has no weight
     distances = np.array([[1.0, 3.0, np.inf], [100.0, 300.0, np.inf], [0.0, 0.0, np.inf], never])
-    contributions = relative_contributions(distances, np.ones(4))
+    contributions = weigh_relative_distances(distances, np.ones(4))
     np.testing.assert_allclose(contributions.sum(axis=0), [1 / 3, 1.0, np.inf])
     assert contributions[3].tolist() == [0.0, 0.0, 0.0]
+
+
+def counted(recognizer: Recognizer, distances: FloatArray) -> Recognition:
+    assert isinstance(recognizer.vote, MajorityVote)
+    return recognizer.vote.count_votes(distances)
 
 
 def test_a_tie_goes_to_the_smaller_mean_relative_distance(recognizer: Recognizer) -> None:
@@ -233,7 +240,7 @@ def test_a_tie_goes_to_the_smaller_mean_relative_distance(recognizer: Recognizer
     nearest[:3, 0] = 6.0  # three votes for the first gesture, by a little
     nearest[3:6, 1] = 1.0  # three for the second, by far
     nearest[6, 2] = 5.0
-    result = recognizer._counted(nearest)
+    result = counted(recognizer, nearest)
     assert list(result.votes.values()).count("circle") == 3
     assert list(result.votes.values()).count("wedge") == 3
     assert result.label == "wedge"
@@ -245,6 +252,6 @@ def test_where_the_votes_and_the_distances_disagree_confidence_is_the_share_of_v
     distances = np.full((len(PAPER_VOTERS), len(SHAPES)), 10.0)
     distances[:4, 0] = 9.0
     distances[4:, 1] = 0.1
-    result = recognizer._counted(distances)
+    result = counted(recognizer, distances)
     assert result.label == "circle"
     assert result.confidence == pytest.approx(4 / 7 / 2)

@@ -8,9 +8,9 @@ import pytest
 from app.recognition import (
     Gesture,
     Language,
+    OsgError,
     PoseError,
     PoseSequence,
-    RecognitionError,
     Recognizer,
 )
 from app.recognition.spotting import Spotted, Spotter
@@ -147,5 +147,5 @@ def test_time_must_go_on(recognizer: Recognizer) -> None:
 
 
 def test_profile_paper_cannot_listen(recognizer: Recognizer) -> None:
-    with pytest.raises(RecognitionError, match="by profile full"):
+    with pytest.raises(OsgError, match="by profile full"):
         Spotter(Recognizer(recognizer.language, "paper"))

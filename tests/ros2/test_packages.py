@@ -128,8 +128,14 @@ def test_the_parameter_file_names_parameters_that_exist() -> None:
     assert declared - named == {"language", "autostart", "input", "image_width", "image_height"}
 
 
+def documentation() -> str:
+    """Return the text of the pages about the ROS 2 nodes."""
+    pages = sorted((ROOT / "docs" / "robots").glob("ros2-*.md"))
+    return "".join(page.read_text(encoding="utf-8") for page in pages)
+
+
 def test_what_the_documentation_runs_exists() -> None:
-    page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
+    page = documentation()
     scripts = setup_arguments()["entry_points"]["console_scripts"]
     executables = {script.split(" = ")[0] for script in scripts}
     launching = (NODES / "osg_ros" / "launch_arguments.py").read_text(encoding="utf-8")
@@ -144,7 +150,7 @@ def test_what_the_documentation_runs_exists() -> None:
 
 
 def test_every_topic_that_a_node_publishes_is_documented() -> None:
-    page = (ROOT / "docs" / "robots.md").read_text(encoding="utf-8")
+    page = documentation()
     for path in (NODES / "osg_ros").rglob("*.py"):
         source = path.read_text(encoding="utf-8")
         topics = re.findall(r'\.publisher\(\s*[^,]+,\s*f?"([^"]+)"', source)

@@ -29,7 +29,7 @@ def test_linear_keeps_black_and_white_and_darkens_between() -> None:
 
 @pytest.mark.parametrize(("theme", "section"), [(DARK, 0), (LIGHT, 1)])
 def test_the_scenes_background_is_the_pages(theme: Theme, section: int) -> None:
-    style = Path(static_dir(), "styles", "base.css").read_text(encoding="utf-8")
+    style = Path(static_dir(), "styles", "tokens.css").read_text(encoding="utf-8")
     background = re.findall(r"--bg: #([0-9a-f]{6})", style)[section]
     assert bytes.fromhex(background) == bytes(theme.background)
 

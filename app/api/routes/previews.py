@@ -38,7 +38,7 @@ from app.recognition.preprocessing.salience import (
     find_salient_landmarks,
     measure_displacements,
 )
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 
 SWITCHES = ("direction", "tempo", "mirror")
 

@@ -16,52 +16,38 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.decision.fused_vote import VOTERS, CalibratedVote
-from app.recognition.decision.fusion import TYPICAL
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.motion_references import (
-    MAX_GESTURES_READ_OTHERWISE,
+    MAX_GESTURES_TRAVERSED,
     describe_movement,
 )
-from app.recognition.decision.rejection import novelty, novelty_weights
+from app.recognition.decision.rejection import build_novelty_weights, measure_novelty
 from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.model_error import UNFORESEEN
-from app.recognition.simulation.negatives import foreign_movements
-from app.recognition.simulation.rate_estimate import Forecast
-from app.recognition.simulation.variation import SPREADS, variants
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.simulation.negatives import draw_negatives
+from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variant_bias import VARIANT_BIASES
+from app.recognition.simulation.variation import SPREADS, draw_variants
+from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
 """Plausible takes drawn of each gesture: their mean is known to a quarter of its value."""
 
 OWN = 0.75
 """How much of the typical distance is the gesture's own, the rest being that of any gesture
-(`fusion.TYPICAL`), geometrically: twelve takes of one demonstration know more than the average
+(`Voter.within`), geometrically: twelve takes of one demonstration know more than the average
 over other gestures, but not all. From 0.7 to 1 the result is the same."""
-
-ANY_GESTURES = frozenset({"path_length", "wrist_bend"})
-"""Voters for which the typical distance is that of any gesture: the lengths of plausible takes
-differ by less than half of what those of real ones do, and their wrists bend alike for all."""
 
 REACH: Final[Mapping[str, float]] = MappingProxyType(
     {
-        "path": 7.0,
-        "direction": 7.0,
-        "path_length": 7.0,
-        "posture": 4.0,
-        "hand_attitude": 4.0,
-        "wrist_bend": 3.5,
+        voter.name: voter.cue.reach
+        for voter in sorted(VOTERS, key=lambda voter: -voter.cue.reach if voter.cue else 0.0)
+        if voter.cue is not None
     }
 )
-"""Thresholds, in typical distances of the demonstrator's own further takes. Over five recorded
-sets, one in twenty of the takes lies beyond, once `foreign` has pulled in what it does. How an arm
-is held tells more than what it draws: with as long a reach, a quarter more of the foreign signals
-are accepted at as many true ones refused; with half the reach it is a twentieth less, but one in
-seven of the true signals is refused. Of other people's takes not one in a hundred has a
-way 1.5 times as long; the reach is 1.7 times. A wrist may bend otherwise by about 30 degrees: that
-refuses one in three hundred of the true signals that nothing else refuses, and one in ten of the
-foreign ones that nothing else does."""
+"""Per voter with a cue its `Cue.reach`, the longest first, as thresholds stand in language files.
+Over five recorded sets one in twenty of the demonstrator's takes lies beyond."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: where only one bone is seen, its
@@ -70,9 +56,6 @@ attitude may hardly differ."""
 OTHERS = 2.0
 """How much farther other people's takes lie than the demonstrator's own, in squared distances:
 variants by 1.9 to 2.1 times, recorded takes by 1.9 to 2.6."""
-
-NOT_SQUARED = frozenset({"path_length", "wrist_bend"})
-"""Voters whose distances are no squares: other people's takes lie the root of `OTHERS` farther."""
 
 LEAST_SHARE = 0.9
 """How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
@@ -107,11 +90,11 @@ class _Reach:
     takes: FloatArray
 
 
-def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
+def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     """Give every gesture thresholds, and the rates of errors to expect with them.
 
     Gestures without a demonstration get none: they are never rejected. Of more than
-    `MAX_GESTURES_READ_OTHERWISE`, all get those of a typical gesture and no rates.
+    `MAX_GESTURES_TRAVERSED`, all get those of a typical gesture and no rates.
 
     Parameters
     ----------
@@ -119,7 +102,7 @@ def calibrated(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
         Of one language, at least one.
 
     """
-    vote = CalibratedVote(gestures)
+    vote = FusedVote(gestures)
     reach = _reach(gestures, vote)
     foreign = _foreign(gestures, vote, reach.thresholds)
     return tuple(
@@ -149,27 +132,29 @@ def _with_thresholds(
     near = foreign[foreign > PLAUSIBLE].min(initial=1.0)
     limit = max(LEAST_SHARE, float(near))
     thresholds = {
-        voter: float(f"{limit * reach[VOTERS.index(voter)]:.{DIGITS}g}") for voter in REACH
+        voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in REACH
     }
     if not np.isfinite(takes).all() or np.isnan(foreign).any():
         return replace(gesture, thresholds=thresholds, rates=None)
     margins = np.log(limit) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
-        miss=round(Forecast.of_margins(margins, UNFORESEEN["another"]).rate, DIGITS),
+        miss=round(RateEstimate.of_margins(margins, VARIANT_BIASES["another"]).rate, DIGITS),
         false_alarm=round(float((foreign < limit).mean()), DIGITS),
     )
     return replace(gesture, thresholds=thresholds, rates=rates)
 
 
-def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
+def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     """Draw plausible takes of every gesture and measure how far they lie."""
-    typical = np.array([TYPICAL[voter].within for voter in VOTERS])
-    multiples = np.array([REACH.get(voter, np.inf) for voter in VOTERS])
-    own = np.array([0.0 if voter in ANY_GESTURES else OWN for voter in VOTERS])
-    farther = np.array([OTHERS**0.5 if voter in NOT_SQUARED else OTHERS for voter in VOTERS])
+    typical = np.array([voter.within for voter in VOTERS])
+    cues = [voter.cue for voter in VOTERS]
+    multiples = np.array([cue.reach if cue else np.inf for cue in cues])
+    own = np.array([0.0 if cue and not cue.varies_by_gesture else OWN for cue in cues])
+    farther = np.array([OTHERS**0.5 if cue and not cue.squared else OTHERS for cue in cues])
+    weights = build_novelty_weights(VOTER_NAMES)
     thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
-    if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+    if len(gestures) > MAX_GESTURES_TRAVERSED:
         return _Reach(thresholds, takes)
     for row in vote.references.as_shown:
         index = int(vote.references.gestures[row])
@@ -181,15 +166,15 @@ def _reach(gestures: Sequence[Gesture], vote: CalibratedVote) -> _Reach:
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
         thresholds[known, index] *= (mean / typical[known]) ** own[known]
         others = farther[:, None] * distances
-        takes[index] = novelty(others, thresholds[:, [index]], novelty_weights(VOTERS))
+        takes[index] = measure_novelty(others, thresholds[:, [index]], weights)
     return _Reach(thresholds, takes)
 
 
 def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
-    return demonstration.once("takes to calibrate by", lambda: variants(demonstration, TAKES))
+    return demonstration.once("takes to calibrate by", lambda: draw_variants(demonstration, TAKES))
 
 
-def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> FloatArray:
+def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArray:
     """Compare a gesture as shown with `TAKES` plausible takes of it: ``(V, TAKES)``.
 
     Infinite for voters of drawings, which are slow to make and not asked.
@@ -201,27 +186,25 @@ def _distances_to_takes(gesture: Gesture, vote: CalibratedVote, row: int) -> Flo
     for voter in MOTION_VOTERS:
         described = np.array([take[voter.name] for take in takes])
         shown = references.descriptors[voter.name][row]
-        distances[VOTERS.index(voter.name)] = voter.distances(shown, described)
+        distances[VOTER_NAMES.index(voter.name)] = voter.distances(shown, described)
     return distances
 
 
-def _foreign(
-    gestures: Sequence[Gesture], vote: CalibratedVote, thresholds: FloatArray
-) -> FloatArray:
+def _foreign(gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArray) -> FloatArray:
     """Measure how far foreign movements lie from the gesture they are nearest to.
 
     Returns
     -------
     ``(N, G)`` novelties, infinite for the gestures they are not nearest to. Where the
     landmarks of the gestures are of another body than the accidental movements', or there are
-    more than `MAX_GESTURES_READ_OTHERWISE` gestures, NaN: nothing is known.
+    more than `MAX_GESTURES_TRAVERSED` gestures, NaN: nothing is known.
 
     """
-    if len(gestures) > MAX_GESTURES_READ_OTHERWISE:
+    if len(gestures) > MAX_GESTURES_TRAVERSED:
         return np.full((1, len(gestures)), np.nan)
     measuring = vote.with_thresholds(thresholds)
     found = []
-    for movement in foreign_movements(gestures):
+    for movement in draw_negatives(gestures):
         compared = measuring.compare(movement, drawn=False)
         if np.isfinite(compared.scores).any():
             nearest = int(compared.scores.argmin())

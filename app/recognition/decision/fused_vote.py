@@ -1,4 +1,4 @@
-"""Profile ``full``: all voters, each with the say that the language gives it."""
+"""The fused vote of profile ``full``: the smallest weighted sum of all voters' distances."""
 
 from __future__ import annotations
 
@@ -10,47 +10,44 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.fusion import contributions, says
+from app.recognition.decision.fusion import weigh_distances, weigh_voters
 from app.recognition.decision.motion_references import (
-    MAX_GESTURES_READ_OTHERWISE,
+    MAX_GESTURES_TRAVERSED,
     MotionReferences,
     describe_movement,
-    tempo_counts,
-    unambiguous,
+    drop_ambiguous_traversals,
+    find_tempo_dependent,
 )
 from app.recognition.decision.rejection import (
-    VIEWS,
-    calibrated_confidence,
+    CUE_GROUPS,
+    build_novelty_weights,
+    estimate_confidence,
+    gather_thresholds,
     is_rejected,
-    novelty_by_view,
-    novelty_weights,
-    thresholds_of,
+    measure_group_novelties,
 )
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.switches import Counting
+from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.registry import PAPER_VOTERS, VOTER_NAMES, VOTERS
 
-VOTERS = (
-    *(voter.name for voter in PAPER_VOTERS),
-    *(voter.name for voter in MOTION_VOTERS),
-)
 _SHAPES = len(PAPER_VOTERS)
-_TEMPO = VOTERS.index("tempo")
-_NOVELTY_WEIGHTS = novelty_weights(VOTERS)
-
-TEMPO_SAY = 0.3
-"""What a doubling of the duration adds to the score of a gesture whose tempo counts: more than the
-distance of two takes (0.1), less than that of two gestures (1)."""
+_TEMPO = VOTER_NAMES.index(Tempo.name)
+_NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
 
 
-def with_mirror_images(
+CLOSE_SCORES = 0.05
+"""Score by which the expected gesture may still miss when a voter's weight is tried: as much as
+another traversal of a gesture, which the new weight may bring about, is usually nearer."""
+
+
+def add_mirror_images(
     gestures: Sequence[Gesture],
 ) -> tuple[tuple[Gesture, ...], npt.NDArray[np.intp]]:
     """Add the mirror images of gestures that either hand may show.
@@ -69,64 +66,69 @@ def with_mirror_images(
     return (*gestures, *images), np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
 
 
-class CalibratedVote:
-    """Fuses the distances of all voters, after asking the language what each can tell apart.
+class FusedVote:
+    """Fuses the distances of all voters, weighted by how well each separates the gestures.
 
     Parameters
     ----------
     gestures
         G gestures, at least one.
     tuning
-        Its weights are factors on what the language gives each voter to say.
+        Its weights are factors on the voters' weights in this language.
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When the weights do not fit the voters.
 
     """
 
     def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
-        sides, self._owners = with_mirror_images(gestures)
+        sides, self._owners = add_mirror_images(gestures)
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
         # Last, for what a language needs does not change with what its author makes of it.
-        self._weights = tuning.weights_of(VOTERS)
-        self._say: FloatArray = self._say * self._weights
-        self._thresholds = thresholds_of(sides, VOTERS)
+        self._factors = tuning.weights_of(VOTER_NAMES)
+        self._weights: FloatArray = self._weights * self._factors
+        self._thresholds = gather_thresholds(sides, VOTER_NAMES)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
-        """Ask the language for each voter's say, and which directions and tempos it needs."""
-        asked = self._motions.as_shown[:MAX_GESTURES_READ_OTHERWISE]
+        """Compute the weights, and which directions and tempos the language needs."""
+        asked = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
         own = self._motions.own_distances
         one, other = np.triu_indices(len(asked), 1)
         pairs = own[:, :, asked][:, one, other]
-        shapes = self._shapes.own_distances(MAX_GESTURES_READ_OTHERWISE)
-        self._say, self._between = says(
+        shapes = self._shapes.own_distances(MAX_GESTURES_TRAVERSED)
+        self._weights, self._between = weigh_voters(
             VOTERS,
             [*shapes, *(row[np.isfinite(row)] for row in pairs)],
             len(self._motions.landmarks),
         )
         if len(asked) < len(self._motions.as_shown):
             return
-        self._tempo = tempo_counts(self._motions, own, *self._of_motion, sides)
+        self._tempo = find_tempo_dependent(self._motions, own, *self._of_motion, sides)
         free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
-        self._motions = unambiguous(self._motions, own, *self._of_motion, free)
+        self._motions = drop_ambiguous_traversals(self._motions, own, *self._of_motion, free)
 
-    def counting(self, gesture: int) -> Counting | None:
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Tell what about a gesture counts here; None where its movement is not compared."""
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
-        readings = [self._motions.readings[row] for row in rows]
-        return Counting(
-            direction=not any(reading.backward for reading in readings),
+        traversals = [self._motions.traversals[row] for row in rows]
+        return Sensitivity(
+            direction=not any(traversal.backward for traversal in traversals),
             tempo=bool(self._tempo[gesture]),
-            sides=not any(reading.exchanged for reading in readings),
+            sides=not any(traversal.exchanged for traversal in traversals),
         )
+
+    @property
+    def landmarks(self) -> tuple[str, ...]:
+        """The landmarks that any gesture follows, in alphabetical order."""
+        return self._motions.landmarks
 
     @property
     def needed(self) -> tuple[str, ...]:
@@ -134,46 +136,47 @@ class CalibratedVote:
         return self._shapes.needed
 
     @property
-    def say(self) -> dict[str, float]:
-        """Each voter's say in this language; 0: it cannot tell the gestures apart."""
-        return dict(zip(VOTERS, self._say.tolist(), strict=True))
+    def unnormalized_weights(self) -> dict[str, float]:
+        """Each voter's weight before normalisation; 0: it cannot tell the gestures apart."""
+        return dict(zip(VOTER_NAMES, self._weights.tolist(), strict=True))
 
     @cached_property
     def weights(self) -> Mapping[str, float]:
-        """Each voter's share in the decision, summing to 1."""
-        say = self._say.copy()
+        """Each voter's weight in the decision, summing to 1."""
+        weights = self._weights.copy()
         if self._tempo.any():
-            say[_TEMPO] += TEMPO_SAY
-        return MappingProxyType(dict(zip(VOTERS, (say / say.sum()).tolist(), strict=True)))
+            weights[_TEMPO] += Tempo.weight_where_needed
+        normalized = (weights / weights.sum()).tolist()
+        return MappingProxyType(dict(zip(VOTER_NAMES, normalized, strict=True)))
 
     @property
     def between(self) -> dict[str, float]:
-        """Each voter's typical distance between two gestures of this language."""
-        return dict(zip(VOTERS, self._between.tolist(), strict=True))
+        """Each voter's between-class distance in this language."""
+        return dict(zip(VOTER_NAMES, self._between.tolist(), strict=True))
 
     @property
     def _of_motion(self) -> tuple[FloatArray, FloatArray]:
-        """Say and typical distance of the motion voters alone."""
-        return self._say[_SHAPES:], self._between[_SHAPES:]
+        """Weights and between-class distances of the motion voters alone."""
+        return self._weights[_SHAPES:], self._between[_SHAPES:]
 
     @property
     def references(self) -> MotionReferences:
-        """The gestures as movements, in the readings that the language leaves open."""
+        """The gestures as movements, in the traversals that the language leaves open."""
         return self._motions
 
-    def with_thresholds(self, thresholds: FloatArray) -> CalibratedVote:
+    def with_thresholds(self, thresholds: FloatArray) -> FusedVote:
         """Return the same vote with other thresholds ``(V, G)`` than the gestures have."""
         other = copy(self)
         other._thresholds = thresholds[:, self._owners]
         return other
 
-    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> Comparison:
+    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
         """Compare a condensed query with every gesture, from its better side.
 
         `drawn`: also as a drawing, which takes most of the time and rarely decides.
         """
         distances, rows = self._compared(trajectory, drawn)
-        shares = contributions(distances, self._say, self._between)
+        shares = weigh_distances(distances, self._weights, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
         moved = rows >= 0
         factors[moved] = self._motions.penalties[rows[moved]]
@@ -182,30 +185,42 @@ class CalibratedVote:
         turned[backward] = (factors[backward] - 1) * scores[backward]
         if self._tempo.any():
             slower = self._tempo & np.isfinite(distances[_TEMPO])
-            shares[_TEMPO, slower] += TEMPO_SAY * distances[_TEMPO, slower]
+            shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
             scores = shares.sum(axis=0)
         chosen = self._sides_nearest(scores + turned)
-        return Comparison(
-            voters=VOTERS,
+        return ScoreTable(
+            voters=VOTER_NAMES,
             distances=distances.take(chosen, axis=1),
             contributions=shares.take(chosen, axis=1),
             turned=turned[chosen],
-            readings=tuple(
-                self._motions.readings[row] if row >= 0 else None for row in rows[chosen].tolist()
+            traversals=tuple(
+                self._motions.traversals[row] if row >= 0 else None for row in rows[chosen].tolist()
             ),
             mirrored=chosen >= len(self._labels),
             novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
         )
 
     def _novelty_by_view(self, distances: FloatArray) -> FloatArray:
-        return novelty_by_view(distances, self._thresholds, self._weights * _NOVELTY_WEIGHTS)
+        return measure_group_novelties(
+            distances, self._thresholds, self._factors * _NOVELTY_WEIGHTS
+        )
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None where it moves nothing that a gesture needs."""
         compared = self.compare(trajectory)
-        return self.decided(compared) if np.isfinite(compared.scores).any() else None
+        return self.decide(compared) if np.isfinite(compared.scores).any() else None
 
-    def decided(self, compared: Comparison) -> Recognition:
+    def may_win(
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
+    ) -> bool:
+        """Tell whether a gesture comes close to the smallest score when a voter is reweighted."""
+        comparable = np.isfinite(table.scores)
+        scores = table.scores
+        added = table.contributions[table.voters.index(voter)]
+        scores[comparable] += (factor - 1) * added[comparable]
+        return bool(comparable[gesture] and scores[gesture] < scores.min() + CLOSE_SCORES)
+
+    def decide(self, compared: ScoreTable) -> Recognition:
         """Decide for the gesture with the smallest score, or for none where that is too novel.
 
         One of the scores must be finite.
@@ -218,26 +233,26 @@ class CalibratedVote:
         return Recognition(
             label=None if is_rejected(float(novelty[winner])) else nearest,
             nearest=nearest,
-            confidence=calibrated_confidence(
+            confidence=estimate_confidence(
                 float(novelty[winner]),
                 float(scores[winner]),
                 float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
             ),
             profile="full",
-            voters=VOTERS,
+            voters=VOTER_NAMES,
             gestures=self._labels,
             distances=distances,
-            votes={VOTERS[voter]: self._labels[nearest_by_voter[voter]] for voter in able},
+            votes={VOTER_NAMES[voter]: self._labels[nearest_by_voter[voter]] for voter in able},
             weights=self.weights,
             scores=scores,
             novelty=novelty,
-            novelty_by_view=dict(zip(VIEWS, compared.novelty_by_view, strict=True)),
+            novelty_by_view=dict(zip(CUE_GROUPS, compared.novelty_by_view, strict=True)),
         )
 
     def _compared(
         self, trajectory: Trajectory, drawn: bool
     ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the readings, -1: none."""
+        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the traversals, -1: none."""
         distances = np.full((len(VOTERS), len(self._owners)), np.inf)
         if drawn:
             distances[:_SHAPES] = self._shapes.distances(trajectory)

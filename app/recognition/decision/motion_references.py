@@ -1,4 +1,4 @@
-"""The gestures of a language as movements, in every reading that the language leaves open."""
+"""The gestures of a language as movements, in every traversal that the language leaves open."""
 
 from __future__ import annotations
 
@@ -9,22 +9,25 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.fusion import fused
+from app.recognition.decision.fusion import fuse
 from app.recognition.decision.shown_gesture import ShownGesture
-from app.recognition.features.motion import followed_landmarks, movement
-from app.recognition.features.traversals import Reading
+from app.recognition.features.motion import build_movement, find_followed_landmarks
+from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import ElasticReferences, ElasticViews
-from app.recognition.matching.dtw_kernel import alignment_costs
+from app.recognition.matching.dtw import DtwBatch, DtwReferences
+from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import BAND, MOTION_VOTERS, ElasticVoter, UnorderedVoter
+from app.recognition.voters.motion.motion_voter import BAND, DtwVoter, UnorderedVoter
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.registry import MOTION_VOTERS
 
 SAME_FIGURE = 0.12
 """Score below which two gestures are the same figure, where 1 is two gestures of the language: as
 far as two people's takes of one gesture lie apart. On air-drawn digits and commands the accuracy
-is the same from 0.05 to 0.1 and falls beyond 0.2, when useful readings are lost."""
+is the same from 0.05 to 0.1 and falls beyond 0.2, when useful traversals are lost."""
 
 TURNED = 0.1
 """Share of the forward distance that a figure turned round lies within, however far: two swipes to
@@ -39,10 +42,10 @@ CLEARLY_SLOWER = 0.8
 """Doublings of the duration between two gestures from which their tempo is told apart: 1.75 times
 as long. One person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
 
-MAX_GESTURES_READ_OTHERWISE = 64
+MAX_GESTURES_TRAVERSED = 64
 """Gestures beyond which a language takes every gesture as shown. Among so many, figures that
 differ by nothing but direction are to be expected, and the comparison of all with all in all
-readings would take seconds."""
+traversals would take seconds."""
 
 MOST_COMPARED = 1
 """Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
@@ -56,9 +59,7 @@ ROWS_AT_ONCE = 64
 """Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
 
 _ELASTIC = {
-    voter.name: place
-    for place, voter in enumerate(MOTION_VOTERS)
-    if isinstance(voter, ElasticVoter)
+    voter.name: place for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, DtwVoter)
 }
 """Where the voters stand that align movements."""
 
@@ -69,22 +70,22 @@ _UNORDERED = {
 _OTHERS = {
     place: voter
     for place, voter in enumerate(MOTION_VOTERS)
-    if not isinstance(voter, ElasticVoter | UnorderedVoter)
+    if not isinstance(voter, DtwVoter | UnorderedVoter)
 }
 
-_TEMPO = [voter.name for voter in MOTION_VOTERS].index("tempo")
+_TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
 
 @dataclass(frozen=True, eq=False)
-class NearestReadings:
-    """The readings of G gestures that fit a query best.
+class NearestTraversals:
+    """The traversals of G gestures that fit a query best.
 
     Attributes
     ----------
     rows
         ``(G,)``: which row of the references; -1 for a gesture without demonstration.
     distances
-        ``(V, G)`` to these readings, infinite for a gesture without demonstration.
+        ``(V, G)`` to these traversals, infinite for a gesture without demonstration.
 
     """
 
@@ -94,7 +95,7 @@ class NearestReadings:
 
 @dataclass(frozen=True, eq=False)
 class MotionReferences:
-    """What a query's movement is compared with: R rows, each a gesture in one reading.
+    """What a query's movement is compared with: R rows, each a gesture in one traversal.
 
     Attributes
     ----------
@@ -102,7 +103,7 @@ class MotionReferences:
         The landmarks to follow in a query.
     gestures
         ``(R,)`` index of each row's gesture in the language.
-    readings
+    traversals
         Of each row.
     descriptors
         Per voter's name ``(R, ...)``.
@@ -111,12 +112,12 @@ class MotionReferences:
 
     landmarks: tuple[str, ...]
     gestures: npt.NDArray[np.intp]
-    readings: tuple[Reading, ...]
+    traversals: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
     @classmethod
     def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
-        """Describe all gestures that have a demonstration, in all thinkable readings.
+        """Describe all gestures that have a demonstration, in all thinkable traversals.
 
         The references of the last few languages are remembered: the same gestures are asked for
         again with their thresholds, and whenever only the drawings or the voters' weights change.
@@ -126,18 +127,18 @@ class MotionReferences:
     @classmethod
     def of_shown(cls, gestures: Sequence[ShownGesture]) -> MotionReferences:
         """Describe them anew."""
-        landmarks = followed_landmarks([gesture.salient for gesture in gestures])
-        every = len(gestures) <= MAX_GESTURES_READ_OTHERWISE
+        landmarks = find_followed_landmarks([gesture.salient for gesture in gestures])
+        every = len(gestures) <= MAX_GESTURES_TRAVERSED
         described = {
             index: gesture.read(landmarks, every=every)
             for index, gesture in enumerate(gestures)
             if gesture.trajectory is not None and len(gesture.trajectory) > 1 and gesture.salient
         }
-        sizes = np.array([len(each.readings) for each in described.values()], dtype=np.intp)
+        sizes = np.array([len(each.traversals) for each in described.values()], dtype=np.intp)
         return cls(
             landmarks,
             np.repeat(np.array([*described], dtype=np.intp), sizes),
-            tuple(reading for each in described.values() for reading in each.readings),
+            tuple(traversal for each in described.values() for traversal in each.traversals),
             {
                 voter.name: np.concatenate(
                     [each.descriptors[voter.name] for each in described.values()] or [np.empty(0)]
@@ -160,7 +161,7 @@ class MotionReferences:
         return MotionReferences(
             self.landmarks,
             self.gestures[rows],
-            tuple(self.readings[row] for row in rows),
+            tuple(self.traversals[row] for row in rows),
             {name: values[rows] for name, values in self.descriptors.items()},
         )
 
@@ -172,15 +173,15 @@ class MotionReferences:
         ``(V, R)``; infinite for the other rows.
 
         """
-        rows = self.promising(query["path"])
+        rows = self.promising(query[Path.name])
         distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
         distances[:, rows] = self._measured(query, rows)
         return distances
 
     def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
-        """Choose the readings that are worth an elastic comparison with a query.
+        """Choose the traversals that are worth an elastic comparison with a query.
 
-        Of each gesture the one as shown, and of each kind of reading (forwards, backwards, with
+        Of each gesture the one as shown, and of each kind of traversal (forwards, backwards, with
         exchanged sides) the `MOST_COMPARED` whose paths lie nearest, step by step.
 
         Parameters
@@ -205,7 +206,7 @@ class MotionReferences:
     @cached_property
     def _flat_paths(self) -> tuple[FloatArray, FloatArray]:
         """Paths with all steps in a row, ``(R, N D)``, and the sums of their squares, ``(R,)``."""
-        paths = self.descriptors["path"].reshape(len(self), -1)
+        paths = self.descriptors[Path.name].reshape(len(self), -1)
         return paths, np.vecdot(paths, paths)
 
     @cached_property
@@ -215,10 +216,12 @@ class MotionReferences:
 
     @cached_property
     def _rows_by_kind(self) -> npt.NDArray[np.intp]:
-        """The rows of each gesture's readings of a kind; R where there are no more of them."""
+        """The rows of each gesture's traversals of a kind; R where there are no more of them."""
         kinds: dict[tuple[int, bool, bool], list[int]] = {}
-        for row, (gesture, reading) in enumerate(zip(self.gestures, self.readings, strict=True)):
-            kind = (int(gesture), reading.backward, reading.exchanged)
+        for row, (gesture, traversal) in enumerate(
+            zip(self.gestures, self.traversals, strict=True)
+        ):
+            kind = (int(gesture), traversal.backward, traversal.exchanged)
             kinds.setdefault(kind, []).append(row)
         rows = np.full((len(kinds), max(map(len, kinds.values()), default=1)), len(self))
         for index, of_kind in enumerate(kinds.values()):
@@ -226,11 +229,9 @@ class MotionReferences:
         return rows
 
     @cached_property
-    def _elastic(self) -> ElasticViews:
+    def _elastic(self) -> DtwBatch:
         """What the elastic voters compare with."""
-        return ElasticViews(
-            tuple(ElasticReferences(self.descriptors[name], BAND) for name in _ELASTIC)
-        )
+        return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _ELASTIC))
 
     @cached_property
     def _unordered(self) -> dict[str, StepReferences]:
@@ -244,7 +245,7 @@ class MotionReferences:
     @cached_property
     def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
         """Rows that differ by more than the order of their steps; and of each row which it is."""
-        exchanged = np.array([reading.exchanged for reading in self.readings], dtype=np.intp)
+        exchanged = np.array([traversal.exchanged for traversal in self.traversals], dtype=np.intp)
         _, rows, which = np.unique(
             2 * self.gestures + exchanged, return_index=True, return_inverse=True
         )
@@ -253,12 +254,12 @@ class MotionReferences:
     @cached_property
     def penalties(self) -> FloatArray:
         """``(R,)``: the factor on each row's distances."""
-        return np.array([reading.penalty for reading in self.readings])
+        return np.array([traversal.penalty for traversal in self.traversals])
 
     @cached_property
     def own_distances(self) -> FloatArray:
         """``(V, S, R)``: of the rows as shown, the first so many that are read otherwise."""
-        rows = self.as_shown[:MAX_GESTURES_READ_OTHERWISE]
+        rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
             block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
@@ -277,7 +278,7 @@ class MotionReferences:
         chosen = np.arange(len(self)) if rows is None else rows
         costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
         found = np.empty((len(MOTION_VOTERS), len(chosen)))
-        found[[*_ELASTIC.values()]] = alignment_costs(costs, len(query["path"]), BAND)
+        found[[*_ELASTIC.values()]] = compute_alignment_costs(costs, len(query[Path.name]), BAND)
         which = self._distinct[1].take(chosen)
         for place, voter in _UNORDERED.items():
             references = self._unordered[voter.name]
@@ -288,9 +289,9 @@ class MotionReferences:
         return found
 
     def nearest(
-        self, query: dict[str, FloatArray], say: FloatArray, between: FloatArray, count: int
-    ) -> NearestReadings:
-        """Choose for each gesture the reading that fits a query best.
+        self, query: dict[str, FloatArray], weights: FloatArray, between: FloatArray, count: int
+    ) -> NearestTraversals:
+        """Choose for each gesture the traversal that fits a query best.
 
         Parameters
         ----------
@@ -302,19 +303,19 @@ class MotionReferences:
             G, the number of gestures in the language.
 
         """
-        compared = self.promising(query["path"])
+        compared = self.promising(query[Path.name])
         measured = self._measured(query, compared)
-        scores = fused(measured, say, between) * self.penalties[compared]
+        scores = fuse(measured, weights, between) * self.penalties[compared]
         # Writing the best last lets it stay, and of equals the first: as shown.
         order = np.argsort(scores, kind="stable")[::-1]
         chosen = np.full(count, -1, dtype=np.intp)
         chosen[self.gestures[compared[order]]] = order
         found = chosen >= 0
         if found.all():
-            return NearestReadings(compared.take(chosen), measured.take(chosen, axis=1))
+            return NearestTraversals(compared.take(chosen), measured.take(chosen, axis=1))
         distances = np.full((len(MOTION_VOTERS), count), np.inf)
         distances[:, found] = measured[:, chosen[found]]
-        return NearestReadings(np.where(found, compared[chosen], -1), distances)
+        return NearestTraversals(np.where(found, compared[chosen], -1), distances)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -322,10 +323,10 @@ def _remembered(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
     return MotionReferences.of_shown(gestures)
 
 
-def tempo_counts(
+def find_tempo_dependent(
     references: MotionReferences,
     own: FloatArray,
-    say: FloatArray,
+    weights: FloatArray,
     between: FloatArray,
     gestures: Sequence[Gesture],
 ) -> npt.NDArray[np.bool_]:
@@ -335,7 +336,7 @@ def tempo_counts(
     `unambiguous`.
     """
     shown = references.as_shown
-    scores = fused(own, say, between)[:, shown]
+    scores = fuse(own, weights, between)[:, shown]
     doublings = own[_TEMPO][:, shown]
     twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER)
     needed = np.zeros(len(gestures), dtype=bool)
@@ -350,20 +351,20 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
     """Describe a query once for each voter."""
 
     def work_out() -> dict[str, FloatArray]:
-        seen = movement(trajectory, landmarks)
+        seen = build_movement(trajectory, landmarks)
         return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
 
     return trajectory.once(("movement", tuple(landmarks)), work_out)
 
 
-def unambiguous(
+def drop_ambiguous_traversals(
     references: MotionReferences,
     own: FloatArray,
-    say: FloatArray,
+    weights: FloatArray,
     between: FloatArray,
     free: Collection[int] = (),
 ) -> MotionReferences:
-    """Drop the readings by which a gesture would be taken for another one of the language.
+    """Drop the traversals by which a gesture would be taken for another one of the language.
 
     The language needs the direction of a gesture when another one is the same figure the other way
     round: wherever both begin, they lie within `SAME_FIGURE` of each other when one of them is
@@ -373,11 +374,11 @@ def unambiguous(
     Parameters
     ----------
     references
-        In all thinkable readings.
+        In all thinkable traversals.
     own
         `own_distances` of the rows as shown.
-    say, between
-        Of the voters, see `fusion.says`.
+    weights, between
+        Of the voters, see `fusion.weigh_voters`.
     free
         Indices of gestures whose direction does not count, whatever the others are.
 
@@ -385,9 +386,9 @@ def unambiguous(
     labels = references.gestures
     shown = references.as_shown
     same = labels[shown][:, None] == labels[None]
-    scores = np.where(same, np.inf, fused(own, say, between))
-    backward = np.array([reading.backward for reading in references.readings], dtype=bool)
-    exchanged = np.array([reading.exchanged for reading in references.readings], dtype=bool)
+    scores = np.where(same, np.inf, fuse(own, weights, between))
+    backward = np.array([traversal.backward for traversal in references.traversals], dtype=bool)
+    exchanged = np.array([traversal.exchanged for traversal in references.traversals], dtype=bool)
     keep = np.ones(len(references), dtype=bool)
     for gesture in np.unique(labels):
         rows = labels == gesture

@@ -1,17 +1,16 @@
-"""Rejection: whether a movement is any gesture of the language at all.
+"""Rejection: whether a query is any gesture of the language at all.
 
 The fused score (`fusion`) tells which gesture is nearest, in units of what the language's gestures
-differ by; it says little about a movement that is none of them. Novelty (novelty detection,
-Pimentel et al. 2014) is absolute instead: each voter's distance is divided by the gesture's own
-threshold for that voter, and
+differ by; it says little about an out-of-vocabulary movement. Novelty (novelty detection, Pimentel
+et al. 2014) is absolute: each voter's distance is divided by the gesture's threshold for it, and
 
-    novelty = penalty of the reading * max over the views of the weighted mean of
+    novelty = penalty of the traversal * max over the cue groups of the weighted mean of
               distance / threshold.
 
-Above 1 the gesture is rejected. A view is what one group of voters sees (`VIEWS`): voters of one
-view see the same thing and make up for each other's noise; views do not, so that an arm held as in
-any drawing cannot make up for another drawing. The thresholds come from plausible takes of the
-demonstration (`calibration`) and are kept in the language file.
+Above 1 the gesture is rejected. Voters of one cue group (`Cue.group`) look at the same thing and
+make up for each other's noise; groups do not, so that an arm held as demonstrated cannot make up
+for another figure. Thresholds come from simulated takes of the demonstration (`calibration`) and
+are kept in the language file.
 """
 
 from __future__ import annotations
@@ -25,20 +24,20 @@ import numpy as np
 
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import VOTERS
+from app.recognition.voters.voter import Voter
 
-VIEWS: Final[Mapping[str, Mapping[str, float]]] = MappingProxyType(
-    {
-        "figure": MappingProxyType({"path": 1.0, "direction": 0.5}),
-        "posture": MappingProxyType({"posture": 1.0, "hand_attitude": 2.0}),
-        "wrist": MappingProxyType({"wrist_bend": 1.0}),
-        "length": MappingProxyType({"path_length": 1.0}),
-    }
-)
-"""What the voters of each view count in its mean. Directions are mostly detail; with 0.3 to 0.75
-the result is the same. The hands tell a signal from its neighbour, where the arms do not; the wrist
-is a view of its own, for an arm held as before does not make up for a thumb turned down. The
-length tells a zigzag from a line, which its path and its directions, taken step by step, resemble
-as much as other people's lines do. Other voters changed nothing beyond chance."""
+
+def _group_cues(voters: Sequence[Voter]) -> Mapping[str, Mapping[str, float]]:
+    groups: dict[str, dict[str, float]] = {}
+    for voter in voters:
+        if voter.cue is not None:
+            groups.setdefault(voter.cue.group, {})[voter.name] = voter.cue.weight
+    return MappingProxyType({name: MappingProxyType(group) for name, group in groups.items()})
+
+
+CUE_GROUPS: Final[Mapping[str, Mapping[str, float]]] = _group_cues(VOTERS)
+"""Per cue group the weights of its voters, by name."""
 
 SCORE_FLOOR = 0.02
 """Added to scores and novelties before their logarithm: those of two takes by the same careful
@@ -47,42 +46,44 @@ person."""
 CONFIDENCE_AT_ONE = -0.3
 CONFIDENCE_PER_NOVELTY = -3.3
 CONFIDENCE_PER_SHARE = -0.25
-"""Coefficients of `calibrated_confidence`, fitted on five sets, each set and people's relation
+"""Coefficients of `estimate_confidence`, fitted on five sets, each set and people's relation
 weighing the same. The share's is held below what fits best (-0.85), for hardly a worse fit:
 foreign movements are told by novelty. Fitted on four sets, the confidences hold on the fifth."""
 
 
-def thresholds_of(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatArray:
+def gather_thresholds(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatArray:
     """Gather the thresholds of gestures: ``(V, G)``, infinite where a gesture has none."""
     return np.array(
         [[gesture.thresholds.get(voter, np.inf) for gesture in gestures] for voter in voters]
     )
 
 
-def novelty_weights(voters: Sequence[str]) -> FloatArray:
-    """Return what each voter counts in each of the `VIEWS`, ``(K, V)``; 0: nothing."""
-    return np.array([[view.get(voter, 0.0) for voter in voters] for view in VIEWS.values()])
+def build_novelty_weights(voters: Sequence[str]) -> FloatArray:
+    """Return the weight of each voter in each of the `CUE_GROUPS`, ``(K, V)``."""
+    return np.array([[view.get(voter, 0.0) for voter in voters] for view in CUE_GROUPS.values()])
 
 
-def novelty(distances: FloatArray, thresholds: FloatArray, weights: FloatArray) -> FloatArray:
+def measure_novelty(
+    distances: FloatArray, thresholds: FloatArray, weights: FloatArray
+) -> FloatArray:
     """Measure how far a query lies from each gesture, where 1 is the farthest that is accepted.
 
-    Parameters as for `novelty_by_view`.
+    Parameters as for `measure_group_novelties`.
 
     Returns
     -------
     ``(G,)``: the largest of the views' novelties; NaN where no view has one.
 
     """
-    return largest_novelty(novelty_by_view(distances, thresholds, weights))
+    return take_largest_novelty(measure_group_novelties(distances, thresholds, weights))
 
 
-def largest_novelty(by_view: FloatArray) -> FloatArray:
+def take_largest_novelty(by_view: FloatArray) -> FloatArray:
     """Return the largest of novelties ``(K, G)`` by view: ``(G,)``; NaN where no view has one."""
     return np.asarray(np.fmax.reduce(by_view, axis=0))
 
 
-def novelty_by_view(
+def measure_group_novelties(
     distances: FloatArray, thresholds: FloatArray, weights: FloatArray
 ) -> FloatArray:
     """Measure how far a query lies from each gesture in each view alone.
@@ -123,7 +124,7 @@ fit to 800 queries by other people of digits, letters and both two-handed sets. 
 times as far leaves it at 0.65 (measured 0.5), twice as far at 0.92 (0.9)."""
 
 
-def calibrated_confidence(novelty: float, nearest: float, second: float) -> float:
+def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     """Estimate the probability that the nearest gesture is the one meant.
 
     ``1 / (1 + exp(-(b0 + b1 ln n + b2 ln(s / t))))`` for the novelty n and the scores s of the

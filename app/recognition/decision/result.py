@@ -26,7 +26,7 @@ class Recognition:
         The best gesture even when rejected.
     confidence
         In [0, 1]. Profile ``full``: the estimated probability that `nearest` is the gesture
-        meant, where half of all movements mean none, see `calibrated_confidence`. Profile
+        meant, where half of all movements mean none, see `estimate_confidence`. Profile
         ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean
         relative distance over that of the nearest other gesture), or 0 where the other one is
         nearer; relative to the language, it cannot tell that a query was no gesture at all.

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.rejection import largest_novelty
-from app.recognition.features.traversals import Reading
+from app.recognition.decision.rejection import take_largest_novelty
+from app.recognition.features.traversals import Traversal
 from app.recognition.poses.sequence import FloatArray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Comparison:
+class ScoreTable:
     """What decides a recognition, taken apart voter by voter.
 
     Attributes
@@ -28,7 +28,7 @@ class Comparison:
     turned
         ``(G,)``: what is added since the gesture fits only when read backwards, or with its sides
         exchanged.
-    readings
+    traversals
         The order in which each gesture's steps fit best; None where only its image is compared.
     mirrored
         ``(G,)``: whether it is the gesture's mirror image that fits best.
@@ -43,7 +43,7 @@ class Comparison:
     distances: FloatArray
     contributions: FloatArray
     turned: FloatArray
-    readings: tuple[Reading | None, ...]
+    traversals: tuple[Traversal | None, ...]
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
 
@@ -62,4 +62,4 @@ class Comparison:
 
         NaN for a gesture without thresholds, all of profile ``paper``.
         """
-        return largest_novelty(self.novelty_by_view)
+        return take_largest_novelty(self.novelty_by_view)

@@ -12,7 +12,8 @@ from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS, Voter, describe
+from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape.shape_voter import ShapeVoter, describe_drawing
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,10 +116,10 @@ def _described(query: Trajectory, simplification: float) -> dict[str, FloatArray
     known = np.isfinite(query.xy)
     if not (known.all() or known.all(axis=2).any(axis=0).all()):
         return {}
-    return describe(draw(query, simplification), PAPER_VOTERS)
+    return describe_drawing(draw(query, simplification), PAPER_VOTERS)
 
 
-def _ballots(gestures: Sequence[Gesture], voters: Sequence[Voter]) -> tuple[_Ballot, ...]:
+def _ballots(gestures: Sequence[Gesture], voters: Sequence[ShapeVoter]) -> tuple[_Ballot, ...]:
     """Gather the gestures that can be compared by their salient keypoints."""
     members: dict[tuple[str, ...], list[int]] = {}
     for index, gesture in enumerate(gestures):
@@ -135,7 +136,7 @@ def _ballots(gestures: Sequence[Gesture], voters: Sequence[Voter]) -> tuple[_Bal
     return tuple(ballots)
 
 
-def _descriptors(gesture: Gesture, voters: Sequence[Voter]) -> dict[str, FloatArray]:
+def _descriptors(gesture: Gesture, voters: Sequence[ShapeVoter]) -> dict[str, FloatArray]:
     """Return the stored descriptors, with those made now that the gesture lacks."""
     missing = [voter for voter in voters if voter.name not in gesture.descriptors]
-    return dict(gesture.descriptors) | describe(gesture.drawing, missing)
+    return dict(gesture.descriptors) | describe_drawing(gesture.drawing, missing)

@@ -1,4 +1,4 @@
-"""A gesture as it was shown, in the readings that it leaves open, described for all voters."""
+"""A gesture as it was shown, in the traversals that it leaves open, described for all voters."""
 
 from __future__ import annotations
 
@@ -6,26 +6,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.features.motion import hands_in, movement, on_both_sides
-from app.recognition.features.traversals import Reading, readings
+from app.recognition.features.motion import build_movement, find_hands, uses_both_sides
+from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 
 
 @dataclass(frozen=True, eq=False)
-class ReadGesture:
-    """One gesture in its readings, and per voter's name their descriptors."""
+class DescribedGesture:
+    """One gesture in its traversals, and per voter's name their descriptors."""
 
-    readings: tuple[Reading, ...]
+    traversals: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
 
 
 @dataclass(frozen=True)
 class ShownGesture:
-    """All of a gesture that its readings depend on.
+    """All of a gesture that its traversals depend on.
 
     Attributes
     ----------
@@ -47,23 +47,25 @@ class ShownGesture:
         switches = gesture.switches
         return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
 
-    def read(self, landmarks: tuple[str, ...], *, every: bool) -> ReadGesture:
-        """Describe a gesture with a demonstration in `every` thinkable reading, or just as shown.
+    def read(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
+        """Describe a gesture with a demonstration in `every` thinkable traversal, or just as shown.
 
         Once for each set of landmarks that a language follows.
         """
         trajectory = self.trajectory
         assert trajectory is not None
         both_ways = self.direction != "on"
-        either_side = self.mirror == "auto" and on_both_sides(self.salient)
-        hands = hands_in(self.salient)
+        either_side = self.mirror == "auto" and uses_both_sides(self.salient)
+        hands = find_hands(self.salient)
 
-        def work_out() -> ReadGesture:
-            shown = movement(trajectory, landmarks)
-            found = readings(shown, hands=hands, both_ways=both_ways, either_side=either_side)
+        def work_out() -> DescribedGesture:
+            shown = build_movement(trajectory, landmarks)
+            found = list_traversals(
+                shown, hands=hands, both_ways=both_ways, either_side=either_side
+            )
             found = found if every else found[:1]
             movements = [each.of(shown, landmarks) for each in found]
-            return ReadGesture(
+            return DescribedGesture(
                 found,
                 {
                     voter.name: np.array([voter.describe(each) for each in movements])
@@ -72,5 +74,5 @@ class ShownGesture:
             )
 
         return trajectory.once(
-            ("readings", landmarks, hands, both_ways, either_side, every), work_out
+            ("traversals", landmarks, hands, both_ways, either_side, every), work_out
         )

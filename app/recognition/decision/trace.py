@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.poses.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Examination:
+class Trace:
     """What a recogniser saw, compared and decided.
 
     Attributes
@@ -25,5 +25,5 @@ class Examination:
     """
 
     query: Trajectory
-    comparison: Comparison
+    comparison: ScoreTable
     result: Recognition

@@ -5,7 +5,7 @@ from app.recognition.estimation.factory import (
     Backend,
     create_estimator,
     finds_hands,
-    landmarks_of,
+    list_landmarks,
 )
 from app.recognition.estimation.landmark_models.onnx_session import Provider, available_providers
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
@@ -26,5 +26,5 @@ __all__ = [
     "available_providers",
     "create_estimator",
     "finds_hands",
-    "landmarks_of",
+    "list_landmarks",
 ]

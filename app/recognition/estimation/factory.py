@@ -99,7 +99,7 @@ class _Limited(Protocol):
     finds_hands: bool
 
 
-def landmarks_of(estimator: PoseEstimator) -> tuple[str, ...]:
+def list_landmarks(estimator: PoseEstimator) -> tuple[str, ...]:
     """Return the landmarks that an estimator can find: all of `POSE_LANDMARKS` unless it says so.
 
     The others are NaN in every `Body` it gives.

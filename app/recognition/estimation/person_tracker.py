@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.estimation.landmark_models.suppression import overlaps
+from app.recognition.estimation.landmark_models.suppression import measure_overlaps
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS
 
@@ -19,7 +19,7 @@ PATIENCE_SECONDS: Final = MAX_GAP_SECONDS
 either, so the gesture is lost and another person may be followed."""
 
 
-class SubjectChoice:
+class PersonTracker:
     """Keeps to one person from frame to frame.
 
     First the most prominent: the largest box, weighted by the detector's belief. Then whoever is
@@ -54,25 +54,25 @@ class SubjectChoice:
         if chosen is None:
             if self._box is not None and 0 <= time - self._since <= PATIENCE_SECONDS:
                 return None
-            chosen = int(np.argmax(prominence(boxes, scores)))
+            chosen = int(np.argmax(measure_prominence(boxes, scores)))
         self._box, self._since = boxes[chosen], time
         return chosen
 
     def _again(self, boxes: FloatArray) -> int | None:
         if self._box is None:
             return None
-        shared = overlaps(self._box, boxes)
+        shared = measure_overlaps(self._box, boxes)
         nearest = int(np.argmax(shared))
         return nearest if shared[nearest] >= SAME_PERSON else None
 
 
-def prominence(boxes: FloatArray, scores: FloatArray) -> FloatArray:
+def measure_prominence(boxes: FloatArray, scores: FloatArray) -> FloatArray:
     """Return ``(N,)`` how much each person stands out: area of the box times belief."""
     sides = np.clip(boxes[:, 1] - boxes[:, 0], 0, None)
     return np.asarray(sides.prod(axis=1) * scores, dtype=np.float64)
 
 
-def boxes_around(xy: FloatArray) -> FloatArray:
+def find_boxes(xy: FloatArray) -> FloatArray:
     """Return ``(N, 2, 2)`` boxes around the seen points of N people ``(N, K, 2)``.
 
     Every person has at least one point that is not NaN.

@@ -39,7 +39,7 @@ LUMA: Final = np.array([0.299, 0.587, 0.114])
 """Weights of red, green and blue in brightness (ITU-R BT.601)."""
 
 
-def corrected(image: Image, water: WaterCorrection = "auto") -> Image:
+def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
     """Return a frame as it would look in clear water, or the frame itself.
 
     Three steps. What red lacks to green is added where the pixel is green, and so for blue where

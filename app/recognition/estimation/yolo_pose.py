@@ -20,7 +20,7 @@ from app.recognition.estimation.estimator import check_image
 from app.recognition.estimation.landmark_models.letterbox import Letterbox
 from app.recognition.estimation.landmark_models.onnx_session import Provider
 from app.recognition.estimation.landmark_models.planar_model import PlanarModel
-from app.recognition.estimation.person_tracker import SubjectChoice
+from app.recognition.estimation.person_tracker import PersonTracker
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -101,8 +101,8 @@ class YoloPose:
             threads=threads,
             provider=provider,
         )
-        self._subject = SubjectChoice()
-        decoded(self._model.blank(), self._model.path)
+        self._subject = PersonTracker()
+        decode_people(self._model.blank(), self._model.path)
 
     def track(self, image: Image, time: float) -> Body | None:
         """Return the body in `image`, taken at `time` seconds, or None where none is seen.
@@ -118,7 +118,7 @@ class YoloPose:
         check_image(image)
         letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._model.input_size)
         planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
-        people = decoded(self._model.run(planes), self._model.path)
+        people = decode_people(self._model.run(planes), self._model.path)
         chosen = self._subject.choose(people.boxes, people.scores, time)
         if chosen is None:
             return None
@@ -129,7 +129,7 @@ class YoloPose:
         self._subject.reset()
 
 
-def decoded(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:
+def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:
     """Read the people out of what a YOLO-pose model gives for one image.
 
     Parameters

@@ -9,13 +9,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.motion import Movement, hands_in, limbs_of, movement
-from app.recognition.features.traversals import AS_SHOWN, Reading, readings
+from app.recognition.features.motion import Movement, build_movement, find_hands, list_limbs
+from app.recognition.features.traversals import AS_SHOWN, Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import elastic_pairs
+from app.recognition.matching.dtw import dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import BAND, Direction, HandAttitude, Path, Posture
+from app.recognition.voters.motion.direction import Direction
+from app.recognition.voters.motion.hand_attitude import HandAttitude
+from app.recognition.voters.motion.motion_voter import BAND
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
 
 DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond, and of what two gestures
@@ -26,44 +30,49 @@ ElasticVoter = Path | Direction | Posture | HandAttitude
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Example:
-    """A gesture as a query was compared with it: from one side, in one reading.
+    """A gesture as a query was compared with it: from one side, in one traversal.
 
     Attributes
     ----------
     label
         The gesture's.
-    reading
+    traversal
         The order of its steps.
     mirrored
         Whether it is its mirror image.
     movement
-        In that reading.
+        In that traversal.
     time
         ``(N,)`` seconds of the demonstration at which each step was shown.
 
     """
 
     label: str
-    reading: Reading
+    traversal: Traversal
     mirrored: bool
     movement: Movement
     time: FloatArray
 
     @classmethod
     def of(
-        cls, gesture: Gesture, landmarks: Sequence[str], reading: Reading, *, mirrored: bool = False
+        cls,
+        gesture: Gesture,
+        landmarks: Sequence[str],
+        traversal: Traversal,
+        *,
+        mirrored: bool = False,
     ) -> Example | None:
         """Return a gesture's example; None where the gesture has no demonstration."""
         trajectory = (gesture.mirrored() if mirrored else gesture).trajectory
         if trajectory is None or len(trajectory) < 2:
             return None
-        shown = movement(trajectory, landmarks)
+        shown = build_movement(trajectory, landmarks)
         return cls(
             label=gesture.label,
-            reading=reading,
+            traversal=traversal,
             mirrored=mirrored,
-            movement=shown.reordered(reading.order),
-            time=shown.reached[reading.order],
+            movement=shown.reordered(traversal.order),
+            time=shown.reached[traversal.order],
         )
 
 
@@ -177,10 +186,10 @@ def align(
     shape = (len(left), len(parts), 2)
     shown, gesture_shown = left.reshape(shape), right.reshape(shape)
     left, right = left[:, known], right[:, known]
-    pairs = elastic_pairs(left, right, BAND)
+    pairs = dtw_pairs(left, right, BAND)
     squares = (left[pairs[:, 0]] - right[pairs[:, 1]]) ** 2
     compared = np.isfinite(squares).sum(axis=1, keepdims=True)
-    # What is known of two vectors stands for the whole, as in `elastic_distances`.
+    # What is known of two vectors stands for the whole, as in `dtw_distances`.
     costs = np.zeros((len(pairs), len(known)))
     costs[:, known] = np.nan_to_num(squares) * known.sum() / np.maximum(compared, 1)
     return Alignment(
@@ -193,24 +202,24 @@ def align(
         query=shown,
         gesture=gesture_shown,
         costs=costs.reshape(len(pairs), len(parts), 2).sum(axis=2) / len(left),
-        backward=example.reading.backward,
+        backward=example.traversal.backward,
         mirrored=example.mirrored,
     )
 
 
-def nearest_example(
+def find_nearest_example(
     query: Trajectory, gesture: Gesture, landmarks: Sequence[str]
 ) -> Example | None:
-    """Return a gesture's example in the reading whose path is nearest to the query's.
+    """Return a gesture's example in the traversal whose path is nearest to the query's.
 
-    For voters that see drawings, to which all readings are the same. None where one of the two
+    For voters that see drawings, to which all traversals are the same. None where one of the two
     has no movement.
     """
     shown = Example.of(gesture, landmarks, AS_SHOWN)
     if shown is None or len(query) < 2:
         return None
-    open_to = readings(shown.movement, hands=hands_in(gesture.salient), both_ways=True)
-    voter, moved = Path(), movement(query, landmarks)
+    open_to = list_traversals(shown.movement, hands=find_hands(gesture.salient), both_ways=True)
+    voter, moved = Path(), build_movement(query, landmarks)
     read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
@@ -227,7 +236,7 @@ def _places(shown: FloatArray) -> list[list[list[float] | None]]:
 def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
     if isinstance(voter, Path | Direction):
         return tuple(landmarks)
-    bones = limbs_of(landmarks)
+    bones = list_limbs(landmarks)
     if isinstance(voter, HandAttitude):
         bones = tuple(bone for bone in bones if bone[0].endswith("wrist"))
     return tuple(outer for _, outer in bones)

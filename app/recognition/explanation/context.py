@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
-from app.recognition.decision.trace import Examination
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.trace import Trace
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
@@ -18,7 +18,7 @@ from app.recognition.recording.segmentation import Take
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Situation:
+class RecognitionContext:
     """A recogniser and a stroke.
 
     Attributes
@@ -37,7 +37,7 @@ class Situation:
     whole: PoseSequence
 
     @classmethod
-    def of_take(cls, recognizer: Recognizer, take: Take) -> Situation:
+    def of_take(cls, recognizer: Recognizer, take: Take) -> RecognitionContext:
         """Return the situation in which a take is recognised."""
         return cls(recognizer=recognizer, poses=take.poses, whole=take.untrimmed)
 
@@ -57,7 +57,7 @@ class Situation:
         return self.recognizer.tuning
 
     @cached_property
-    def examination(self) -> Examination:
+    def trace(self) -> Trace:
         """What is seen, compared and decided.
 
         Raises
@@ -71,28 +71,28 @@ class Situation:
     @property
     def trajectory(self) -> Trajectory:
         """The stroke as the voters see it."""
-        return self.examination.query
+        return self.trace.query
 
     @property
-    def comparison(self) -> Comparison:
+    def comparison(self) -> ScoreTable:
         """The stroke beside every gesture."""
-        return self.examination.comparison
+        return self.trace.comparison
 
     @property
     def result(self) -> Recognition:
         """What is recognised."""
-        return self.examination.result
+        return self.trace.result
 
-    def with_tuning(self, tuning: Tuning) -> Situation:
+    def with_tuning(self, tuning: Tuning) -> RecognitionContext:
         """Tune the recogniser otherwise."""
         return replace(self, recognizer=Recognizer(self.language, self.profile, tuning=tuning))
 
-    def with_profile(self, profile: str) -> Situation:
+    def with_profile(self, profile: str) -> RecognitionContext:
         """Use other voters; weights, which are for voters of a profile, are dropped."""
         tuning = replace(self.tuning, weights={})
         return replace(self, recognizer=Recognizer(self.language, profile, tuning=tuning))
 
-    def with_gesture(self, changed: Gesture) -> Situation:
+    def with_gesture(self, changed: Gesture) -> RecognitionContext:
         """Put a gesture in the place of the one with its label."""
         gestures = [
             changed if gesture.label == changed.label else gesture

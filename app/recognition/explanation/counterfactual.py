@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.errors import RecognitionError
-from app.recognition.explanation.context import Situation
-from app.recognition.explanation.interventions import Change
-from app.recognition.explanation.search import candidates
-from app.recognition.gestures.gesture import condensed
+from app.recognition.errors import OsgError
+from app.recognition.explanation.context import RecognitionContext
+from app.recognition.explanation.interventions import Intervention
+from app.recognition.explanation.search import list_interventions
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import variants
+from app.recognition.simulation.variation import draw_variants
 
 MOST = 8
 """Counterfactuals told: more would be a list to search, not an answer."""
@@ -74,7 +74,7 @@ class Counterfactual:
 
     """
 
-    change: Change
+    change: Intervention
     label: str
     confidence: float
     margin: float
@@ -111,7 +111,7 @@ class Counterfactuals:
 NONE_NEEDED = Counterfactuals(found=(), tried=0)
 
 
-def margin(scores: Sequence[float], expected: int) -> float:
+def measure_margin(scores: Sequence[float], expected: int) -> float:
     """Return the least other score minus the expected gesture's: positive when it is nearest.
 
     Infinite where nothing else can be compared, minus infinite where the expected cannot.
@@ -121,7 +121,7 @@ def margin(scores: Sequence[float], expected: int) -> float:
     return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
 
 
-def counterfactuals(situation: Situation, expected: str) -> Counterfactuals:
+def find_counterfactuals(situation: RecognitionContext, expected: str) -> Counterfactuals:
     """Find the smallest changes with which `expected` is recognised.
 
     Of each series of ever larger changes the first that helps is kept.
@@ -136,7 +136,7 @@ def counterfactuals(situation: Situation, expected: str) -> Counterfactuals:
     """
     found: list[_Found] = []
     tried = 0
-    for series in candidates(situation, expected):
+    for series in list_interventions(situation, expected):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
             if (helps := _verified(situation, change, expected)) is not None:
@@ -151,8 +151,8 @@ def counterfactuals(situation: Situation, expected: str) -> Counterfactuals:
 class _Found:
     """A change that helps, and the situation that it makes."""
 
-    change: Change
-    after: Situation
+    change: Intervention
+    after: RecognitionContext
     margin: float
 
 
@@ -167,16 +167,16 @@ def _smallest(found: Iterable[_Found]) -> list[_Found]:
     return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
 
 
-def _verified(situation: Situation, change: Change, expected: str) -> _Found | None:
+def _verified(situation: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
     """Run the recogniser with a change: None where it does not help or cannot be made."""
     try:
-        after = change.applied(situation)
+        after = change.apply(situation)
         if after.result.label != expected:
             return None
-    except RecognitionError:
+    except OsgError:
         return None
     at = after.result.gestures.index(expected)
-    return _Found(change, after, margin(after.comparison.scores.tolist(), at))
+    return _Found(change, after, measure_margin(after.comparison.scores.tolist(), at))
 
 
 def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
@@ -202,7 +202,7 @@ def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
 class _Rest:
     """Takes of all gestures of a language, to see whether they are still recognised."""
 
-    def __init__(self, situation: Situation) -> None:
+    def __init__(self, situation: RecognitionContext) -> None:
         self._situation = situation
 
     @cached_property
@@ -213,8 +213,8 @@ class _Rest:
         for gesture in self._situation.language.gestures:
             if gesture.trajectory is not None:
                 yield gesture.label, gesture.trajectory
-                for variant in variants(gesture.trajectory, VARIANTS, person="another"):
-                    yield gesture.label, condensed(variant)
+                for variant in draw_variants(gesture.trajectory, VARIANTS, person="another"):
+                    yield gesture.label, condense(variant)
 
     @property
     def labels(self) -> list[str]:
@@ -226,13 +226,13 @@ class _Rest:
         """Labels of the takes that are recognised as things are."""
         return self.recognised(self._situation)
 
-    def recognised(self, situation: Situation) -> list[str]:
+    def recognised(self, situation: RecognitionContext) -> list[str]:
         """Return the labels of the takes that are recognised in another situation."""
         return [label for label, take in self._takes if _is_recognised(situation, label, take)]
 
 
-def _is_recognised(situation: Situation, label: str, take: Trajectory) -> bool:
+def _is_recognised(situation: RecognitionContext, label: str, take: Trajectory) -> bool:
     try:
         return situation.recognizer.recognize_trajectory(take).label == label
-    except RecognitionError:
+    except OsgError:
         return False

@@ -14,16 +14,16 @@ from typing import Any, Literal
 import numpy as np
 
 from app.recognition.decision.motion_references import CLEARLY_SLOWER
-from app.recognition.explanation.divergence import course
+from app.recognition.explanation.divergence import find_divergence
 from app.recognition.explanation.pairing import ALIKE, Pairing
-from app.recognition.features.motion import STEPS, limbs_of, movement
+from app.recognition.features.motion import STEPS, build_movement, list_limbs
 from app.recognition.features.trajectory_image import MIN_EXTENT
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
-from app.recognition.preprocessing.side_swaps import exchanged_back, mistaken_sides
-from app.recognition.text.wording import readable
-from app.recognition.voters.wrist_bend import WristBend
+from app.recognition.preprocessing.side_swaps import find_side_swaps, swap_sides
+from app.recognition.text.wording import humanize
+from app.recognition.voters.motion.wrist_bend import WristBend
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
@@ -95,7 +95,7 @@ class Difference:
         return dict(vars(self))
 
 
-def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, ...]:
+def find_differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, ...]:
     """Tell in what ways a query is not a gesture, the most telling first.
 
     Parameters
@@ -126,11 +126,11 @@ def differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, 
 def _exchanged(pairing: Pairing) -> Iterator[Difference]:
     """Put right what the pose model exchanged, unless it was already."""
     seen = pairing.trajectory
-    changed = mistaken_sides(seen).exchanged
+    changed = find_side_swaps(seen).exchanged
     if not changed.any():
         return
-    right = replace(seen, xy=exchanged_back(seen.xy, seen.landmarks, changed))
-    paths = movement(right, pairing.landmarks).paths
+    right = replace(seen, xy=swap_sides(seen.xy, seen.landmarks, changed))
+    paths = build_movement(right, pairing.landmarks).paths
     left = pairing.distance(paths, pairing.paths_begun_anywhere())
     times = pairing.trajectory.time[changed] + pairing.start
     yield Difference(
@@ -148,14 +148,14 @@ def _exchanged(pairing: Pairing) -> Iterator[Difference]:
 
 def _turned(pairing: Pairing) -> Iterator[Difference]:
     """Turn the query round."""
-    backward = not pairing.example.reading.backward
+    backward = not pairing.example.traversal.backward
     left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
     yield _throughout(pairing, "direction", left, "it goes the other way round")
 
 
 def _read_backwards(pairing: Pairing) -> Iterator[Difference]:
     """Tell that the gesture fits only when read backwards."""
-    if pairing.example.reading.backward:
+    if pairing.example.traversal.backward:
         words = "it goes the other way round, which costs half as much again"
         yield _beside("direction", _busiest(pairing), None, None, words)
 
@@ -256,7 +256,7 @@ def _percent(steps: int) -> str:
 
 def _bent(pairing: Pairing) -> Difference:
     """Tell where the courses part: nothing that was undone explains it."""
-    parted = course(pairing)
+    parted = find_divergence(pairing)
     where = f"where {pairing.example.label!r} {parted.expected}"
     if parted.shown == parted.expected:
         where = f"as {pairing.example.label!r} does, but on another course"
@@ -267,7 +267,7 @@ def _bent(pairing: Pairing) -> Difference:
         start=parted.start,
         end=parted.end,
         words=(
-            f"from {parted.start:.1f} to {parted.end:.1f} s the {readable(parted.landmark)} "
+            f"from {parted.start:.1f} to {parted.end:.1f} s the {humanize(parted.landmark)} "
             f"{parted.shown} {where}"
         ),
     )
@@ -290,7 +290,7 @@ def _unseen(pairing: Pairing) -> Iterator[Difference]:
         gap = int(np.diff(known).argmax())
         start, end = known[gap] + pairing.start, known[gap + 1] + pairing.start
         if end - start > MAX_GAP_SECONDS:
-            words = f"the {readable(name)} was not seen from {start:.1f} to {end:.1f} s"
+            words = f"the {humanize(name)} was not seen from {start:.1f} to {end:.1f} s"
             yield _beside("unseen", name, float(start), float(end), words)
 
 
@@ -339,7 +339,7 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
     shown, expected = (
         voter.describe(each).reshape(-1, 1, 3) for each in (pairing.query, pairing.example.movement)
     )
-    bones = limbs_of(pairing.landmarks)
+    bones = list_limbs(pairing.landmarks)
     wrists = dict.fromkeys(inner for inner, _ in bones if inner.endswith("wrist"))
     for wrist, here, there in zip(wrists, shown, expected, strict=True):
         distance = float(voter.distances(here, there)[0])
@@ -348,7 +348,7 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
             bends = np.degrees(np.arcsin(np.clip([here[0, 0], there[0, 0]], -1, 1)))
             apart = float(bends[0] - bends[1])
             words = (
-                f"the {readable(wrist)} is bent {abs(apart):.0f} degrees farther "
+                f"the {humanize(wrist)} is bent {abs(apart):.0f} degrees farther "
                 f"{'clockwise' if apart > 0 else 'counter-clockwise'} than for "
                 f"{pairing.example.label!r}"
             )

@@ -33,7 +33,7 @@ LEAST_STRETCH = STEPS // 8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Course:
+class Divergence:
     """Where a query and a gesture part most.
 
     Attributes
@@ -57,21 +57,21 @@ class Course:
     expected: str
 
 
-def course(pairing: Pairing) -> Course:
+def find_divergence(pairing: Pairing) -> Divergence:
     """Find the stretch of a query where it parts most from a gesture."""
     alignment = align(pairing.query, pairing.example, pairing.landmarks, start=pairing.start)
     assert alignment is not None  # paths can always be compared
-    return course_of(alignment, pairing.query.paths, pairing.example.movement.paths)
+    return measure_divergence(alignment, pairing.query.paths, pairing.example.movement.paths)
 
 
-def course_of(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> Course:
+def measure_divergence(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> Divergence:
     """Find it along an alignment of two paths ``(N, L, 2)``."""
     costs = alignment.over_time
-    first, last = costliest_stretch(costs.sum(axis=1))
+    first, last = find_costliest_stretch(costs.sum(axis=1))
     joint = int(costs[first : last + 1].sum(axis=0).argmax())
     steps = alignment.pairs[:, 0]
     partners = alignment.pairs[(steps >= first) & (steps <= last), 1]
-    return Course(
+    return Divergence(
         landmark=alignment.parts[joint],
         start=float(alignment.time[first]),
         end=float(alignment.time[last]),
@@ -81,7 +81,7 @@ def course_of(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> C
     )
 
 
-def costliest_stretch(costs: FloatArray) -> tuple[int, int]:
+def find_costliest_stretch(costs: FloatArray) -> tuple[int, int]:
     """Return the first and last step of the stretch that costs most above the average.
 
     The contiguous run with the largest sum of what exceeds the mean (Bentley 1984), widened to

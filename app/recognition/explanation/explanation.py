@@ -11,17 +11,23 @@ from typing import Any
 import numpy as np
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
-from app.recognition.errors import RecognitionError
-from app.recognition.explanation.alignment import Alignment, Example, align, nearest_example
-from app.recognition.explanation.context import Situation
-from app.recognition.explanation.counterfactual import NONE_NEEDED, Counterfactuals, counterfactuals
-from app.recognition.explanation.differences import Difference, differences
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.errors import OsgError
+from app.recognition.explanation.alignment import Alignment, Example, align, find_nearest_example
+from app.recognition.explanation.context import RecognitionContext
+from app.recognition.explanation.counterfactual import (
+    NONE_NEEDED,
+    Counterfactuals,
+    find_counterfactuals,
+)
+from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.pairing import Pairing
-from app.recognition.explanation.sentence import in_words
-from app.recognition.explanation.vote_breakdown import Verdict, verdicts
-from app.recognition.features.motion import movement
-from app.recognition.voters.motion import Path, Posture
+from app.recognition.explanation.sentence import write_sentence
+from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
+from app.recognition.features.motion import build_movement
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -40,7 +46,7 @@ class Explanation:
         What the expected gesture is held against: the nearest one, or the runner-up where the
         expected one is nearest; None in a language of one gesture.
     score, other_score
-        Of the expected gesture and of the other, see `Comparison.scores`; infinite where not
+        Of the expected gesture and of the other, see `ScoreTable.scores`; infinite where not
         comparable.
     novelty
         How much farther than its thresholds allow the query lies from the expected gesture: above
@@ -52,7 +58,7 @@ class Explanation:
     verdicts
         What every voter said, those that spoke most against the expected gesture first.
     turned
-        What is added to `score` minus `other_score` for reading one of the two backwards.
+        What is added to `score` minus `other_score` for traversal one of the two backwards.
     alignments
         Of the query with the expected gesture and with the other: of the paths, and in profile
         ``full`` of the postures.
@@ -75,7 +81,7 @@ class Explanation:
     novelty: float
     fault: str | None
     votes: Mapping[str, int]
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[VoterBreakdown, ...]
     turned: float
     alignments: tuple[Alignment, ...]
     differences: tuple[Difference, ...]
@@ -94,7 +100,7 @@ class Explanation:
     @property
     def sentence(self) -> str:
         """Why, in words."""
-        return in_words(self)
+        return write_sentence(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; what is infinite becomes None."""
@@ -123,7 +129,7 @@ class Explanation:
 
 
 def explain(
-    situation: Situation, expected: str, *, with_counterfactuals: bool = True
+    situation: RecognitionContext, expected: str, *, with_counterfactuals: bool = True
 ) -> Explanation:
     """Explain one recognition.
 
@@ -138,14 +144,14 @@ def explain(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When `expected` is no gesture of the language.
     PoseError
         When the recording shows nothing that a gesture needs.
 
     """
     if expected not in situation.language.labels:
-        raise RecognitionError(
+        raise OsgError(
             f"no gesture {expected!r} in {situation.language.name!r} to expect; it has "
             f"{', '.join(situation.language.labels)}"
         )
@@ -166,7 +172,7 @@ def explain(
         novelty=float(comparison.novelty[at]),
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
-        verdicts=verdicts(
+        verdicts=break_down_votes(
             comparison, result, situation.language.gestures[at].thresholds, at, other
         ),
         turned=_difference(comparison, at, other),
@@ -177,11 +183,11 @@ def explain(
             for alignment in pairings.alignments(index)
         ),
         differences=pairings.differences(at),
-        counterfactuals=counterfactuals(situation, expected) if wanted else NONE_NEEDED,
+        counterfactuals=find_counterfactuals(situation, expected) if wanted else NONE_NEEDED,
     )
 
 
-def _held_against(comparison: Comparison, result: Recognition, expected: int) -> int | None:
+def _held_against(comparison: ScoreTable, result: Recognition, expected: int) -> int | None:
     """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
     nearest = result.gestures.index(result.nearest)
     if nearest != expected:
@@ -191,7 +197,7 @@ def _held_against(comparison: Comparison, result: Recognition, expected: int) ->
     return int(scores.argmin()) if np.isfinite(scores).any() else None
 
 
-def _difference(comparison: Comparison, expected: int, other: int | None) -> float:
+def _difference(comparison: ScoreTable, expected: int, other: int | None) -> float:
     if other is None or not np.isfinite(comparison.scores[[expected, other]]).all():
         return 0.0
     return float(comparison.turned[expected] - comparison.turned[other])
@@ -200,10 +206,10 @@ def _difference(comparison: Comparison, expected: int, other: int | None) -> flo
 class _Pairings:
     """The query of a situation beside its gestures, as the recogniser compared them."""
 
-    def __init__(self, situation: Situation) -> None:
+    def __init__(self, situation: RecognitionContext) -> None:
         self._gestures = situation.language.gestures
         self._comparison = situation.comparison
-        self._full = situation.profile == "full"
+        self._full = PROFILES[situation.profile].compares_motion
         self._start = float(situation.poses.time[0])
         self._landmarks = situation.recognizer.landmarks
         self._query = situation.trajectory
@@ -213,7 +219,7 @@ class _Pairings:
         example = self._example(index)
         if example is None or len(self._query) < 2:
             return
-        query = movement(self._query, self._landmarks)
+        query = build_movement(self._query, self._landmarks)
         for voter in (Path(), Posture()) if self._full else (Path(),):
             aligned = align(query, example, self._landmarks, start=self._start, voter=voter)
             if aligned is not None:
@@ -227,18 +233,18 @@ class _Pairings:
         pairing = Pairing.of(
             self._query,
             self._gestures[index],
-            example.reading,
+            example.traversal,
             mirrored=example.mirrored,
             start=self._start,
         )
-        return () if pairing is None else differences(pairing, sees_direction=self._full)
+        return () if pairing is None else find_differences(pairing, sees_direction=self._full)
 
     def _example(self, index: int) -> Example | None:
-        gesture, reading = self._gestures[index], self._comparison.readings[index]
-        if reading is None:
-            return nearest_example(self._query, gesture, self._landmarks)
+        gesture, traversal = self._gestures[index], self._comparison.traversals[index]
+        if traversal is None:
+            return find_nearest_example(self._query, gesture, self._landmarks)
         mirrored = bool(self._comparison.mirrored[index])
-        return Example.of(gesture, self._landmarks, reading, mirrored=mirrored)
+        return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
 
 
 def _finite(value: float) -> float | None:

@@ -10,11 +10,15 @@ from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Literal
 
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
-from app.recognition.gestures.tuning import repair_words, simplification_words, weight_words
-from app.recognition.text.wording import all_readable, listed
+from app.recognition.gestures.tuning import (
+    describe_repair,
+    describe_simplification,
+    describe_weight,
+)
+from app.recognition.text.wording import humanize_all, join_words
 
 SwitchName = Literal["direction", "tempo", "mirror"]
 
@@ -23,7 +27,7 @@ Reach = Literal["take", "gesture", "language"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change(ABC):
+class Intervention(ABC):
     """One thing that might have been otherwise.
 
     Attributes
@@ -43,12 +47,12 @@ class Change(ABC):
         """A clause for people that follows "it would have been read so"."""
 
     @abstractmethod
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """Return the situation with this change.
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When it cannot be made here.
 
         """
@@ -60,7 +64,7 @@ class Change(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trim(Change):
+class Trim(Intervention):
     """Another stretch of the clip; its size is the share of the stroke added or taken away."""
 
     kind = "trim"
@@ -73,7 +77,7 @@ class Trim(Change):
         """See `Change`."""
         return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         # The ends are moments of frames; a rounding error must not lose them.
         poses = situation.whole.between(self.start - 1e-6, self.end + 1e-6)
@@ -81,7 +85,7 @@ class Trim(Change):
 
 
 @dataclass(frozen=True, kw_only=True)
-class VoterWeight(Change):
+class VoterWeight(Intervention):
     """Another weight for a voter, 0: off; its size is the share of all say that moves."""
 
     kind = "voter_weight"
@@ -92,9 +96,9 @@ class VoterWeight(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        return weight_words(self.voter, self.factor)
+        return describe_weight(self.voter, self.factor)
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         weights = {**situation.tuning.weights}
         weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
@@ -102,7 +106,7 @@ class VoterWeight(Change):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Simplification(Change):
+class Simplification(Intervention):
     """Another tolerance for the drawings; its size is 1 - the smaller over the larger."""
 
     kind = "simplification"
@@ -112,15 +116,15 @@ class Simplification(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        return simplification_words(self.tolerance)
+        return describe_simplification(self.tolerance)
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         return situation.with_tuning(replace(situation.tuning, simplification=self.tolerance))
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeypointRepair(Change):
+class KeypointRepair(Intervention):
     """Bad keypoints repaired, or left as they are; its size is the share of such moments."""
 
     kind = "keypoint_repair"
@@ -130,15 +134,15 @@ class KeypointRepair(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        return repair_words(self.on)
+        return describe_repair(self.on)
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         return situation.with_tuning(replace(situation.tuning, keypoints_repaired=self.on))
 
 
 @dataclass(frozen=True, kw_only=True)
-class OtherProfile(Change):
+class OtherProfile(Intervention):
     """Another set of voters: all is changed, its size is 1."""
 
     kind = "profile"
@@ -150,13 +154,13 @@ class OtherProfile(Change):
         """See `Change`."""
         return f"with the profile {self.profile}"
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         return situation.with_profile(self.profile)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SalientKeypoints(Change):
+class SalientKeypoints(Intervention):
     """Other salient keypoints of a gesture; its size is the share of either that is not both."""
 
     kind = "salient"
@@ -167,17 +171,17 @@ class SalientKeypoints(Change):
     @property
     def words(self) -> str:
         """See `Change`."""
-        followed = listed(all_readable(self.salient))
+        followed = join_words(humanize_all(self.salient))
         return f"with {followed} as the salient keypoints of {self.label!r}"
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         gesture = situation.language.gesture(self.label)
         return situation.with_gesture(gesture.with_salient(self.salient))
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwitchPosition(Change):
+class SwitchPosition(Intervention):
     """Another position of one of a gesture's three switches: its size is a third."""
 
     kind = "switch"
@@ -191,7 +195,7 @@ class SwitchPosition(Change):
         """See `Change`."""
         return f"with the switch {self.switch} of {self.label!r} {self.position}"
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         gesture = situation.language.gesture(self.label)
         switches = replace(gesture.switches, **{self.switch: self.position})
@@ -199,7 +203,7 @@ class SwitchPosition(Change):
 
 
 @dataclass(frozen=True, kw_only=True)
-class NewDemonstration(Change):
+class NewDemonstration(Intervention):
     """The take as the gesture's demonstration: the gesture is another, its size is 1."""
 
     kind = "demonstration"
@@ -211,7 +215,7 @@ class NewDemonstration(Change):
         """See `Change`."""
         return f"with this take as the demonstration of {self.label!r}"
 
-    def applied(self, situation: Situation) -> Situation:
+    def apply(self, situation: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         before = situation.language.gesture(self.label)
         made = Gesture.from_demonstration(

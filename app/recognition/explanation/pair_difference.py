@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.recognition.explanation.alignment import Alignment, align
-from app.recognition.explanation.differences import differences
-from app.recognition.explanation.divergence import course_of
+from app.recognition.explanation.differences import find_differences
+from app.recognition.explanation.divergence import measure_divergence
 from app.recognition.explanation.pairing import Pairing
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.recognizer import Recognizer
-from app.recognition.text.wording import readable
+from app.recognition.text.wording import humanize
 
 
 @dataclass(frozen=True, eq=False)
-class Contrast:
+class PairDifference:
     """How one demonstration differs from another.
 
     Attributes
@@ -33,7 +33,7 @@ class Contrast:
     alignment: Alignment
 
 
-def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
+def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference | None:
     """Tell how the demonstration of one gesture differs from that of another.
 
     Parameters
@@ -51,21 +51,21 @@ def contrast(recognizer: Recognizer, one: int, other: int) -> Contrast | None:
     shown, against = (recognizer.language.gestures[index] for index in (one, other))
     if shown.trajectory is None:
         return None
-    query = condensed(shown.trajectory)
+    query = condense(shown.trajectory)
     compared = recognizer.compare(query)
-    reading = compared.readings[other]
-    if reading is None:
+    traversal = compared.traversals[other]
+    if traversal is None:
         return None
-    pairing = Pairing.of(query, against, reading, mirrored=bool(compared.mirrored[other]))
+    pairing = Pairing.of(query, against, traversal, mirrored=bool(compared.mirrored[other]))
     if pairing is None:
         return None
     alignment = align(pairing.query, pairing.example, pairing.landmarks)
     assert alignment is not None  # paths can always be compared
-    parted = course_of(alignment, pairing.query.paths, pairing.example.movement.paths)
-    named = differences(pairing, sees_direction=True)
+    parted = measure_divergence(alignment, pairing.query.paths, pairing.example.movement.paths)
+    named = find_differences(pairing, sees_direction=True)
     little = (
         f"little, and most from {parted.start:.1f} to {parted.end:.1f} s, when the "
-        f"{readable(parted.landmark)} {parted.shown}"
+        f"{humanize(parted.landmark)} {parted.shown}"
     )
     words = named[0].words if named else little
-    return Contrast(words, (parted.start, parted.end), alignment)
+    return PairDifference(words, (parted.start, parted.end), alignment)

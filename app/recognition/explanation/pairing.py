@@ -8,17 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
-from app.recognition.decision.fusion import TYPICAL
 from app.recognition.explanation.alignment import Example
-from app.recognition.features.motion import Movement, hands_in, movement
-from app.recognition.features.traversals import Reading, readings
+from app.recognition.features.motion import Movement, build_movement, find_hands
+from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import Path
+from app.recognition.voters.motion.path import Path
 
-ALIKE = TYPICAL["path"].within
+ALIKE = Path.within
 """Path distance between two people's takes of one figure, the mean."""
 
 
@@ -50,7 +49,7 @@ class Pairing:
     query: Movement
     example: Example
     gesture: Trajectory
-    starts: tuple[Reading, ...]
+    starts: tuple[Traversal, ...]
     start: float
 
     @classmethod
@@ -58,7 +57,7 @@ class Pairing:
         cls,
         trajectory: Trajectory,
         gesture: Gesture,
-        reading: Reading,
+        traversal: Traversal,
         *,
         mirrored: bool = False,
         start: float = 0.0,
@@ -69,17 +68,17 @@ class Pairing:
             return None
         both = {*side.salient, *(other_side(name) for name in side.salient)}
         landmarks = tuple(sorted(both & {*side.trajectory.landmarks} & {*trajectory.landmarks}))
-        example = Example.of(gesture, landmarks, reading, mirrored=mirrored)
+        example = Example.of(gesture, landmarks, traversal, mirrored=mirrored)
         if not landmarks or example is None:
             return None
-        shown = movement(side.trajectory, landmarks)
+        shown = build_movement(side.trajectory, landmarks)
         return cls(
             landmarks=landmarks,
             trajectory=trajectory,
-            query=movement(trajectory, landmarks),
+            query=build_movement(trajectory, landmarks),
             example=example,
             gesture=side.trajectory,
-            starts=readings(shown, hands=hands_in(side.salient), both_ways=False),
+            starts=list_traversals(shown, hands=find_hands(side.salient), both_ways=False),
             start=start,
         )
 
@@ -110,9 +109,9 @@ class Pairing:
     def paths_begun_anywhere(self, *, backward: bool = False) -> list[FloatArray]:
         """Return the gesture's paths from each of its starts, as shown or the other way round."""
         shown = np.empty_like(self.example.movement.paths)
-        shown[self.example.reading.order] = self.example.movement.paths
+        shown[self.example.traversal.order] = self.example.movement.paths
         step = -1 if backward else 1
-        return [shown[reading.order[::step]] for reading in self.starts]
+        return [shown[traversal.order[::step]] for traversal in self.starts]
 
     def seconds(self, step: int) -> float:
         """Return the second of the query's clock at which it reached a step."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator
 
 import numpy as np
 
 from app.recognition.decision.motion_references import CLEARLY_SLOWER
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.interventions import (
-    Change,
+    Intervention,
     KeypointRepair,
     NewDemonstration,
     OtherProfile,
@@ -24,8 +23,8 @@ from app.recognition.explanation.interventions import (
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
-from app.recognition.preprocessing.repair import repaired
-from app.recognition.preprocessing.salience import salient_landmarks
+from app.recognition.preprocessing.repair import repair_poses
+from app.recognition.preprocessing.salience import find_salient_landmarks
 
 TRIM_STEP = 0.1
 """Share of the stroke by which it is trimmed earlier or later, step by step."""
@@ -39,14 +38,10 @@ WEIGHTS = (0.5, 0.0, 2.0, 4.0)
 TOLERANCES = (0.5, 2.0, 4.0)
 """Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
 
-PROMISING = 0.05
-"""Score by which the expected gesture may still miss when a voter's weight is tried: as much as
-another reading of a gesture, which the new weight may bring about, is usually nearer."""
-
-Series = list[Change]
+Series = list[Intervention]
 
 
-def candidates(situation: Situation, expected: str) -> Iterator[Series]:
+def list_interventions(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Give all changes worth trying.
 
     Parameters
@@ -71,7 +66,7 @@ def candidates(situation: Situation, expected: str) -> Iterator[Series]:
     ]
 
 
-def _trims(situation: Situation) -> Iterator[Series]:
+def _trims(situation: RecognitionContext) -> Iterator[Series]:
     """Move the start, the end, or both, within what the stroke was cut out of."""
     time, whole = situation.poses.time, situation.whole.time
     start, end = float(time[0]), float(time[-1])
@@ -95,36 +90,18 @@ def _trims(situation: Situation) -> Iterator[Series]:
         ]
 
 
-def _weights(situation: Situation, expected: str) -> Iterator[Series]:
+def _weights(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Weigh each voter that has a say less, and more, where that promises to help."""
-    promises = _promised_by_votes if situation.profile == "paper" else _promised_by_scores
+    gesture = situation.language.labels.index(expected)
+    vote = situation.recognizer.vote
     for voter, share in situation.result.weights.items():
         if 0 < share < 1:
             for factors in (WEIGHTS[:2], WEIGHTS[2:]):
                 yield [
                     VoterWeight(size=_moved(share, factor), voter=voter, factor=factor)
                     for factor in factors
-                    if promises(situation, expected, voter, factor)
+                    if vote.may_win(situation.comparison, situation.result, gesture, voter, factor)
                 ]
-
-
-def _promised_by_votes(situation: Situation, expected: str, voter: str, factor: float) -> bool:
-    """Tell whether no gesture has more votes than the expected one."""
-    count: dict[str, float] = defaultdict(float)
-    for name, vote in situation.result.counted.items():
-        weight = situation.result.weights[name]
-        count[vote] += weight * factor if name == voter else weight
-    return count[expected] >= max(count.values())
-
-
-def _promised_by_scores(situation: Situation, expected: str, voter: str, factor: float) -> bool:
-    """Tell whether the expected gesture comes close to the nearest one."""
-    comparison, at = situation.comparison, situation.language.labels.index(expected)
-    comparable = np.isfinite(comparison.scores)
-    contributions = comparison.contributions[comparison.voters.index(voter)]
-    scores = comparison.scores
-    scores[comparable] += (factor - 1) * contributions[comparable]
-    return bool(comparable[at] and scores[at] < scores.min() + PROMISING)
 
 
 def _moved(share: float, factor: float) -> float:
@@ -132,7 +109,7 @@ def _moved(share: float, factor: float) -> float:
     return abs(share * factor / (1 - share + share * factor) - share)
 
 
-def _drawings(situation: Situation) -> Iterator[Series]:
+def _drawings(situation: RecognitionContext) -> Iterator[Series]:
     now = situation.tuning.simplification
     if now > 0:
         for factors in (TOLERANCES[:1], TOLERANCES[1:]):
@@ -142,22 +119,22 @@ def _drawings(situation: Situation) -> Iterator[Series]:
             ]
 
 
-def _repairs(situation: Situation) -> Iterator[Series]:
+def _repairs(situation: RecognitionContext) -> Iterator[Series]:
     """Repair bad keypoints, or leave them, where there are any."""
-    share = float(repaired(situation.poses).touched.mean())
+    share = float(repair_poses(situation.poses).touched.mean())
     if share > 0:
         yield [KeypointRepair(size=share, on=not situation.recognizer.repairs)]
 
 
-def _gestures(situation: Situation, expected: str) -> Iterator[Series]:
+def _gestures(situation: RecognitionContext, expected: str) -> Iterator[Series]:
     """Change the expected gesture, or the one it was taken for."""
-    moved = salient_landmarks(situation.trajectory)
+    moved = find_salient_landmarks(situation.trajectory)
     for label in dict.fromkeys((expected, situation.result.nearest)):
         gesture = situation.language.gesture(label)
         if gesture.trajectory is None:
             continue
         yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
-        if situation.profile == "full":
+        if PROFILES[situation.profile].compares_motion:
             yield from _switches(situation, label, expected=label == expected)
     yield [NewDemonstration(size=1.0, label=expected)]
 
@@ -177,17 +154,17 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
     ]
 
 
-def _switches(situation: Situation, label: str, *, expected: bool) -> Iterator[Series]:
+def _switches(situation: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
     """Let less count of the expected gesture, and more of the one it was taken for.
 
     Only where it can matter: which way round, from which side or how fast the other one was read.
     """
     comparison, at = situation.comparison, situation.language.labels.index(label)
-    reading = comparison.readings[at]
+    traversal = comparison.traversals[at]
     slower = comparison.distances[comparison.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
     positions: dict[SwitchName, tuple[Switch, bool]] = {
-        "direction": (strict, reading is not None and reading.backward != expected),
+        "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
         "mirror": ("on" if expected else "off", bool(comparison.mirrored[at]) != expected),
     }

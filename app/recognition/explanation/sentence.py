@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from app.recognition.explanation.differences import Difference
-from app.recognition.text.wording import all_readable, listed
+from app.recognition.text.wording import humanize_all, join_words
 
 if TYPE_CHECKING:
     from app.recognition.explanation.explanation import Explanation
@@ -21,14 +21,14 @@ MOST_VOTERS_NAMED = 3
 """Voters named in a sentence; the table has all."""
 
 
-def in_words(explanation: Explanation) -> str:
+def write_sentence(explanation: Explanation) -> str:
     """Say why a recognition came out as it did, in one to three sentences."""
     if explanation.right:
         return _right(explanation)
     parts = [_outcome(explanation) + _reason(explanation)]
     beside = [each.words for each in explanation.differences if each.share == 0]
     if beside:
-        parts.append(f"Besides, {listed(beside)}.")
+        parts.append(f"Besides, {join_words(beside)}.")
     parts.append(_remedy(explanation))
     return " ".join(part for part in parts if part)
 
@@ -86,8 +86,8 @@ def _reason(explanation: Explanation) -> str:
 
 def _testimony(explanation: Explanation) -> str:
     """Name the voters that spoke most against the expected gesture, if any did."""
-    loudest = all_readable(_witnesses(explanation)[:MOST_VOTERS_NAMED])
-    return f"{listed(loudest)} spoke most against {explanation.expected!r}" if loudest else ""
+    loudest = humanize_all(_witnesses(explanation)[:MOST_VOTERS_NAMED])
+    return f"{join_words(loudest)} spoke most against {explanation.expected!r}" if loudest else ""
 
 
 def _witnesses(explanation: Explanation) -> list[str]:

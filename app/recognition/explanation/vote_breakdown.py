@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import Comparison
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.gestures.profile import PROFILES
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
+class VoterBreakdown:
     """One voter between two gestures: the expected one and the other.
 
     Attributes
@@ -55,13 +55,13 @@ class Verdict:
         }
 
 
-def verdicts(
-    comparison: Comparison,
+def break_down_votes(
+    comparison: ScoreTable,
     result: Recognition,
     thresholds: Mapping[str, float],
     expected: int,
     other: int | None,
-) -> tuple[Verdict, ...]:
+) -> tuple[VoterBreakdown, ...]:
     """Gather what every voter said, those that spoke most against the expected gesture first.
 
     Parameters
@@ -74,7 +74,7 @@ def verdicts(
         Indices of the two gestures; without another one nothing speaks against the expected.
 
     """
-    units = {voter.name: voter.unit for voter in PROFILES[result.profile]}
+    units = {voter.name: voter.unit for voter in PROFILES[result.profile].voters}
     label = result.gestures[expected]
     given = []
     for row, voter in enumerate(result.voters):
@@ -82,7 +82,7 @@ def verdicts(
         vote = result.votes.get(voter)
         against = 0.0 if other is None else float(shares[expected]) - float(shares[other])
         given.append(
-            Verdict(
+            VoterBreakdown(
                 voter=voter,
                 unit=units[voter],
                 weight=result.weights[voter],

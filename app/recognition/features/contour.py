@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.morphology import closed
+from app.recognition.features.morphology import close_image
 
 CLOSING_DIAMETER = 28
 """Diameter in pixels of the disc that closes gaps between strokes before the outline is taken.
@@ -26,12 +26,12 @@ BinaryImage = npt.NDArray[np.uint8]
 """``(height, width)``, 255 on a stroke, 0 elsewhere; x to the right, y down."""
 
 
-Contour = npt.NDArray[np.int32]
+Polygon = npt.NDArray[np.int32]
 """``(N, 2)`` pixels, x right, y down."""
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class Contour:
     """The outer contours of an image's strokes.
 
     Attributes
@@ -42,10 +42,10 @@ class Outline:
 
     """
 
-    contours: tuple[Contour, ...]
+    contours: tuple[Polygon, ...]
 
     @classmethod
-    def of(cls, image: BinaryImage) -> Outline:
+    def of(cls, image: BinaryImage) -> Contour:
         """Close gaps and follow the outer contours (Suzuki and Abe 1985).
 
         The closer the image is cut around the strokes, the less there is to do.
@@ -56,7 +56,7 @@ class Outline:
         padded = np.zeros((height + 2 * border, row), dtype=np.uint8)
         padded[border : border + height, border : border + width] = image
         found, _ = cv2.findContours(
-            closed(padded, CLOSING_DIAMETER),
+            close_image(padded, CLOSING_DIAMETER),
             cv2.RETR_EXTERNAL,
             cv2.CHAIN_APPROX_NONE,
             offset=(-border, -border),
@@ -77,7 +77,7 @@ class Outline:
         return max(1.0, float(sum(cv2.arcLength(each, True) for each in self.contours)))
 
     @cached_property
-    def points(self) -> Contour:
+    def points(self) -> Polygon:
         """``(N, 2)`` points of all contours, one contour after the other."""
         return np.concatenate(self.contours)
 

@@ -1,8 +1,8 @@
 """Morphological closing of binary images by a disc, all pixels at once.
 
-OpenCV compares every pixel with every pixel of a disc. Here an image is one large integer, a bit a
-pixel, row after row; shifting it moves the whole image, and ``or`` unites images. The result is the
-same to the last pixel, in a fifth of the time.
+The image is one large integer, a bit a pixel, row after row; shifting it moves the whole image, and
+``or`` unites images. The result is that of ``cv2.morphologyEx``, with which the check of a language
+of eight gestures takes 1.5 to 2 times as long.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 
-def closed(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]:
+def close_image(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]:
     """Dilate by a disc, then erode by it: gaps that the disc does not fit into are filled.
 
     Parameters

@@ -82,7 +82,7 @@ class Movement:
 
         The mean over the steps of the summed squares of all landmarks; what does not move stays.
         """
-        return sized(self.paths - np.add.reduce(self.paths) / len(self.paths))
+        return normalize_size(self.paths - np.add.reduce(self.paths) / len(self.paths))
 
     @cached_property
     def under_way(self) -> FloatArray:
@@ -109,7 +109,7 @@ class Movement:
             Names of the paths; one whose counterpart is not among them stays as it is.
 
         """
-        parts = tuple(part_of(name) for name in landmarks)
+        parts = tuple(parse_body_part(name) for name in landmarks)
         sides = _sides_of(parts)
         by_side = self.limbs.reshape(len(self.limbs), len(sides), len(LIMBS), 2)
         return replace(
@@ -121,7 +121,7 @@ class Movement:
         )
 
 
-def sized(vectors: FloatArray) -> FloatArray:
+def normalize_size(vectors: FloatArray) -> FloatArray:
     """Divide ``(N, K, 2)`` by the root of the mean over the steps of the summed squares.
 
     NaN adds nothing; what has no size stays as it is.
@@ -135,14 +135,14 @@ def sized(vectors: FloatArray) -> FloatArray:
     return vectors / size if size > 0 else vectors
 
 
-def followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
+def find_followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return the landmarks that are salient in any gesture of a language, in alphabetical order."""
     return tuple(sorted({name for names in salient for name in names}))
 
 
-def limbs_of(landmarks: Sequence[str]) -> tuple[tuple[str, str], ...]:
+def list_limbs(landmarks: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return the bones of the arms that the landmarks belong to, by the parts at their ends."""
-    sides = _sides_of([part_of(name) for name in landmarks])
+    sides = _sides_of([parse_body_part(name) for name in landmarks])
     return tuple((side + inner, side + outer) for side in sides for inner, outer in LIMBS)
 
 
@@ -157,7 +157,7 @@ def _index_across(names: Sequence[str], name: str) -> int:
 
 
 @lru_cache(maxsize=1024)
-def part_of(landmark: str) -> str:
+def parse_body_part(landmark: str) -> str:
     """Name the part of the body as MediaPipe does: ``WristRight`` is ``right_wrist``."""
     words = re.findall(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])", landmark)
     lower = [word.lower() for word in words]
@@ -165,19 +165,19 @@ def part_of(landmark: str) -> str:
     return "_".join(side + [word for word in lower if word not in side])
 
 
-def hands_in(landmarks: Sequence[str]) -> int:
+def find_hands(landmarks: Sequence[str]) -> int:
     """Count the bodies' parts that move by themselves: all landmarks of one arm are one."""
-    parts = [part_of(name) for name in landmarks]
+    parts = [parse_body_part(name) for name in landmarks]
     return len({next((side for side in SIDES if part.startswith(side)), part) for part in parts})
 
 
-def on_both_sides(landmarks: Sequence[str]) -> bool:
+def uses_both_sides(landmarks: Sequence[str]) -> bool:
     """Tell whether every landmark's counterpart on the other side is among them."""
-    parts = {part_of(name) for name in landmarks}
+    parts = {parse_body_part(name) for name in landmarks}
     return all(other_side(part) in parts for part in parts)
 
 
-def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
+def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
     """Smooth a trajectory, and resample it along the joint path of the landmarks it shows.
 
     Parameters
@@ -185,7 +185,7 @@ def movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
     trajectory
         With at least two moments.
     landmarks
-        To follow, see `followed_landmarks`; those that were never seen stay still.
+        To follow, see `find_followed_landmarks`; those that were never seen stay still.
 
     """
     places = _places(trajectory.landmarks, tuple(landmarks))
@@ -239,10 +239,10 @@ class _Places:
 
 @lru_cache(maxsize=256)
 def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
-    bones = limbs_of(landmarks)
+    bones = list_limbs(landmarks)
     joints = {joint for bone in bones for joint in bone}
-    needed = tuple(name for name in names if name in landmarks or part_of(name) in joints)
-    at = {part_of(name): index for index, name in enumerate(needed)}
+    needed = tuple(name for name in names if name in landmarks or parse_body_part(name) in joints)
+    at = {parse_body_part(name): index for index, name in enumerate(needed)}
     here = [(needed.index(name), path) for path, name in enumerate(landmarks) if name in needed]
     shown = [
         (index, at[inner], at[outer])

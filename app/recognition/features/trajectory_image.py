@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.contour import BinaryImage, Outline
+from app.recognition.features.contour import BinaryImage, Contour
 from app.recognition.features.moments import StrokeMoments
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -63,9 +63,9 @@ class Drawing:
         return self.image[top : top + height, left : left + width]
 
     @cached_property
-    def outline(self) -> Outline:
+    def contour(self) -> Contour:
         """The outer contours of the strokes, followed once for all voters that measure them."""
-        return Outline.of(self.strokes)
+        return Contour.of(self.strokes)
 
     @cached_property
     def moments(self) -> StrokeMoments:
@@ -115,7 +115,7 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
     for index in range(len(trajectory.landmarks)):
         path = pixels[:, index]
         for stroke in [path] if whole else _strokes(path, known[:, index]):
-            _draw_stroke(image, simplified(stroke, simplification))
+            _draw_stroke(image, simplify(stroke, simplification))
     return Drawing(image, trajectory)
 
 
@@ -132,7 +132,7 @@ def _draw_stroke(image: BinaryImage, corners: FloatArray) -> None:
     )
 
 
-def simplified(path: FloatArray, tolerance: float) -> FloatArray:
+def simplify(path: FloatArray, tolerance: float) -> FloatArray:
     """Keep the corners of a path (Ramer 1972, Douglas and Peucker 1973).
 
     OpenCV's `approxPolyDP` is not used: of an open path that ends near where it began, it loses

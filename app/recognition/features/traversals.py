@@ -46,7 +46,7 @@ extent: a line drawn to and fro ends where it began and is no loop."""
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class Traversal:
     """One way in which a movement may be read.
 
     Attributes
@@ -66,7 +66,7 @@ class Reading:
 
     @property
     def penalty(self) -> float:
-        """Factor on the distances of this reading."""
+        """Factor on the distances of this traversal."""
         return (BACKWARD_PENALTY if self.backward else 1.0) * (
             EXCHANGED_PENALTY if self.exchanged else 1.0
         )
@@ -77,21 +77,21 @@ class Reading:
         return ordered.with_sides_exchanged(landmarks) if self.exchanged else ordered
 
 
-AS_SHOWN = Reading(np.arange(STEPS))
-SIDES_EXCHANGED = Reading(AS_SHOWN.order, exchanged=True)
+AS_SHOWN = Traversal(np.arange(STEPS))
+SIDES_EXCHANGED = Traversal(AS_SHOWN.order, exchanged=True)
 
 
-def readings(
+def list_traversals(
     movement: Movement, *, hands: int, both_ways: bool, either_side: bool = False
-) -> tuple[Reading, ...]:
-    """Return the readings of a gesture: as shown first.
+) -> tuple[Traversal, ...]:
+    """Return the traversals of a gesture: as shown first.
 
     Parameters
     ----------
     movement
         The demonstration.
     hands
-        How many parts of the body move by themselves, see `hands_in`. Only a figure of one is
+        How many parts of the body move by themselves, see `find_hands`. Only a figure of one is
         read in another order: with two hands, opening is the reverse of closing.
     both_ways
         Whether it may be read backwards.
@@ -103,8 +103,8 @@ def readings(
         return (AS_SHOWN, SIDES_EXCHANGED) if either_side else (AS_SHOWN,)
     starts = range(STARTS) if is_closed(movement) else range(1)
     rolls = [np.roll(AS_SHOWN.order, -start * STEPS // STARTS) for start in starts]
-    forward = [AS_SHOWN] + [Reading(order) for order in rolls[1:]]
-    backward = [Reading(order[::-1], backward=True) for order in rolls] if both_ways else []
+    forward = [AS_SHOWN] + [Traversal(order) for order in rolls[1:]]
+    backward = [Traversal(order[::-1], backward=True) for order in rolls] if both_ways else []
     return (*forward, *backward)
 
 

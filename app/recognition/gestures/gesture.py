@@ -25,19 +25,20 @@ from app.recognition.gestures.switches import AUTOMATIC, Switches
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.quality import fault
-from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.quality import find_fault
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
     MIN_DISPLACEMENT,
-    chosen_landmarks,
-    displacements,
-    salient_landmarks,
+    choose_landmarks,
+    find_salient_landmarks,
+    measure_displacements,
 )
 from app.recognition.text.strict_json import read_json
-from app.recognition.voters import PAPER_VOTERS, describe
-from app.recognition.voters.fourier import HARMONICS, SAMPLES
-from app.recognition.voters.hu import FLOOR
-from app.recognition.voters.zernike import DEGREE
+from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape.fourier import HARMONICS, SAMPLES
+from app.recognition.voters.shape.hu import FLOOR
+from app.recognition.voters.shape.shape_voter import describe_drawing
+from app.recognition.voters.shape.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
 """Characters: more than fits on a gesture's card, far less than breaks a layout or a log line."""
@@ -153,9 +154,9 @@ class Gesture:
 
     def __post_init__(self) -> None:
         """Check texts, command and image, and freeze what could be changed."""
-        object.__setattr__(self, "label", checked_label(self.label))
-        object.__setattr__(self, "description", checked_text(self.description))
-        object.__setattr__(self, "command", checked_command(self.command))
+        object.__setattr__(self, "label", check_label(self.label))
+        object.__setattr__(self, "description", check_text(self.description))
+        object.__setattr__(self, "command", check_command(self.command))
         image = np.array(self.image, dtype=np.uint8)
         if image.shape != (SIZE, SIZE) or not np.isin(image, (0, 255)).all():
             raise GestureError(
@@ -190,7 +191,7 @@ class Gesture:
         poses
             The demonstration, without the salutes around it; bad keypoints are repaired first.
         salient
-            Landmarks to follow in place of those that `salient_landmarks` would choose.
+            Landmarks to follow in place of those that `find_salient_landmarks` would choose.
         description, command
             See the class.
 
@@ -200,27 +201,27 @@ class Gesture:
             When the recording is too short, nothing moves in it, or `salient` does not fit it.
 
         """
-        label = checked_label(label)
+        label = check_label(label)
         if len(poses) < MIN_FRAMES:
             raise GestureError(
                 f"the demonstration of {label!r} has {len(poses)} frames, a gesture needs at "
                 f"least {MIN_FRAMES}: choose a longer range of the clip"
             )
         try:
-            seen = repaired(poses).poses
+            seen = repair_poses(poses).poses
             trajectory = Trajectory.from_poses(seen)
         except PoseError as error:
             raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
         if salient is None:
-            names = salient_landmarks(trajectory)
+            names = find_salient_landmarks(trajectory)
         else:
-            names = chosen_landmarks(trajectory, salient)
-        if poor := fault(seen, names):
+            names = choose_landmarks(trajectory, salient)
+        if poor := find_fault(seen, names):
             raise GestureError(
                 f"the demonstration of {label!r} is too poor to learn from: {poor}; show the "
                 f"gesture again in view of the camera, or choose another range of the clip"
             )
-        kept = condensed(trajectory).select(_kept_landmarks(trajectory, names))
+        kept = condense(trajectory).select(_kept_landmarks(trajectory, names))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
             raise GestureError(_nothing_moves(label, trajectory, names))
@@ -229,7 +230,7 @@ class Gesture:
             salient=names,
             image=drawing.image,
             trajectory=kept,
-            descriptors=describe(drawing, PAPER_VOTERS),
+            descriptors=describe_drawing(drawing, PAPER_VOTERS),
             description=description,
             command=command,
         )
@@ -262,7 +263,7 @@ class Gesture:
             salient=salient,
             trajectory=trajectory,
             image=drawing.image,
-            descriptors=describe(drawing, PAPER_VOTERS),
+            descriptors=describe_drawing(drawing, PAPER_VOTERS),
         )
 
     def with_salient(self, salient: Sequence[str]) -> Gesture:
@@ -279,7 +280,7 @@ class Gesture:
                 f"the gesture {self.label!r} was imported without its demonstration, so its "
                 f"salient keypoints cannot be changed; save it again from a clip"
             )
-        return replace(self, salient=chosen_landmarks(self.trajectory, salient)).redrawn()
+        return replace(self, salient=choose_landmarks(self.trajectory, salient)).redrawn()
 
     def redrawn(self, simplification: float = SIMPLIFICATION) -> Gesture:
         """Make image and descriptors anew from the demonstration, see `draw`.
@@ -289,11 +290,11 @@ class Gesture:
         drawing = self.drawing
         if drawing.trajectory is not None and self.salient:
             drawing = draw(drawing.trajectory, simplification)
-        descriptors = describe(drawing, PAPER_VOTERS)
+        descriptors = describe_drawing(drawing, PAPER_VOTERS)
         return replace(self, image=drawing.image, descriptors=descriptors)
 
 
-def condensed(trajectory: Trajectory) -> Trajectory:
+def condense(trajectory: Trajectory) -> Trajectory:
     """Bridge gaps, bound the number of moments and round, the same for reference and query.
 
     Recognition from a saved file then equals recognition before saving, to the last bit.
@@ -323,7 +324,7 @@ def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str
     return tuple(name for name in names if name in kept)
 
 
-def checked_label(label: Any) -> str:
+def check_label(label: Any) -> str:
     """Return a label without white space around it.
 
     Raises
@@ -342,7 +343,7 @@ def checked_label(label: Any) -> str:
     return label.strip()
 
 
-def checked_text(text: Any) -> str:
+def check_text(text: Any) -> str:
     """Return a description or a command in words.
 
     Raises
@@ -359,7 +360,7 @@ def checked_text(text: Any) -> str:
     return text
 
 
-def checked_command(command: Any) -> str | dict[str, Any] | None:
+def check_command(command: Any) -> str | dict[str, Any] | None:
     """Return a command; an object is copied, so that nobody changes it later.
 
     Raises
@@ -372,7 +373,7 @@ def checked_command(command: Any) -> str | dict[str, Any] | None:
     if command is None:
         return None
     if not isinstance(command, dict):
-        return checked_text(command)
+        return check_text(command)
     try:
         content = json.dumps(command).encode("ascii")
         read: dict[str, Any] = read_json(content, MAX_COMMAND_BYTES, MAX_COMMAND_DEPTH)
@@ -382,7 +383,7 @@ def checked_command(command: Any) -> str | dict[str, Any] | None:
 
 
 def _nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
-    moved = displacements(trajectory)
+    moved = measure_displacements(trajectory)
     most = max(salient or moved, key=lambda name: moved[name])
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"
     return (

@@ -1,36 +1,65 @@
-"""Profiles: sets of voters that decide together."""
+"""Profiles: which voters decide together, and how."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final, Literal
 
-from app.recognition.errors import RecognitionError
-from app.recognition.text.wording import listed
-from app.recognition.voters import PAPER_VOTERS, Voter
-from app.recognition.voters.motion import MOTION_VOTERS, MotionVoter
+from app.recognition.errors import OsgError
+from app.recognition.text.wording import join_words
+from app.recognition.voters.registry import PAPER_VOTERS, VOTERS
+from app.recognition.voters.voter import Voter
 
 ProfileName = Literal["paper", "full"]
 
-PROFILES: Final[dict[str, tuple[Voter | MotionVoter, ...]]] = {
-    "paper": PAPER_VOTERS,
-    "full": (*PAPER_VOTERS, *MOTION_VOTERS),
+
+@dataclass(frozen=True)
+class Profile:
+    """What distinguishes a profile from the others.
+
+    Attributes
+    ----------
+    name
+        In results and language files.
+    voters
+        In the order of results.
+    rejects
+        Whether it rejects what is no gesture, by thresholds of the language.
+    compares_motion
+        Whether it compares movements, not drawings alone.
+    repairs_keypoints
+        Whether side swaps and outliers of the query are repaired first.
+
+    """
+
+    name: ProfileName
+    voters: tuple[Voter, ...]
+    rejects: bool
+    compares_motion: bool
+    repairs_keypoints: bool
+
+
+PROFILES: Final[dict[str, Profile]] = {
+    "paper": Profile(
+        "paper", PAPER_VOTERS, rejects=False, compares_motion=False, repairs_keypoints=False
+    ),
+    "full": Profile("full", VOTERS, rejects=True, compares_motion=True, repairs_keypoints=True),
 }
-"""The voters of each profile. ``paper``: the seven of the paper, majority vote, no rejection.
-``full``: also the movement itself, by calibrated distances."""
+"""By name. ``paper``: the seven voters of the paper, majority vote. ``full``: all voters, fused."""
 
 DEFAULT_PROFILE: Final[ProfileName] = "full"
 """Profile of a language whose author chose none: it rejects what is no gesture."""
 
 
-def voters_of(profile: str) -> tuple[str, ...]:
-    """Return the names of a profile's voters.
+def find_profile(name: str) -> Profile:
+    """Return a profile by its name.
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When there is no such profile.
 
     """
-    if profile not in PROFILES:
-        raise RecognitionError(f"no profile {profile!r}; this version has {listed([*PROFILES])}")
-    return tuple(voter.name for voter in PROFILES[profile])
+    if name not in PROFILES:
+        raise OsgError(f"no profile {name!r}; this version has {join_words([*PROFILES])}")
+    return PROFILES[name]

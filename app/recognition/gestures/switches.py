@@ -50,7 +50,7 @@ AUTOMATIC = Switches()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Counting:
+class Sensitivity:
     """What about a gesture counts in its language, the automatic switches decided.
 
     Attributes

@@ -9,10 +9,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from app.recognition.errors import RecognitionError
+from app.recognition.errors import OsgError
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.text.wording import listed, readable
+from app.recognition.text.wording import humanize, join_words
 
 MAX_FACTOR = 100.0
 """Most that a voter's say is multiplied by: beside it, the others have none left."""
@@ -38,7 +38,7 @@ class Tuning:
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When a weight or the tolerance is no number, negative, or beyond `MAX_FACTOR` or
         `MAX_SIMPLIFICATION`.
 
@@ -56,7 +56,7 @@ class Tuning:
             ("simplification", self.simplification, MAX_SIMPLIFICATION),
         ):
             if not (math.isfinite(value) and 0 <= value <= most):
-                raise RecognitionError(f"{name} must be a number from 0 to {most:g}, got {value!r}")
+                raise OsgError(f"{name} must be a number from 0 to {most:g}, got {value!r}")
         object.__setattr__(self, "weights", MappingProxyType(dict(self.weights)))
 
     @property
@@ -65,50 +65,50 @@ class Tuning:
 
         Of a voter that keeps its weight there is nothing to say.
         """
-        words = [weight_words(*each) for each in self.weights.items() if each[1] != 1]
+        words = [describe_weight(*each) for each in self.weights.items() if each[1] != 1]
         if self.simplification != SIMPLIFICATION:
-            words.append(simplification_words(self.simplification))
+            words.append(describe_simplification(self.simplification))
         if self.keypoints_repaired is not None:
-            words.append(repair_words(self.keypoints_repaired))
-        return listed(words) or "as the profile does"
+            words.append(describe_repair(self.keypoints_repaired))
+        return join_words(words) or "as the profile does"
 
     def weights_of(self, voters: Sequence[str]) -> FloatArray:
         """Return the ``(V,)`` factors of the voters.
 
         Raises
         ------
-        RecognitionError
+        OsgError
             When a weight is for none of them, or all of them are off.
 
         """
         unknown = sorted(set(self.weights) - set(voters))
         if unknown:
-            raise RecognitionError(
+            raise OsgError(
                 f"no voter {unknown[0]!r} to weigh; this profile has {', '.join(voters)}"
             )
         factors = np.array([self.weights.get(voter, 1.0) for voter in voters])
         if not factors.any():
-            raise RecognitionError("all voters are off: leave at least one a weight above 0")
+            raise OsgError("all voters are off: leave at least one a weight above 0")
         return factors
 
 
 AS_THE_PROFILE = Tuning()
 
 
-def weight_words(voter: str, factor: float) -> str:
+def describe_weight(voter: str, factor: float) -> str:
     """Say what a factor on a voter's weight means."""
-    name = readable(voter)
+    name = humanize(voter)
     if factor == 0:
         return f"without the voter {name}"
     return f"with {factor:g} times the weight on the voter {name}"
 
 
-def simplification_words(tolerance: float) -> str:
+def describe_simplification(tolerance: float) -> str:
     """Say how coarse drawings are, by their tolerance in pixels."""
     return f"with drawings simplified by {tolerance:g} pixels"
 
 
-def repair_words(repaired: bool) -> str:
+def describe_repair(repaired: bool) -> str:
     """Say what happens to bad keypoints."""
     if repaired:
         return "with exchanged sides put right and jumps left out"

@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 from app.recognition.health.finding import Finding
 from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.text.wording import listed
+from app.recognition.text.wording import join_words
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
 
@@ -61,7 +61,7 @@ _DIFFERENT = None
 """In the place of a lead: the walks have said different things, whatever comes."""
 
 _Pair = tuple[int, int, _Lead | None]
-"""Two positions reached by the same gestures, and how their readings differ."""
+"""Two positions reached by the same gestures, and how their parses differ."""
 
 _Walk = tuple[int, frozenset[tuple[int, _Lead | None]]]
 """A position, and every other way to read the gestures that led there."""
@@ -71,12 +71,12 @@ def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
     """Find what is ambiguous about a grammar, with one message for each pair of phrases."""
     single = PhraseAutomaton(grammar, most_phrases=1)
     search = _PairSearch(single)
-    double = [_of_two_readings(single, *found) for found in search.two_readings()]
+    double = [_of_two_parses(single, *found) for found in search.two_parses()]
     found = [*double, *(_prefix(single, *each) for each in search.prefixes())]
     if not found and _may_run_together(grammar):
         whole = PhraseAutomaton(grammar)
         search = _PairSearch(whole)
-        found += [_run_together(whole, *each) for each in search.two_readings()][:1]
+        found += [_run_together(whole, *each) for each in search.two_parses()][:1]
         found += [_prefix(whole, *each) for each in search.prefixes()][:1]
     suspects = {name for each in double for name in each.phrases}
     for index, phrase in enumerate(grammar.phrases):
@@ -108,8 +108,8 @@ class _PairSearch:
         self._visited: list[_Pair] = []
         self._explore()
 
-    def two_readings(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
-        """Give messages with two readings: the gestures, and at which positions they end."""
+    def two_parses(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
+        """Give messages with two parses: the gestures, and at which positions they end."""
         told: set[frozenset[int | None]] = set()
         accepting, positions = self._automaton.accepting, self._automaton.positions
         for pair in self._visited:
@@ -165,7 +165,7 @@ class _PairSearch:
 
 
 def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead | None:
-    """Return how two readings differ after one more gesture."""
+    """Return how two parses differ after one more gesture."""
     if lead is _DIFFERENT:
         return _DIFFERENT
     one, other = lead.one + said, lead.other + their_said
@@ -176,7 +176,7 @@ def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead |
 
 
 def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
-    """Tell whether every sequence of a phrase has a second reading.
+    """Tell whether every sequence of a phrase has a second parse.
 
     Walks through the sequences of the phrase with all that could be read otherwise beside it.
     """
@@ -204,7 +204,7 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
     return True
 
 
-def _of_two_readings(
+def _of_two_parses(
     automaton: PhraseAutomaton, gestures: tuple[str, ...], one: int, other: int
 ) -> Ambiguity:
     names = _names(automaton, one, other)
@@ -247,8 +247,9 @@ def _prefix(
         _names(automaton, over, goes_on),
         gestures,
         f"after {', '.join(gestures)} the message is over, and it might go on with "
-        f"{listed(next_labels, last='or')}: the robot waits {automaton.grammar.timeout:g} s, and "
-        "what it does depends on how fast the diver is; choose an end gesture that no phrase uses",
+        f"{join_words(next_labels, last='or')}: the robot waits "
+        f"{automaton.grammar.timeout:g} s, and what it does depends on how fast "
+        "the diver is; choose an end gesture that no phrase uses",
     )
 
 

@@ -8,13 +8,14 @@ from itertools import combinations
 
 import numpy as np
 
-from app.recognition.explanation.pair_difference import Contrast, contrast
-from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.explanation.pair_difference import PairDifference, compare_pair
+from app.recognition.gestures.gesture import Gesture, condense
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities
-from app.recognition.health.embedding import placed
-from app.recognition.health.false_alarms import Alarm, alarms
-from app.recognition.health.finding import Finding, demonstration_findings, visible_share
-from app.recognition.health.remedy import Rehearsing, Remedy, pair_remedies
+from app.recognition.health.embedding import embed_gestures
+from app.recognition.health.false_alarms import FalseAlarm, find_false_alarms
+from app.recognition.health.finding import Finding, check_demonstration, measure_visible_share
+from app.recognition.health.remedy import Remedy, TrialRunner, find_pair_remedies
 from app.recognition.health.report import (
     MOST_CONFUSION,
     MOST_MISSED,
@@ -23,12 +24,12 @@ from app.recognition.health.report import (
     LandmarkHealth,
     PairHealth,
 )
-from app.recognition.health.simulated_trials import Rehearsal
+from app.recognition.health.simulated_trials import SimulatedTrials
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.preprocessing.salience import displacements
+from app.recognition.preprocessing.salience import measure_displacements
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 MOST_ALARMS = 0.1
@@ -95,24 +96,24 @@ def check_health(
     recognizer = Recognizer(language, "full")
     shown = sum(gesture.trajectory is not None for gesture in language.gestures)
     advance = _counted(progress, "rehearsing", shown * takes)
-    rehearsing = Rehearsing(takes=takes, seed=seed, person=person, advance=advance)
-    rehearsal = rehearsing(recognizer)
-    read = alarms(
+    run_trials = TrialRunner(takes=takes, seed=seed, person=person, advance=advance)
+    trials = run_trials(recognizer)
+    read = find_false_alarms(
         recognizer, EXAMPLES, seed=seed, advance=_counted(progress, "accidental movements", 0)
     )
     distances = _demonstrated_distances(recognizer)
     gestures = tuple(
-        _gesture_health(gesture, index, rehearsal, read)
+        _gesture_health(gesture, index, trials, read)
         for index, gesture in enumerate(language.gestures)
     )
     pairs = [
-        pair_health(language, pair, rehearsal, distances)
+        check_pairs(language, pair, trials, distances)
         for pair in combinations(range(len(gestures)), 2)
     ]
     pairs.sort(key=_confusion_rate, reverse=True)
-    searching = replace(rehearsing, advance=_counted(progress, "remedies", 0))
+    searching = replace(run_trials, advance=_counted(progress, "remedies", 0))
     findings = [
-        *_pair_findings(recognizer, pairs, rehearsal, searching),
+        *_pair_findings(recognizer, pairs, trials, searching),
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
@@ -127,7 +128,7 @@ def check_health(
         gestures=gestures,
         pairs=tuple(pairs),
         findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
-        places=placed(distances),
+        places=embed_gestures(distances),
     )
 
 
@@ -149,39 +150,39 @@ def _demonstrated_distances(recognizer: Recognizer) -> FloatArray:
     distances = np.full((len(gestures), len(gestures)), np.inf)
     for index, gesture in enumerate(gestures):
         if gesture.trajectory is not None:
-            distances[index] = recognizer.compare(condensed(gesture.trajectory)).scores
+            distances[index] = recognizer.compare(condense(gesture.trajectory)).scores
     return distances
 
 
-def _performer(rehearsal: Rehearsal, gesture: int) -> int | None:
-    rows = np.flatnonzero(rehearsal.gestures == gesture)
+def _performer(trials: SimulatedTrials, gesture: int) -> int | None:
+    rows = np.flatnonzero(trials.gestures == gesture)
     return int(rows[0]) if len(rows) else None
 
 
 def _gesture_health(
-    gesture: Gesture, index: int, rehearsal: Rehearsal, read: Sequence[Alarm]
+    gesture: Gesture, index: int, trials: SimulatedTrials, read: Sequence[FalseAlarm]
 ) -> GestureHealth:
-    shown, performer = gesture.trajectory, _performer(rehearsal, index)
-    moved = {} if shown is None else displacements(shown)
+    shown, performer = gesture.trajectory, _performer(trials, index)
+    moved = {} if shown is None else measure_displacements(shown)
     taken = [alarm for alarm in read if alarm.taken and alarm.nearest == index]
     comparable = any(alarm.nearest is not None for alarm in read)
     return GestureHealth(
         label=gesture.label,
         seconds=None if shown is None else float(shown.time[-1] - shown.time[0]),
         landmarks=tuple(
-            LandmarkHealth(name, moved[name], visible_share(shown, name))
+            LandmarkHealth(name, moved[name], measure_visible_share(shown, name))
             for name in gesture.salient
             if shown is not None
         ),
-        missed=None if performer is None else rehearsal.missed(performer),
-        refused=None if performer is None else rehearsal.refused(performer),
-        false_alarms=Forecast.of_count(len(taken), len(read)) if comparable else None,
+        missed=None if performer is None else trials.missed(performer),
+        refused=None if performer is None else trials.refused(performer),
+        false_alarms=RateEstimate.of_count(len(taken), len(read)) if comparable else None,
         set_off_by=tuple(dict.fromkeys(alarm.kind for alarm in taken)),
     )
 
 
-def pair_health(
-    language: Language, pair: tuple[int, int], rehearsal: Rehearsal, distances: FloatArray
+def check_pairs(
+    language: Language, pair: tuple[int, int], trials: SimulatedTrials, distances: FloatArray
 ) -> PairHealth:
     """Say how well two gestures are told apart.
 
@@ -191,7 +192,7 @@ def pair_health(
         Of G gestures.
     pair
         Indices of the two.
-    rehearsal
+    trials
         Of both; what was not rehearsed is not forecast.
     distances
         ``(G, G)``: fused distance of each demonstration, a row, to every gesture; infinite where
@@ -199,9 +200,9 @@ def pair_health(
 
     """
 
-    def forecast(one: int, other: int) -> Forecast | None:
-        performer = _performer(rehearsal, one)
-        return None if performer is None else rehearsal.confusion(performer, other)
+    def forecast(one: int, other: int) -> RateEstimate | None:
+        performer = _performer(trials, one)
+        return None if performer is None else trials.confusion(performer, other)
 
     first, second = pair
     between = [each for each in (distances[pair], distances[second, first]) if np.isfinite(each)]
@@ -221,8 +222,8 @@ def _confusion_rate(pair: PairHealth) -> tuple[float, float]:
 def _pair_findings(
     recognizer: Recognizer,
     pairs: Sequence[PairHealth],
-    rehearsal: Rehearsal,
-    rehearsing: Rehearsing,
+    trials: SimulatedTrials,
+    run_trials: TrialRunner,
 ) -> list[Finding]:
     """Warn of pairs that will be confused; `pairs` are sorted, the worst first."""
     language = recognizer.language
@@ -232,12 +233,12 @@ def _pair_findings(
         if confusion is None or confusion.rate <= MOST_CONFUSION:
             break
         first, second = (language.labels.index(label) for label in pair.gestures)
-        contrasts = contrast(recognizer, first, second), contrast(recognizer, second, first)
+        contrasts = compare_pair(recognizer, first, second), compare_pair(recognizer, second, first)
         remedies: tuple[Remedy, ...] = ()
         both_shown = pair.first_as_second is not None and pair.second_as_first is not None
         if len(findings) < MOST_REMEDIED and both_shown:
             strokes = tuple(None if each is None else each.stroke for each in contrasts)
-            remedies = pair_remedies(language, (first, second), rehearsal, rehearsing, strokes)
+            remedies = find_pair_remedies(language, (first, second), trials, run_trials, strokes)
         findings.append(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
@@ -254,7 +255,9 @@ def _is_duplicate(pair: PairHealth) -> bool:
     return pair.distance is not None and pair.distance < DUPLICATE
 
 
-def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contrast | None]) -> str:
+def _confusion_message(
+    pair: PairHealth, contrasts: tuple[PairDifference | None, PairDifference | None]
+) -> str:
     first, second = pair.gestures
     if _is_duplicate(pair):
         return (
@@ -274,7 +277,7 @@ def _confusion_message(pair: PairHealth, contrasts: tuple[Contrast | None, Contr
 
 
 def _profile_findings(language: Language) -> list[Finding]:
-    if language.profile == "full":
+    if PROFILES[language.profile].rejects:
         return []
     message = (
         f"the language is recognised by the profile {language.profile}, which gives every movement "
@@ -290,7 +293,7 @@ def _gesture_findings(
     """Warn of gestures by themselves; those `explained` by a pair are not told as missed again."""
     findings: list[Finding] = []
     for gesture, health in zip(language.gestures, gestures, strict=True):
-        findings += demonstration_findings(gesture)
+        findings += check_demonstration(gesture)
         told = health.label in explained
         if not told and health.missed is not None and health.missed.rate > MOST_MISSED:
             message = (

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.recognition.features.motion import SIDES, hands_in, part_of
+from app.recognition.features.motion import SIDES, find_hands, parse_body_part
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
@@ -28,7 +28,7 @@ Applied = Callable[[Gesture], Gesture | None]
 
 
 @dataclass(frozen=True)
-class Alteration:
+class GestureEdit:
     """What a person may do about one gesture.
 
     Attributes
@@ -53,9 +53,7 @@ class Alteration:
     both: Applied | None = None
 
 
-def alterations_of(
-    gesture: Gesture, *, stroke: tuple[float, float] | None = None
-) -> list[Alteration]:
+def list_edits(gesture: Gesture, *, stroke: tuple[float, float] | None = None) -> list[GestureEdit]:
     """List what may be tried with a gesture.
 
     Parameters
@@ -68,102 +66,102 @@ def alterations_of(
     """
     label = gesture.label
     listed = [
-        Alteration(
-            "other_hand", label, f"show {label} with the other hand, as in a mirror", other_hand
+        GestureEdit(
+            "other_hand", label, f"show {label} with the other hand, as in a mirror", swap_hands
         ),
-        Alteration("both_hands", label, f"show {label} with both hands, mirrored", both_hands),
-        Alteration("wider", label, f"show {label} {LARGER:g} times as wide", wider),
-        Alteration("taller", label, f"show {label} {LARGER:g} times as tall", taller),
-        Alteration(
+        GestureEdit("both_hands", label, f"show {label} with both hands, mirrored", use_both_hands),
+        GestureEdit("wider", label, f"show {label} {LARGER:g} times as wide", widen),
+        GestureEdit("taller", label, f"show {label} {LARGER:g} times as tall", heighten),
+        GestureEdit(
             "slower",
             label,
             f"show {label} at half the speed, and let the tempo of both count",
-            lambda each: with_switch(slower(each), tempo=True),
-            both=lambda each: with_switch(each, tempo=True),
+            lambda each: set_switch(slow_down(each), tempo=True),
+            both=lambda each: set_switch(each, tempo=True),
         ),
-        Alteration(
+        GestureEdit(
             "reversed",
             label,
             f"show {label} from its end to its start, and let the direction of both count",
-            lambda each: with_switch(backwards(each), direction=True),
-            both=lambda each: with_switch(each, direction=True),
+            lambda each: set_switch(reverse(each), direction=True),
+            both=lambda each: set_switch(each, direction=True),
         ),
     ]
     if stroke is not None:
         start, end = stroke
         listed.append(
-            Alteration(
+            GestureEdit(
                 "longer_stroke",
                 label,
                 f"make what {label} does from {start:.1f} to {end:.1f} s {LARGER:g} times as large",
-                lambda each: longer_stroke(each, start, end),
+                lambda each: lengthen_stroke(each, start, end),
             )
         )
     return listed
 
 
-def switch_alterations(first: Gesture, second: Gesture) -> list[Alteration]:
+def list_switch_edits(first: Gesture, second: Gesture) -> list[GestureEdit]:
     """List the switches that may set two gestures apart as they are."""
     both = f"{first.label} and {second.label}"
     return [
-        Alteration(
+        GestureEdit(
             "direction",
             first.label,
             f"let the direction of {both} count",
-            lambda each: with_switch(each, direction=True),
-            both=lambda each: with_switch(each, direction=True),
+            lambda each: set_switch(each, direction=True),
+            both=lambda each: set_switch(each, direction=True),
         ),
-        Alteration(
+        GestureEdit(
             "tempo",
             first.label,
             f"let the tempo of {both} count",
-            lambda each: with_switch(each, tempo=True),
-            both=lambda each: with_switch(each, tempo=True),
+            lambda each: set_switch(each, tempo=True),
+            both=lambda each: set_switch(each, tempo=True),
         ),
     ]
 
 
-def other_hand(gesture: Gesture) -> Gesture | None:
+def swap_hands(gesture: Gesture) -> Gesture | None:
     """Mirror a gesture of one hand; None for one that uses both, or none."""
-    one_hand = hands_in(gesture.salient) == 1
+    one_hand = find_hands(gesture.salient) == 1
     if not one_hand or tuple(map(other_side, gesture.salient)) == gesture.salient:
         return None
     return gesture.mirrored()
 
 
-def both_hands(gesture: Gesture) -> Gesture | None:
+def use_both_hands(gesture: Gesture) -> Gesture | None:
     """Let the idle arm do the mirror image of the other one at the same time."""
     shown = gesture.trajectory
     others = tuple(other_side(name) for name in gesture.salient)
-    if shown is None or other_hand(gesture) is None or not set(others) <= set(shown.landmarks):
+    if shown is None or swap_hands(gesture) is None or not set(others) <= set(shown.landmarks):
         return None
-    side = next(side for side in SIDES if part_of(others[0]).startswith(side))
+    side = next(side for side in SIDES if parse_body_part(others[0]).startswith(side))
     mirrored = shown.mirrored()
     xy = shown.xy.copy()
     for index, name in enumerate(shown.landmarks):
-        if part_of(name).startswith(side) and name in mirrored.landmarks:
+        if parse_body_part(name).startswith(side) and name in mirrored.landmarks:
             xy[:, index] = mirrored.xy[:, mirrored.landmarks.index(name)]
     return replace(
         gesture, salient=(*gesture.salient, *others), trajectory=replace(shown, xy=xy)
     ).redrawn()
 
 
-def wider(gesture: Gesture) -> Gesture | None:
+def widen(gesture: Gesture) -> Gesture | None:
     """Stretch what moves horizontally."""
     return _reshown(gesture, lambda shown: _stretched(shown, (LARGER, 1.0)))
 
 
-def taller(gesture: Gesture) -> Gesture | None:
+def heighten(gesture: Gesture) -> Gesture | None:
     """Stretch what moves vertically."""
     return _reshown(gesture, lambda shown: _stretched(shown, (1.0, LARGER)))
 
 
-def slower(gesture: Gesture) -> Gesture | None:
+def slow_down(gesture: Gesture) -> Gesture | None:
     """Let it take twice as long."""
     return _reshown(gesture, lambda shown: replace(shown, time=SLOWER * shown.time))
 
 
-def backwards(gesture: Gesture) -> Gesture | None:
+def reverse(gesture: Gesture) -> Gesture | None:
     """Show it from its end to its start."""
     return _reshown(
         gesture,
@@ -171,7 +169,7 @@ def backwards(gesture: Gesture) -> Gesture | None:
     )
 
 
-def longer_stroke(gesture: Gesture, start: float, end: float) -> Gesture | None:
+def lengthen_stroke(gesture: Gesture, start: float, end: float) -> Gesture | None:
     """Enlarge what happens between two moments, in seconds of the demonstration."""
 
     def changed(shown: Trajectory) -> Trajectory:
@@ -185,7 +183,7 @@ def longer_stroke(gesture: Gesture, start: float, end: float) -> Gesture | None:
     return _reshown(gesture, changed)
 
 
-def with_switch(
+def set_switch(
     gesture: Gesture | None, *, direction: bool = False, tempo: bool = False
 ) -> Gesture | None:
     """Let the direction or the tempo count; None where there is no gesture."""

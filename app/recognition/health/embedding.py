@@ -7,7 +7,7 @@ import numpy as np
 from app.recognition.poses.sequence import FloatArray
 
 
-def placed(distances: FloatArray) -> FloatArray:
+def embed_gestures(distances: FloatArray) -> FloatArray:
     """Place gestures by classical multidimensional scaling (Torgerson 1952).
 
     Parameters

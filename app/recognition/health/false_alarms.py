@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.recognition.errors import PoseError
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.accidental_motion import accidental_movements
+from app.recognition.simulation.background_motion import simulate_background_motion
 
 
 @dataclass(frozen=True)
-class Alarm:
+class FalseAlarm:
     """How one accidental movement was read.
 
     Attributes
@@ -31,25 +31,25 @@ class Alarm:
     taken: bool
 
 
-def alarms(
+def find_false_alarms(
     recognizer: Recognizer,
     count: int,
     *,
     seed: int = 0,
     advance: Callable[[], None] = lambda: None,
-) -> tuple[Alarm, ...]:
+) -> tuple[FalseAlarm, ...]:
     """Let the recogniser read accidental movements, `count` of each kind.
 
     `advance` is called after each; what it raises ends the reading.
     """
     found = []
-    for movement in accidental_movements(count, seed=seed):
+    for movement in simulate_background_motion(count, seed=seed):
         try:
-            result = recognizer.recognize_trajectory(condensed(movement.trajectory))
+            result = recognizer.recognize_trajectory(condense(movement.trajectory))
         except PoseError:  # nothing that any gesture needs moves in it
-            found.append(Alarm(movement.kind, None, taken=False))
+            found.append(FalseAlarm(movement.kind, None, taken=False))
         else:
             nearest = recognizer.language.labels.index(result.nearest)
-            found.append(Alarm(movement.kind, nearest, result.label is not None))
+            found.append(FalseAlarm(movement.kind, nearest, result.label is not None))
         advance()
     return tuple(found)

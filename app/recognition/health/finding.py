@@ -11,7 +11,7 @@ import numpy as np
 from app.recognition.gestures.gesture import MAX_MOMENTS, Gesture
 from app.recognition.health.remedy import Remedy
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, displacements
+from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recording.salute import HOLD_SECONDS
 
 SHORTEST_SECONDS = 0.5
@@ -67,7 +67,7 @@ class Finding:
         return vars(self) | {"gestures": list(self.gestures), "remedies": remedies}
 
 
-def demonstration_findings(gesture: Gesture) -> Iterator[Finding]:
+def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
     """Judge how a gesture was demonstrated, by itself."""
     shown, label = gesture.trajectory, (gesture.label,)
     if shown is None or not gesture.salient:
@@ -85,7 +85,7 @@ def demonstration_findings(gesture: Gesture) -> Iterator[Finding]:
     if seconds > LONGEST_SECONDS:
         text = f"takes {seconds:.0f} s: details are lost beyond {LONGEST_SECONDS:.0f}; shorten it"
         yield Finding("too_long", label, f"{gesture.label} {text}")
-    size = max(displacements(shown)[name] for name in gesture.salient)
+    size = max(measure_displacements(shown)[name] for name in gesture.salient)
     if shown.unit == "torso_length" and size < SMALLEST:
         yield Finding(
             "too_small",
@@ -94,14 +94,14 @@ def demonstration_findings(gesture: Gesture) -> Iterator[Finding]:
             "0.2: show it larger",
         )
     for name in gesture.salient:
-        if (seen := visible_share(shown, name)) < LEAST_SEEN:
+        if (seen := measure_visible_share(shown, name)) < LEAST_SEEN:
             yield Finding(
                 "poorly_seen",
                 label,
                 f"{name} of {gesture.label} was seen in {seen:.0%} of its demonstration: film it "
                 "again with the hand in view",
             )
-    if (held := longest_held_up(shown)) >= HOLD_SECONDS:
+    if (held := find_longest_held_up(shown)) >= HOLD_SECONDS:
         yield Finding(
             "salute_like",
             label,
@@ -110,12 +110,12 @@ def demonstration_findings(gesture: Gesture) -> Iterator[Finding]:
         )
 
 
-def visible_share(shown: Trajectory, landmark: str) -> float:
+def measure_visible_share(shown: Trajectory, landmark: str) -> float:
     """Return the share of a demonstration's moments in which a landmark is seen."""
     return float(np.isfinite(shown.select([landmark]).xy).all(axis=(1, 2)).mean())
 
 
-def longest_held_up(shown: Trajectory) -> float:
+def find_longest_held_up(shown: Trajectory) -> float:
     """Return for how many seconds, at most, an upright hand is held above its elbow."""
     longest = 0.0
     for side in ("left", "right"):

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.edits import Alteration, alterations_of, switch_alterations
-from app.recognition.health.simulated_trials import Rehearsal, rehearse
+from app.recognition.health.edits import GestureEdit, list_edits, list_switch_edits
+from app.recognition.health.simulated_trials import SimulatedTrials, simulate_trials
 from app.recognition.language.language import Language
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.rate_estimate import Forecast
+from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 TRIAL_TAKES = 5
@@ -38,7 +38,7 @@ class Remedy:
     Attributes
     ----------
     kind
-        For programs, see `Alteration`.
+        For programs, see `GestureEdit`.
     gesture
         Label of the gesture to show or to read otherwise.
     text
@@ -51,8 +51,8 @@ class Remedy:
     kind: str
     gesture: str
     text: str
-    before: Forecast
-    after: Forecast
+    before: RateEstimate
+    after: RateEstimate
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
@@ -61,7 +61,7 @@ class Remedy:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rehearsing:
+class TrialRunner:
     """How takes are rehearsed; the same for a language and for its changed versions.
 
     Attributes
@@ -84,9 +84,9 @@ class Rehearsing:
 
     def __call__(
         self, recognizer: Recognizer, gestures: tuple[int, ...] | None = None, takes: int = 0
-    ) -> Rehearsal:
+    ) -> SimulatedTrials:
         """Rehearse gestures by their indices; all when not given."""
-        return rehearse(
+        return simulate_trials(
             recognizer,
             takes or self.takes,
             gestures=gestures,
@@ -96,16 +96,16 @@ class Rehearsing:
         )
 
 
-def worse(one: Forecast, other: Forecast) -> Forecast:
+def is_worse(one: RateEstimate, other: RateEstimate) -> RateEstimate:
     """Return the forecast with the higher rate."""
     return max(one, other, key=lambda each: (each.rate, each.high))
 
 
-def pair_remedies(
+def find_pair_remedies(
     language: Language,
     pair: tuple[int, int],
-    before: Rehearsal,
-    rehearsing: Rehearsing,
+    before: SimulatedTrials,
+    run_trials: TrialRunner,
     strokes: Sequence[tuple[float, float] | None] = (None, None),
 ) -> tuple[Remedy, ...]:
     """Find what keeps two gestures apart, the most effective first.
@@ -117,8 +117,8 @@ def pair_remedies(
     pair
         Indices of two gestures with demonstrations.
     before
-        The rehearsal of the whole language.
-    rehearsing
+        The trials of the whole language.
+    run_trials
         How it was made.
     strokes
         Seconds in which each of the two differs from the other one, where that is known.
@@ -126,34 +126,34 @@ def pair_remedies(
     """
     two = [language.gestures[index] for index in pair]
     performers = [before.gestures.tolist().index(index) for index in pair]
-    confused = worse(
+    confused = is_worse(
         before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
     )
     missed = sum(before.missed(performer).rate for performer in performers)
-    trials = [
-        (_tried(changed, rehearsing), change, changed) for change, changed in _changed(two, strokes)
+    tried = [
+        (_tried(changed, run_trials), edit, changed) for edit, changed in _changed(two, strokes)
     ]
-    trials.sort(key=lambda trial: (trial[0].rate, trial[0].high))
-    best_of_kind = {change.kind: (change, changed) for _, change, changed in reversed(trials)}
-    kinds = list(dict.fromkeys(change.kind for _, change, _ in trials))
+    tried.sort(key=lambda trial: (trial[0].rate, trial[0].high))
+    best_of_kind = {edit.kind: (edit, changed) for _, edit, changed in reversed(tried)}
+    kinds = list(dict.fromkeys(edit.kind for _, edit, _ in tried))
     proposed = []
-    for change, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
-        rehearsal = rehearsing(Recognizer(_with(language, pair, changed), "full"), pair)
-        after = worse(rehearsal.confusion(0, pair[1]), rehearsal.confusion(1, pair[0]))
-        missed_then = rehearsal.missed(0).rate + rehearsal.missed(1).rate
+    for edit, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
+        repeated = run_trials(Recognizer(_with(language, pair, changed), "full"), pair)
+        after = is_worse(repeated.confusion(0, pair[1]), repeated.confusion(1, pair[0]))
+        missed_then = repeated.missed(0).rate + repeated.missed(1).rate
         if after.rate <= HELPS * confused.rate and missed_then < missed:
-            proposed.append(Remedy(change.kind, change.label, change.text, confused, after))
+            proposed.append(Remedy(edit.kind, edit.label, edit.text, confused, after))
     return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
 
 
 def _changed(
     two: list[Gesture],
     strokes: Sequence[tuple[float, float] | None],
-) -> Iterator[tuple[Alteration, list[Gesture]]]:
+) -> Iterator[tuple[GestureEdit, list[Gesture]]]:
     """Apply every change that applies to either of the two."""
-    changes = [(0, change) for change in switch_alterations(*two)]
+    changes = [(0, change) for change in list_switch_edits(*two)]
     for which, stroke in enumerate(strokes):
-        changes += [(which, change) for change in alterations_of(two[which], stroke=stroke)]
+        changes += [(which, change) for change in list_edits(two[which], stroke=stroke)]
     for which, change in changes:
         changed, other = change.apply(two[which]), two[1 - which]
         if changed is not None:
@@ -161,12 +161,12 @@ def _changed(
             yield change, [changed, other] if which == 0 else [other, changed]
 
 
-def _tried(two: list[Gesture], rehearsing: Rehearsing) -> Forecast:
+def _tried(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     language = Language("two", two)
     # Only scores are compared: thresholds are not made for a language that nobody will speak.
     uncalibrated = replace(language, thresholds_for=language.fingerprint)
-    rehearsal = rehearsing(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
-    return worse(rehearsal.confusion(0, 1), rehearsal.confusion(1, 0))
+    trials = run_trials(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
+    return is_worse(trials.confusion(0, 1), trials.confusion(1, 0))
 
 
 def _with(language: Language, indices: tuple[int, ...], changed: list[Gesture]) -> Language:

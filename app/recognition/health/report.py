@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from app.recognition.health.finding import Finding
-from app.recognition.health.remedy import worse
+from app.recognition.health.remedy import is_worse
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.rate_estimate import DIGITS, Forecast
+from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
 from app.recognition.simulation.variation import Person
 
 MOST_CONFUSION = 0.05
@@ -77,9 +77,9 @@ class GestureHealth:
     label: str
     seconds: float | None
     landmarks: tuple[LandmarkHealth, ...]
-    missed: Forecast | None
-    refused: Forecast | None
-    false_alarms: Forecast | None
+    missed: RateEstimate | None
+    refused: RateEstimate | None
+    false_alarms: RateEstimate | None
     set_off_by: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
@@ -112,16 +112,16 @@ class PairHealth:
     """
 
     gestures: tuple[str, str]
-    first_as_second: Forecast | None
-    second_as_first: Forecast | None
+    first_as_second: RateEstimate | None
+    second_as_first: RateEstimate | None
     distance: float | None
 
     @property
-    def confusion(self) -> Forecast | None:
+    def confusion(self) -> RateEstimate | None:
         """The worse of the two directions."""
         if self.first_as_second is None or self.second_as_first is None:
             return self.first_as_second or self.second_as_first
-        return worse(self.first_as_second, self.second_as_first)
+        return is_worse(self.first_as_second, self.second_as_first)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""

@@ -1,4 +1,4 @@
-"""A rehearsal: every gesture of a language performed many times before anybody dives.
+"""A trials: every gesture of a language performed many times before anybody dives.
 
 The performances are variants of the demonstrations (`variation`), read by the recogniser itself.
 """
@@ -13,13 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.rejection import SCORE_FLOOR
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.model_error import UNFORESEEN, Unforeseen
-from app.recognition.simulation.rate_estimate import Forecast
-from app.recognition.simulation.variation import Person, variants
+from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.simulation.variant_bias import VARIANT_BIASES, VariantBias
+from app.recognition.simulation.variation import Person, draw_variants
 
 WIDEST_MARGIN = 4.0
 """Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
@@ -31,7 +31,7 @@ one that is changed, and a preview its neighbours. Each is up to half a megabyte
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rehearsal:
+class SimulatedTrials:
     """How takes of some gestures were read.
 
     Attributes
@@ -45,14 +45,14 @@ class Rehearsal:
         ``(P, N)``: how much farther than its thresholds allow each take lies from its own gesture;
         above 1 it is refused. NaN for a gesture without thresholds.
     unforeseen
-        Of `UNFORESEEN` the one of whoever performed.
+        Of `VARIANT_BIASES` the one of whoever performed.
 
     """
 
     gestures: npt.NDArray[np.intp]
     scores: FloatArray
     novelty: FloatArray
-    unforeseen: Unforeseen
+    unforeseen: VariantBias
 
     @property
     def margins(self) -> FloatArray:
@@ -64,27 +64,27 @@ class Rehearsal:
         own = np.take_along_axis(logarithms, self.gestures[:, None, None], axis=2)
         return np.asarray(np.clip(logarithms - own, -WIDEST_MARGIN, WIDEST_MARGIN))
 
-    def confusion(self, performer: int, other: int) -> Forecast:
+    def confusion(self, performer: int, other: int) -> RateEstimate:
         """Forecast how often a gesture is nearer to another one than to itself.
 
         A take that is not what was shown is as near to any gesture.
         """
         astray = 1 / self.scores.shape[2]
-        return Forecast.of_margins(self.margins[performer, :, other], self.unforeseen, astray)
+        return RateEstimate.of_margins(self.margins[performer, :, other], self.unforeseen, astray)
 
-    def misread(self, performer: int) -> Forecast:
+    def misread(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is nearer to any other one than to itself."""
         astray = 1 - 1 / self.scores.shape[2]
-        return Forecast.of_margins(self._to_rivals(performer), self.unforeseen, astray)
+        return RateEstimate.of_margins(self._to_rivals(performer), self.unforeseen, astray)
 
-    def refused(self, performer: int) -> Forecast:
+    def refused(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is too far from itself to be recognised at all."""
-        return Forecast.of_margins(self._to_refusal(performer), self.unforeseen)
+        return RateEstimate.of_margins(self._to_refusal(performer), self.unforeseen)
 
-    def missed(self, performer: int) -> Forecast:
+    def missed(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is misread, or refused."""
         margins = np.minimum(self._to_rivals(performer), self._to_refusal(performer))
-        return Forecast.of_margins(margins, self.unforeseen)
+        return RateEstimate.of_margins(margins, self.unforeseen)
 
     def _to_rivals(self, performer: int) -> FloatArray:
         """Return ``(N,)`` margins to the nearest other gesture."""
@@ -98,7 +98,7 @@ class Rehearsal:
         return np.asarray(np.maximum(margins, -WIDEST_MARGIN))
 
 
-def rehearse(
+def simulate_trials(
     recognizer: Recognizer,
     count: int,
     *,
@@ -106,7 +106,7 @@ def rehearse(
     seed: int = 0,
     person: Person = "another",
     advance: Callable[[], None] = lambda: None,
-) -> Rehearsal:
+) -> SimulatedTrials:
     """Perform gestures and read them.
 
     Parameters
@@ -122,7 +122,7 @@ def rehearse(
     person
         Who performs: whoever demonstrated it, or somebody else.
     advance
-        Called after each take; what it raises ends the rehearsal.
+        Called after each take; what it raises ends the trials.
 
     """
     language = recognizer.language
@@ -141,11 +141,11 @@ def rehearse(
             scores[row, take] = compared.scores
             novelty[row, take] = compared.novelty[index]
             advance()
-    return Rehearsal(
+    return SimulatedTrials(
         gestures=np.array(performed, dtype=np.intp),
         scores=scores,
         novelty=novelty,
-        unforeseen=UNFORESEEN[person],
+        unforeseen=VARIANT_BIASES[person],
     )
 
 
@@ -154,5 +154,5 @@ def _performed(
     demonstration: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
     """Perform a demonstration, as the voters see it."""
-    takes = variants(demonstration, count, seed=seed, person=person)
-    return tuple(condensed(take) for take in takes)
+    takes = draw_variants(demonstration, count, seed=seed, person=person)
+    return tuple(condense(take) for take in takes)

@@ -21,8 +21,8 @@ from app.recognition.text.strict_json import (
     MAX_FAULTS,
     Fault,
     StrictJSONError,
+    build_pointer,
     canonical_json,
-    pointer_to,
     read_json,
 )
 
@@ -116,12 +116,12 @@ def _check_kind(read: Any) -> None:
 
 def _faults(error: ValidationError) -> list[Fault]:
     return [
-        Fault(pointer_to(*document_steps(fault["loc"])), fault["msg"])
+        Fault(build_pointer(*list_document_steps(fault["loc"])), fault["msg"])
         for fault in error.errors(include_url=False, include_context=False, include_input=False)
     ]
 
 
-def document_steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+def list_document_steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
     """Return where in a document pydantic found a fault.
 
     What it adds for the branches of a union is not in the document.

@@ -12,16 +12,16 @@ from app.recognition.errors import GestureError, LanguageError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
-from app.recognition.gestures.gesture import Gesture, Rates, checked_command, checked_label
+from app.recognition.gestures.gesture import Gesture, Rates, check_command, check_label
 from app.recognition.gestures.switches import Switches
 from app.recognition.language.schema import GestureEntry, PathEntry, RatesEntry, TrajectoryEntry
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.text.strict_json import pointer_to
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.text.strict_json import build_pointer
+from app.recognition.voters.registry import PAPER_VOTERS
 
 
-def entry_of(gesture: Gesture) -> GestureEntry:
+def gesture_to_entry(gesture: Gesture) -> GestureEntry:
     """Return the file's entry of a gesture."""
     trajectory, rates = gesture.trajectory, gesture.rates
     return GestureEntry(
@@ -40,7 +40,7 @@ def entry_of(gesture: Gesture) -> GestureEntry:
     )
 
 
-def gesture_of(entry: GestureEntry, pointer: str) -> Gesture:
+def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
     """Return the gesture of a file's entry.
 
     Parameters
@@ -105,17 +105,17 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         if after <= before:
             raise LanguageError(
                 f"time does not increase: {before:g} s, then {after:g} s",
-                pointer + pointer_to("time", index + 1),
+                pointer + build_pointer("time", index + 1),
             )
     names = [path.landmark for path in entry.paths]
     for index, path in enumerate(entry.paths):
-        at = pointer + pointer_to("paths", index)
+        at = pointer + build_pointer("paths", index)
         if path.landmark in names[:index]:
             raise LanguageError(f"a second path of {path.landmark!r}", at + "/landmark")
         for axis, values in (("x", path.x), ("y", path.y)):
             if len(values) != count:
                 raise LanguageError(
-                    f"{len(values)} values, but time has {count} moments", at + pointer_to(axis)
+                    f"{len(values)} values, but time has {count} moments", at + build_pointer(axis)
                 )
     columns = [[path.x, path.y] for path in entry.paths]
     return Trajectory(
@@ -128,11 +128,11 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
 
 def _check_words(entry: GestureEntry, pointer: str) -> None:
     """Check what the schema cannot say, so that the fault has its own pointer."""
-    for key, check in (("label", checked_label), ("command", checked_command)):
+    for key, check in (("label", check_label), ("command", check_command)):
         try:
             check(getattr(entry, key))
         except GestureError as error:
-            raise LanguageError(str(error), pointer + pointer_to(key)) from error
+            raise LanguageError(str(error), pointer + build_pointer(key)) from error
 
 
 def _check_salient(salient: list[str], trajectory: Trajectory, pointer: str) -> None:
@@ -140,7 +140,7 @@ def _check_salient(salient: list[str], trajectory: Trajectory, pointer: str) -> 
         if name not in trajectory.landmarks:
             raise LanguageError(
                 f"salient landmark {name!r} has no path in the trajectory",
-                pointer + pointer_to("salient", index),
+                pointer + build_pointer("salient", index),
             )
 
 
@@ -157,7 +157,7 @@ def _descriptors(entry: GestureEntry, image: BinaryImage, pointer: str) -> dict[
     for name, values in entry.descriptors.items():
         if len(values) != lengths.get(name, len(values)):
             raise LanguageError(
-                f"{len(values)} values, expected {lengths[name]}", pointer + pointer_to(name)
+                f"{len(values)} values, expected {lengths[name]}", pointer + build_pointer(name)
             )
     if not image.any():
         return {}

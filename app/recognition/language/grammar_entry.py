@@ -15,10 +15,10 @@ from app.recognition.language.grammar_schema import (
 )
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType, Value
-from app.recognition.text.strict_json import pointer_to
+from app.recognition.text.strict_json import build_pointer
 
 
-def grammar_entry_of(grammar: Grammar) -> GrammarEntry:
+def grammar_to_entry(grammar: Grammar) -> GrammarEntry:
     """Return the file's entry of a grammar."""
     return GrammarEntry(
         start=grammar.start,
@@ -39,7 +39,7 @@ def grammar_entry_of(grammar: Grammar) -> GrammarEntry:
     )
 
 
-def grammar_of(entry: GrammarEntry) -> Grammar:
+def entry_to_grammar(entry: GrammarEntry) -> Grammar:
     """Return the grammar of a file's entry.
 
     Raises
@@ -54,7 +54,7 @@ def grammar_of(entry: GrammarEntry) -> Grammar:
             for each in entry.phrases
         ),
         slot_types=tuple(
-            _slot_type(each, pointer_to("grammar", "slot_types", index))
+            _slot_type(each, build_pointer("grammar", "slot_types", index))
             for index, each in enumerate(entry.slot_types)
         ),
         start=entry.start,
@@ -107,7 +107,7 @@ def _slot_type(entry: SlotTypeEntry, pointer: str) -> SlotType:
         if each.gesture in values:
             raise LanguageError(
                 f"a second value of {each.gesture!r} in {entry.name!r}: remove one of the two",
-                pointer + pointer_to("values", index, "gesture"),
+                pointer + build_pointer("values", index, "gesture"),
             )
         values[each.gesture] = each.value
     return SlotType(entry.name, entry.reads_as, values)

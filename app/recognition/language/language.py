@@ -10,25 +10,25 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from app.recognition.decision.calibration import RULE, calibrated
-from app.recognition.errors import LanguageError, RecognitionError
+from app.recognition.decision.calibration import RULE, calibrate
+from app.recognition.errors import LanguageError, OsgError
 from app.recognition.gestures.gesture import SETTINGS, Gesture
-from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, voters_of
+from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.file import read_content, read_document, write_document
-from app.recognition.language.gesture_entry import entry_of, gesture_of
-from app.recognition.language.grammar_entry import grammar_entry_of, grammar_of
+from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
+from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
 from app.recognition.language.schema import (
     FORMAT,
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
 )
-from app.recognition.language.tuning_entry import tuning_entry_of, tuning_of
+from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
-from app.recognition.text.strict_json import pointer_to
-from app.recognition.text.wording import listed
+from app.recognition.text.strict_json import build_pointer
+from app.recognition.text.wording import join_words
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
@@ -104,7 +104,7 @@ class Language:
             if gesture.label in labels:
                 raise LanguageError(
                     f"the label {gesture.label!r} occurs twice: rename or remove one of the two",
-                    pointer_to("gestures", index, "label"),
+                    build_pointer("gestures", index, "label"),
                 )
             labels.add(gesture.label)
         if self.grammar is not None:
@@ -153,7 +153,7 @@ class Language:
         fingerprint = self.fingerprint
         if not self.gestures or self.thresholds_for == fingerprint:
             return self
-        return replace(self, gestures=calibrated(self.gestures), thresholds_for=fingerprint)
+        return replace(self, gestures=calibrate(self.gestures), thresholds_for=fingerprint)
 
     def tuning_with(self, profile: str) -> Tuning:
         """Return how recognition by a profile is tuned: weights are for the language's own."""
@@ -182,7 +182,7 @@ class Language:
         unwanted = self.gesture(label)
         if self.grammar is not None and (users := self.grammar.users_of(label)):
             raise LanguageError(
-                f"{label!r} cannot be taken out, it is needed by {listed(users)}: change the "
+                f"{label!r} cannot be taken out, it is needed by {join_words(users)}: change the "
                 "phrases first",
                 "/grammar",
             )
@@ -216,10 +216,10 @@ class Language:
             skeleton=[list(bone) for bone in self.skeleton],
             settings=dict(SETTINGS),
             thresholds_for=self.thresholds_for,
-            grammar=None if self.grammar is None else grammar_entry_of(self.grammar),
+            grammar=None if self.grammar is None else grammar_to_entry(self.grammar),
             profile=self.profile,
-            tuning=tuning_entry_of(self.tuning),
-            gestures=[entry_of(gesture) for gesture in self.gestures],
+            tuning=tuning_to_entry(self.tuning),
+            gestures=[gesture_to_entry(gesture) for gesture in self.gestures],
         )
         return write_document(document)
 
@@ -238,7 +238,7 @@ class Language:
         current = document.settings == SETTINGS
         gestures = []
         for index, entry in enumerate(document.gestures):
-            gesture = gesture_of(entry, pointer_to("gestures", index))
+            gesture = entry_to_gesture(entry, build_pointer("gestures", index))
             gestures.append(gesture if current else gesture.redrawn())
         return cls(
             name=document.name,
@@ -248,9 +248,9 @@ class Language:
             revision=document.revision,
             skeleton=tuple((start, end) for start, end in document.skeleton),
             thresholds_for=document.thresholds_for,
-            grammar=None if document.grammar is None else grammar_of(document.grammar),
+            grammar=None if document.grammar is None else entry_to_grammar(document.grammar),
             profile=document.profile,
-            tuning=tuning_of(document.tuning),
+            tuning=entry_to_tuning(document.tuning),
         )
 
     def save(self, path: str | Path) -> None:
@@ -286,12 +286,12 @@ def _check_text(text: Any, most: int, pointer: str) -> None:
 
 def _check_tuning(profile: str, tuning: Tuning) -> None:
     try:
-        voters = voters_of(profile)
-    except RecognitionError as error:
+        voters = find_profile(profile).voters
+    except OsgError as error:
         raise LanguageError(str(error), "/profile") from error
     try:
-        tuning.weights_of(voters)
-    except RecognitionError as error:
+        tuning.weights_of([voter.name for voter in voters])
+    except OsgError as error:
         raise LanguageError(str(error), "/tuning/weights") from error
 
 

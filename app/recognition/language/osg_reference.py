@@ -19,7 +19,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.language import Language
 from app.recognition.language.schema import MAX_GESTURES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.text.strict_json import StrictJSONError, pointer_to, read_json
+from app.recognition.text.strict_json import StrictJSONError, build_pointer, read_json
 
 MAX_FILE_BYTES = 100_000_000
 """Over a hundred gestures: the published files take 850 kB each, the largest a few megabytes."""
@@ -50,7 +50,7 @@ def to_reference(language: Language) -> str:
                 raise LanguageError(
                     f"gesture {gesture.label!r} follows {name!r}, and osg-reference files know "
                     f"MediaPipe's landmarks only: keep this language as osg-studio",
-                    pointer_to("gestures", index, "salient"),
+                    build_pointer("gestures", index, "salient"),
                 )
         content[gesture.label] = {
             "image": gesture.image.tolist(),
@@ -92,7 +92,7 @@ def from_reference(text: str | bytes, name: str) -> Language:
 
 
 def _gesture(label: str, entry: Any) -> Gesture:
-    pointer = pointer_to(label)
+    pointer = build_pointer(label)
     if not isinstance(entry, dict) or not {"image", "salient_keypoints"} <= set(entry):
         raise LanguageError('must be an object with "image" and "salient_keypoints"', pointer)
     salient = _salient(entry["salient_keypoints"], pointer + "/salient_keypoints")
@@ -109,10 +109,10 @@ def _salient(names: Any, pointer: str) -> tuple[str, ...]:
     for index, name in enumerate(names):
         if not isinstance(name, str) or name.lower() not in POSE_LANDMARKS:
             raise LanguageError(
-                f"{name!r} is not one of MediaPipe's landmarks", pointer + pointer_to(index)
+                f"{name!r} is not one of MediaPipe's landmarks", pointer + build_pointer(index)
             )
         if name in names[:index]:
-            raise LanguageError(f"{name!r} occurs twice", pointer + pointer_to(index))
+            raise LanguageError(f"{name!r} occurs twice", pointer + build_pointer(index))
     return tuple(name.lower() for name in names)
 
 

@@ -68,7 +68,7 @@ def to_proteus(language: Language, robot: str = "") -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def call_type_of(language: Language, label: str) -> CallType:
+def find_call_type(language: Language, label: str) -> CallType:
     """Tell what a gesture gives the robot: a number, a direction, or no more than itself."""
     slot_types = () if language.grammar is None else language.grammar.slot_types
     for slot_type in slot_types:
@@ -91,7 +91,7 @@ def _add_symbols(symbols: ElementTree.Element, language: Language) -> None:
             {
                 "name": gesture.label,
                 "id": symbol_id,
-                "call_type": call_type_of(language, gesture.label),
+                "call_type": find_call_type(language, gesture.label),
                 "description": _description(gesture),
                 "tags": ",".join(_tags(language, gesture)),
             },
@@ -123,6 +123,6 @@ def _tags(language: Language, gesture: Gesture) -> list[str]:
         tags += ["conversational", "control"]
     if gesture.command is not None:
         tags.append("commands")
-    if call_type_of(language, gesture.label) != "trigger":
+    if find_call_type(language, gesture.label) != "trigger":
         tags.append("information")
     return tags or ["commands"]

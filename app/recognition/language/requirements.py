@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from app.recognition.errors import LandmarkError
-from app.recognition.features.motion import followed_landmarks, limbs_of
+from app.recognition.features.motion import find_followed_landmarks, list_limbs
 from app.recognition.language.language import Language
 from app.recognition.models import ModelName
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
@@ -38,9 +38,9 @@ class Requirements:
     models: tuple[str, ...]
 
 
-def requirements_of(language: Language) -> Requirements:
+def find_requirements(language: Language) -> Requirements:
     """Tell what recognising a language takes."""
-    salient = followed_landmarks([gesture.salient for gesture in language.gestures])
+    salient = find_followed_landmarks([gesture.salient for gesture in language.gestures])
     known = {
         name
         for gesture in language.gestures
@@ -48,7 +48,7 @@ def requirements_of(language: Language) -> Requirements:
         for name in gesture.trajectory.landmarks
     }
     torso = (*SHOULDERS, *HIPS)
-    ends = {end for limb in limbs_of(salient) for end in limb}
+    ends = {end for limb in list_limbs(salient) for end in limb}
     limbs = tuple(sorted((ends & known) - {*salient, *torso}))
     return Requirements(salient, limbs, torso, get_args(ModelName))
 

@@ -231,13 +231,13 @@ class LanguageDocument(_Model):
     ] = None
 
 
-def generated_schema() -> str:
+def generate_schema() -> str:
     """Return the JSON Schema 2020-12 of the file as text, made from the models."""
     schema = LanguageDocument.model_json_schema()
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
     return json.dumps(head | schema, indent=2) + "\n"
 
 
-def published_schema() -> str:
+def load_schema() -> str:
     """Return the JSON Schema as it is checked in and shipped."""
     return (resources.files("app.recognition") / "schema" / SCHEMA_FILE).read_text("utf-8")

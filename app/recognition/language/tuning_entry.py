@@ -7,7 +7,7 @@ from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.schema import TuningEntry
 
 
-def tuning_entry_of(tuning: Tuning) -> TuningEntry | None:
+def tuning_to_entry(tuning: Tuning) -> TuningEntry | None:
     """Return the file's entry of a tuning; None where nothing differs from the profile."""
     if tuning == AS_THE_PROFILE:
         return None
@@ -18,7 +18,7 @@ def tuning_entry_of(tuning: Tuning) -> TuningEntry | None:
     )
 
 
-def tuning_of(entry: TuningEntry | None) -> Tuning:
+def entry_to_tuning(entry: TuningEntry | None) -> Tuning:
     """Return the tuning of a file's entry, or where there is none."""
     if entry is None:
         return AS_THE_PROFILE

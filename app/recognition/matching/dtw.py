@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.matching.dtw_kernel import StepCosts, alignment_costs, half_of
+from app.recognition.matching.dtw_kernel import StepCosts, compute_alignment_costs, count_half_steps
 from app.recognition.matching.step_distances import (
     Precision,
     for_query,
@@ -23,7 +23,7 @@ from app.recognition.matching.step_distances import (
 from app.recognition.poses.sequence import FloatArray
 
 
-def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
+def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
     """Measure the cost of the best alignment of a query with each reference.
 
     Parameters
@@ -42,24 +42,24 @@ def elastic_distances(query: FloatArray, references: FloatArray, band: int) -> F
     grow with the number of steps; infinite where nothing can be compared.
 
     """
-    count = half_of(len(query), band)
+    count = count_half_steps(len(query), band)
     costs = squared_distances(_from_both_ends(query, count), _from_both_ends(references, count))
-    return alignment_costs(costs, len(query), band)
+    return compute_alignment_costs(costs, len(query), band)
 
 
 @dataclass(frozen=True, eq=False)
-class ElasticReferences:
+class DtwReferences:
     """Sequences that many queries are compared with, prepared once.
 
-    As `elastic_distances`, but components that the query does not know at any step, or none of the
+    As `dtw_distances`, but components that the query does not know at any step, or none of the
     references, are left out before: what is known of two vectors stands for the others.
 
     Attributes
     ----------
     sequences
-        ``(R, N, D)``, with NaN as for `elastic_distances`.
+        ``(R, N, D)``, with NaN as for `dtw_distances`.
     band
-        As for `elastic_distances`.
+        As for `dtw_distances`.
 
     """
 
@@ -68,7 +68,7 @@ class ElasticReferences:
 
     def distances(self, query: FloatArray) -> FloatArray:
         """Return the elastic distances of ``(N, D)`` to all references, ``(R,)``."""
-        return alignment_costs(self.step_costs(query), len(query), self.band)
+        return compute_alignment_costs(self.step_costs(query), len(query), self.band)
 
     def step_costs(
         self,
@@ -91,10 +91,10 @@ class ElasticReferences:
         Returns
         -------
         ``(2, H, H, M)``: squared distances of the first H steps, and of the last H from the last
-        one backwards, as `alignment_costs` takes them; infinite where nothing can be compared.
+        one backwards, for `compute_alignment_costs`; infinite where nothing is comparable.
 
         """
-        count = half_of(len(query), self.band)
+        count = count_half_steps(len(query), self.band)
         pairs = len(self.sequences) if rows is None else len(rows)
         if out is None:
             out = np.empty((2, count, count, pairs), dtype=np.float32)
@@ -131,7 +131,7 @@ class ElasticReferences:
 
     @cached_property
     def _sides(self) -> StepCosts:
-        count = half_of(self.sequences.shape[1], self.band)
+        count = count_half_steps(self.sequences.shape[1], self.band)
         known_steps = self.sequences[..., self.known].astype(np.float32)
         return for_references(_from_both_ends(known_steps, count))
 
@@ -145,7 +145,7 @@ class ElasticReferences:
 
 
 @dataclass(frozen=True, eq=False)
-class ElasticViews:
+class DtwBatch:
     """The same sequences as several voters see them, for queries that all of these look at.
 
     Attributes
@@ -155,7 +155,7 @@ class ElasticViews:
 
     """
 
-    views: tuple[ElasticReferences, ...]
+    views: tuple[DtwReferences, ...]
 
     def step_costs(
         self, queries: Sequence[FloatArray], rows: npt.NDArray[np.intp] | None = None
@@ -174,11 +174,11 @@ class ElasticViews:
 
         Returns
         -------
-        ``(2, V, H, H, M)``: of each view what `ElasticReferences.step_costs` returns.
+        ``(2, V, H, H, M)``: of each view what `DtwReferences.step_costs` returns.
 
         """
         references, steps, _ = self.views[0].sequences.shape
-        count = half_of(steps, self.views[0].band)
+        count = count_half_steps(steps, self.views[0].band)
         pairs = references if rows is None else len(rows)
         costs = np.empty((2, len(self.views), count, count, pairs), dtype=np.float32)
         alone = set(range(len(self.views)))
@@ -260,15 +260,15 @@ def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArra
     return ends
 
 
-def elastic_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:
+def dtw_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:
     """Find the best alignment itself, for one reference: which step corresponds to which.
 
     Parameters
     ----------
     query, reference
-        ``(N, D)`` each, with NaN as for `elastic_distances`.
+        ``(N, D)`` each, with NaN as for `dtw_distances`.
     band
-        As for `elastic_distances`.
+        As for `dtw_distances`.
 
     Returns
     -------

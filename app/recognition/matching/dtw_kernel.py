@@ -30,12 +30,12 @@ ROUNDING_OF_STEP_COSTS = 4e-6
 of the mean square, and two takes of a gesture lie ten thousand times as far apart."""
 
 
-def half_of(steps: int, band: int) -> int:
+def count_half_steps(steps: int, band: int) -> int:
     """Return H: how many steps from either end an alignment may reach until the halves meet."""
     return (steps - 1 + min(band, steps - 1)) // 2 + 1
 
 
-def alignment_costs(
+def compute_alignment_costs(
     costs: npt.NDArray[np.float32 | np.float64], steps: int, band: int
 ) -> FloatArray:
     """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
@@ -44,9 +44,9 @@ def alignment_costs(
     ----------
     costs
         ``(2, ..., H, H, M)``: of each step of the one sequence against each of the other, for M
-        pairs, from the first steps on and from the last ones back; H as `half_of` returns it.
+        pairs, from the first steps on and from the last ones back; H of `count_half_steps`.
     steps, band
-        N and the band, as for `elastic_distances`.
+        N and the band, as for `dtw_distances`.
 
     Returns
     -------
@@ -157,7 +157,7 @@ class _Diagonal:
 @lru_cache(maxsize=64)
 def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
     """Return the anti-diagonals, up to the one where the halves meet, with a cell in the band."""
-    found, count, outer = [], half_of(steps, band), _outer_offsets(band)
+    found, count, outer = [], count_half_steps(steps, band), _outer_offsets(band)
     for number in range(steps):
         reach = min(band, number)
         reach -= (reach + number) % 2  # offset and number are both even or both odd

@@ -26,7 +26,7 @@ from app.recognition.models.catalogue import (
     InstalledFile,
     credit,
 )
-from app.recognition.models.storage import file_state, models_dir, verified, write_file
+from app.recognition.models.storage import file_state, models_dir, verify_models, write_file
 from app.recognition.models.wheel import OFFLINE_WAY, check_wheel, download_wheel
 
 Progress = Callable[[str, int, int], None]
@@ -88,7 +88,7 @@ def export_models(directory: Path) -> None:
     """
     installed = models_dir()
     for file in INSTALLED_FILES:
-        verified(file, installed)
+        verify_models(file, installed)
     _install(partial(_exported, installed), directory, INSTALLED_FILES, _silent)
 
 

@@ -22,7 +22,7 @@ from app.recognition.models.catalogue import (
     ModelName,
     TaskBundleName,
 )
-from app.recognition.text.hashing import sha256_of
+from app.recognition.text.hashing import hash_file
 
 State = Literal["ok", "missing", "damaged"]
 """Intact; not there; there, but its content is not the pinned one."""
@@ -81,7 +81,7 @@ def model_path(name: ModelName, directory: Path | None = None) -> Path:
     """
     if name not in MODELS:
         raise ModelError(f"no model is called {name!r}; there are {', '.join(MODELS)}")
-    return verified(MODELS[name], directory or models_dir())
+    return verify_models(MODELS[name], directory or models_dir())
 
 
 def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Path:
@@ -95,7 +95,7 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
     """
     if name not in TASK_BUNDLES:
         raise ModelError(f"no task bundle is called {name!r}; there are {', '.join(TASK_BUNDLES)}")
-    return verified(TASK_BUNDLES[name], directory or models_dir())
+    return verify_models(TASK_BUNDLES[name], directory or models_dir())
 
 
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
@@ -121,7 +121,7 @@ def file_state(file: InstalledFile, directory: Path) -> State:
     return "ok" if intact else "damaged"
 
 
-def verified(file: InstalledFile, directory: Path) -> Path:
+def verify_models(file: InstalledFile, directory: Path) -> Path:
     """Return the path of an intact file of a models folder.
 
     Raises
@@ -196,4 +196,4 @@ def _size(path: Path) -> int:
 def _sha256(path: Path, size: int, changed: int) -> str:
     """Hash a file; `size` and `changed` (ns) make the cache forget a file that was rewritten."""
     del size, changed
-    return sha256_of(path)
+    return hash_file(path)

@@ -9,7 +9,7 @@ from typing import Final
 
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import WHEEL
-from app.recognition.text.hashing import sha256_of
+from app.recognition.text.hashing import hash_file
 
 OFFLINE_WAY: Final = (
     "or, without network, run `osg-studio models export DIR` where the models are installed and "
@@ -90,7 +90,7 @@ def check_wheel(path: Path) -> None:
 
     """
     try:
-        found = sha256_of(path)
+        found = hash_file(path)
     except OSError as error:
         raise ModelError(
             f"cannot read {path}: {error.strerror}; give a folder made by "

@@ -1,7 +1,7 @@
 """The finite automaton of a grammar's messages (Glushkov 1961).
 
 Its positions are the occurrences of gestures in the grammar, every bounded repetition written out;
-a message is a walk over positions, and what the walk says is its reading. Nothing is consumed
+a message is a walk over positions, and what the walk says is its parse. Nothing is consumed
 without a gesture, so the parser and the search for ambiguities both go gesture by gesture.
 """
 
@@ -20,8 +20,8 @@ BEFORE = -1
 """The position before the first gesture."""
 
 
-class Said(NamedTuple):
-    """What one gesture adds to a reading.
+class Contribution(NamedTuple):
+    """What one gesture adds to a parse.
 
     A phrase that begins has only its index; a value has its slot, too.
     """
@@ -31,7 +31,7 @@ class Said(NamedTuple):
     value: Value | None = None
 
 
-Reading = tuple[Said, ...]
+Reading = tuple[Contribution, ...]
 """What a walk says, in order: for each phrase that it begins, and each value in a slot."""
 
 
@@ -106,7 +106,7 @@ class PhraseAutomaton:
         return frozenset(self._first if position == BEFORE else self._follow[position])
 
     def moves(self, position: int) -> Mapping[str, Sequence[tuple[int, Reading]]]:
-        """Return per label the positions that it leads to, and what that adds to the reading."""
+        """Return per label the positions that it leads to, and what that adds to the parse."""
         return self._moves[position]
 
     @cached_property
@@ -127,9 +127,9 @@ class PhraseAutomaton:
             return ()
         here = None if position == BEFORE else self.positions[position]
         begins = here is None or not here.inside or here.turn != there.turn
-        said: Reading = (Said(there.phrase),) if begins else ()
+        said: Reading = (Contribution(there.phrase),) if begins else ()
         if there.slot is not None:
-            said += (Said(there.phrase, there.slot, there.values[label]),)
+            said += (Contribution(there.phrase, there.slot, there.values[label]),)
         return said
 
     def _add_turn(self, turn: int, before: set[int] | None) -> tuple[set[int], set[int]]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from app.recognition.errors import LanguageError
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 from app.recognition.phrases.validation import check_grammar
-from app.recognition.text.strict_json import pointer_to
+from app.recognition.text.strict_json import build_pointer
 
 DEFAULT_TIMEOUT = 10.0
 """Seconds: as long as attention stays with a dialogue that does not answer (Nielsen 1993)."""
@@ -92,13 +92,13 @@ class Grammar:
         for role in FRAME:
             label = getattr(self, role)
             if label is not None:
-                yield Use(label, pointer_to("grammar", role), f"the {role} gesture", role)
+                yield Use(label, build_pointer("grammar", role), f"the {role} gesture", role)
         for index, slot_type in enumerate(self.slot_types):
             for number, label in enumerate(slot_type.values):
-                pointer = pointer_to("grammar", "slot_types", index, "values", number, "gesture")
+                pointer = build_pointer("grammar", "slot_types", index, "values", number, "gesture")
                 yield Use(label, pointer, f"the slot type {slot_type.name!r}")
         for index, phrase in enumerate(self.phrases):
-            place = pointer_to("grammar", "phrases", index, "parts")
+            place = build_pointer("grammar", "phrases", index, "parts")
             for pointer, label in _labels_in(phrase.parts, place):
                 yield Use(label, pointer, f"the phrase {phrase.name!r}")
 
@@ -179,9 +179,9 @@ class Grammar:
 
 def _labels_in(parts: Sequence[Part], place: str) -> Iterator[tuple[str, str]]:
     for index, part in enumerate(parts):
-        at = place + pointer_to(index)
+        at = place + build_pointer(index)
         if isinstance(part, OneOf):
             for number, label in enumerate(part.gestures):
-                yield at + pointer_to("gestures", number), label
+                yield at + build_pointer("gestures", number), label
         elif isinstance(part, Group):
             yield from _labels_in(part.parts, at + "/parts")

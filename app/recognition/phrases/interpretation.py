@@ -9,7 +9,13 @@ from typing import Any
 from app.recognition.phrases.automaton import Reading
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Phrase, Slot, Value
-from app.recognition.phrases.templates import SlotValue, filled, spoken, whole_placeholder, words
+from app.recognition.phrases.templates import (
+    SlotValue,
+    fill_template,
+    find_whole_placeholder,
+    speak_template,
+    speak_value,
+)
 
 
 @dataclass(frozen=True)
@@ -56,10 +62,10 @@ class Mission:
         return [meaning.to_dict() for meaning in self.phrases]
 
 
-def mission_of(grammar: Grammar, reading: Reading) -> Mission:
-    """Return what a reading means."""
+def interpret_message(grammar: Grammar, parse: Reading) -> Mission:
+    """Return what a parse means."""
     said: list[tuple[Phrase, dict[str, list[Value]]]] = []
-    for each in reading:
+    for each in parse:
         if each.slot is None:
             said.append((grammar.phrases[each.phrase], {}))
         elif each.value is not None:
@@ -76,7 +82,7 @@ def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]
             shown[slot.name] = _value(grammar, slot, values[slot.name], repeated=repeated)
         known[slot.name] = shown.get(slot.name, slot.default)
     if isinstance(phrase.command, str):
-        command: str | dict[str, Any] | None = filled(phrase.command, known)
+        command: str | dict[str, Any] | None = fill_template(phrase.command, known)
     else:
         command = _filled(phrase.command, known)
     return Meaning(phrase.name, shown, command, _spoken(phrase, known, shown))
@@ -92,8 +98,10 @@ def _spoken(
     phrase: Phrase, known: Mapping[str, SlotValue | None], shown: Mapping[str, SlotValue]
 ) -> str:
     if phrase.says:
-        return spoken(phrase.says, known, shown.keys())
-    return ", ".join([phrase.name, *(f"{name} {words(value)}" for name, value in shown.items())])
+        return speak_template(phrase.says, known, shown.keys())
+    return ", ".join(
+        [phrase.name, *(f"{name} {speak_value(value)}" for name, value in shown.items())]
+    )
 
 
 def _filled(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
@@ -104,5 +112,5 @@ def _filled(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
         return [_filled(each, values) for each in command]
     if not isinstance(command, str):
         return command
-    whole = whole_placeholder(command)
-    return filled(command, values) if whole is None else values[whole]
+    whole = find_whole_placeholder(command)
+    return fill_template(command, values) if whole is None else values[whole]

@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.interpretation import Mission, mission_of
-from app.recognition.text.wording import listed
+from app.recognition.phrases.interpretation import Mission, interpret_message
+from app.recognition.text.wording import join_words
 
 PhraseEventKind = Literal[
     "continues",
@@ -66,7 +66,7 @@ class PhraseEvent:
     @property
     def text(self) -> str:
         """The event in words, for the diver."""
-        so_far, following = ", ".join(self.gestures), listed(self.expected, last="or")
+        so_far, following = ", ".join(self.gestures), join_words(self.expected, last="or")
         if self.mission is not None:
             return self.mission.spoken
         return {
@@ -100,7 +100,7 @@ class _Message:
 
     Attributes
     ----------
-    readings
+    parses
         Per position of the automaton that it may be at, what it says.
     gestures
         Labels.
@@ -111,7 +111,7 @@ class _Message:
 
     """
 
-    readings: Mapping[int, tuple[Reading, ...]] = field(default_factory=lambda: {BEFORE: ((),)})
+    parses: Mapping[int, tuple[Reading, ...]] = field(default_factory=lambda: {BEFORE: ((),)})
     gestures: tuple[str, ...] = ()
     start: float = 0.0
     end: float = 0.0
@@ -121,7 +121,7 @@ class _Message:
 class PhraseParser:
     """Puts recognised gestures together to messages.
 
-    A command only ever comes of a message that has one reading, all gestures of which were
+    A command only ever comes of a message that has one parse, all gestures of which were
     recognised and followed each other within the grammar's time-out. Where a message could be over
     or go on, which the check of the language reports, the time-out ends it.
 
@@ -141,7 +141,7 @@ class PhraseParser:
     @property
     def expected(self) -> tuple[str, ...]:
         """Labels that may come next, in the grammar's order."""
-        possible = {label for position in self._message.readings for label in self._moves(position)}
+        possible = {label for position in self._message.parses for label in self._moves(position)}
         return tuple(label for label in self._labels if label in possible)
 
     @property
@@ -172,8 +172,8 @@ class PhraseParser:
         if not message.gestures or now - message.end <= self.grammar.timeout:
             return ()
         # After a rejected gesture nobody knows whether the message was over.
-        if not message.doubtful and (readings := self._complete()):
-            return (self._over(None, readings),)
+        if not message.doubtful and (parses := self._complete()):
+            return (self._over(None, parses),)
         return (self._dropped("timed_out", None),)
 
     def abandon(self) -> tuple[PhraseEvent, ...]:
@@ -208,29 +208,29 @@ class PhraseParser:
         return self._automaton.moves(position)
 
     def _following(self, label: str) -> dict[int, tuple[Reading, ...]]:
-        """Return the readings of the message with one more gesture, per position."""
+        """Return the parses of the message with one more gesture, per position."""
         following: dict[int, tuple[Reading, ...]] = {}
-        for position, readings in self._message.readings.items():
+        for position, parses in self._message.parses.items():
             for target, said in self._moves(position).get(label, ()):
                 known = following.get(target, ())
-                more = [*known, *(reading + said for reading in readings)]
+                more = [*known, *(parse + said for parse in parses)]
                 following[target] = tuple(dict.fromkeys(more))[:ENOUGH]
         return following
 
     def _complete(self) -> tuple[Reading, ...]:
-        """Return the readings with which the message could be over now."""
+        """Return the parses with which the message could be over now."""
         found = [
-            reading
-            for position, readings in self._message.readings.items()
+            parse
+            for position, parses in self._message.parses.items()
             if position in self._automaton.accepting
-            for reading in readings
+            for parse in parses
         ]
         return tuple(dict.fromkeys(found))
 
-    def _over(self, label: str | None, readings: tuple[Reading, ...]) -> PhraseEvent:
-        if len(readings) > 1:
+    def _over(self, label: str | None, parses: tuple[Reading, ...]) -> PhraseEvent:
+        if len(parses) > 1:
             return self._dropped("ambiguous", label)
-        return self._dropped("complete", label, mission_of(self.grammar, readings[0]))
+        return self._dropped("complete", label, interpret_message(self.grammar, parses[0]))
 
     def _dropped(
         self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Set
 
 from app.recognition.phrases.phrase import Value
-from app.recognition.text.wording import listed
+from app.recognition.text.wording import join_words
 
 SlotValue = Value | list[Value]
 """What a slot came to: a list where it may be filled more than once."""
@@ -15,12 +15,14 @@ _PLACEHOLDER = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 _STRETCH = re.compile(r"\[([^\[\]]*)\]|([^\[\]]+)")
 
 
-def placeholders_in(text: str) -> Iterator[str]:
+def find_placeholders(text: str) -> Iterator[str]:
     """Give the slots that a text refers to."""
     return (match[1] for match in _PLACEHOLDER.finditer(text))
 
 
-def template_fault(template: str, slots: Collection[str], missing: Collection[str]) -> str | None:
+def find_template_fault(
+    template: str, slots: Collection[str], missing: Collection[str]
+) -> str | None:
     """Say what is wrong with a spoken text; None: nothing.
 
     Parameters
@@ -36,7 +38,7 @@ def template_fault(template: str, slots: Collection[str], missing: Collection[st
     if _STRETCH.sub("", template):
         return f"the square brackets in {template!r} do not pair up, or stand in each other"
     for optional, plain in _STRETCH.findall(template):
-        names = list(placeholders_in(optional or plain))
+        names = list(find_placeholders(optional or plain))
         if unknown := [name for name in names if name not in slots]:
             return (
                 f"{{{unknown[0]}}} is no slot here; there is {', '.join(sorted(slots)) or 'none'}"
@@ -48,18 +50,18 @@ def template_fault(template: str, slots: Collection[str], missing: Collection[st
     return None
 
 
-def filled(text: str, values: Mapping[str, SlotValue | None]) -> str:
+def fill_template(text: str, values: Mapping[str, SlotValue | None]) -> str:
     """Put the values in words into a text; one that is missing leaves nothing."""
-    return _PLACEHOLDER.sub(lambda match: words(values.get(match[1])), text)
+    return _PLACEHOLDER.sub(lambda match: speak_value(values.get(match[1])), text)
 
 
-def whole_placeholder(text: str) -> str | None:
+def find_whole_placeholder(text: str) -> str | None:
     """Return the slot that a text is nothing else than a placeholder of."""
     match = _PLACEHOLDER.fullmatch(text)
     return match[1] if match else None
 
 
-def spoken(template: str, values: Mapping[str, SlotValue | None], shown: Set[str]) -> str:
+def speak_template(template: str, values: Mapping[str, SlotValue | None], shown: Set[str]) -> str:
     """Put values into a template.
 
     Parameters
@@ -73,16 +75,16 @@ def spoken(template: str, values: Mapping[str, SlotValue | None], shown: Set[str
 
     """
     return "".join(
-        filled(optional or plain, values)
+        fill_template(optional or plain, values)
         for optional, plain in _STRETCH.findall(template)
-        if plain or shown >= set(placeholders_in(optional))
+        if plain or shown >= set(find_placeholders(optional))
     )
 
 
-def words(value: SlotValue | None) -> str:
+def speak_value(value: SlotValue | None) -> str:
     """Say a value."""
     if value is None:
         return ""
     if isinstance(value, list):
-        return listed([words(each) for each in value])
+        return join_words([speak_value(each) for each in value])
     return str(value).removesuffix(".0") if isinstance(value, float) else str(value)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from app.recognition.errors import GestureError, LanguageError
-from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, checked_command
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, check_command
 from app.recognition.phrases.phrase import (
     MAX_REPEAT,
     Group,
@@ -19,8 +19,8 @@ from app.recognition.phrases.phrase import (
     SlotType,
     Value,
 )
-from app.recognition.phrases.templates import placeholders_in, template_fault
-from app.recognition.text.strict_json import pointer_to
+from app.recognition.phrases.templates import find_placeholders, find_template_fault
+from app.recognition.text.strict_json import build_pointer
 
 if TYPE_CHECKING:
     from app.recognition.phrases.grammar import Grammar
@@ -59,9 +59,9 @@ def check_grammar(grammar: Grammar) -> None:
     _check_names((each.name for each in grammar.slot_types), "slot_types")
     _check_names((each.name for each in grammar.phrases), "phrases")
     for index, slot_type in enumerate(grammar.slot_types):
-        _check_slot_type(slot_type, pointer_to("grammar", "slot_types", index))
+        _check_slot_type(slot_type, build_pointer("grammar", "slot_types", index))
     for index, phrase in enumerate(grammar.phrases):
-        _check_phrase(grammar, phrase, pointer_to("grammar", "phrases", index))
+        _check_phrase(grammar, phrase, build_pointer("grammar", "phrases", index))
     total = sum(_longest(part) for phrase in grammar.phrases for part in phrase.parts)
     if total > MAX_GESTURES_IN_GRAMMAR:
         raise LanguageError(
@@ -103,7 +103,7 @@ def _check_frame(grammar: Grammar) -> None:
 def _check_names(names: Iterable[str], key: str) -> None:
     seen: set[str] = set()
     for index, name in enumerate(names):
-        pointer = pointer_to("grammar", key, index, "name")
+        pointer = build_pointer("grammar", key, index, "name")
         if not name.strip() or len(name) > MAX_LABEL_LENGTH or not name.isprintable():
             raise LanguageError(
                 f"must be 1 to {MAX_LABEL_LENGTH} printable characters, got {name!r}", pointer
@@ -121,7 +121,7 @@ def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
             wanted = {"number": "a number", "text": "a text", "digits": "a digit, 0 to 9"}
             raise LanguageError(
                 f"must be {wanted[slot_type.reads_as]}, got {value!r}",
-                pointer + pointer_to("values", index, "value"),
+                pointer + build_pointer("values", index, "value"),
             )
 
 
@@ -143,7 +143,7 @@ def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
             pointer + "/parts",
         )
     for index, part in enumerate(phrase.parts):
-        _check_part(grammar, part, pointer + pointer_to("parts", index))
+        _check_part(grammar, part, pointer + build_pointer("parts", index))
     if (longest := sum(_longest(part) for part in phrase.parts)) > MAX_GESTURES_IN_PHRASE:
         raise LanguageError(
             f"{phrase.name!r} may take {longest} gestures, the limit is {MAX_GESTURES_IN_PHRASE}",
@@ -169,7 +169,7 @@ def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
         if not part.parts or all(_may_be_left_out(each) for each in part.parts):
             raise LanguageError("a group needs a part that is not optional", pointer + "/parts")
         for index, member in enumerate(part.parts):
-            _check_part(grammar, member, pointer + pointer_to("parts", index))
+            _check_part(grammar, member, pointer + build_pointer("parts", index))
 
 
 def _check_slot(grammar: Grammar, slot: Slot, pointer: str) -> None:
@@ -212,8 +212,8 @@ def _check_slot_names(phrase: Phrase, pointer: str) -> None:
 
 def _place_of(phrase: Phrase, slot: Slot, group: Group | None) -> str:
     if group is None:
-        return pointer_to("parts", phrase.parts.index(slot))
-    return pointer_to("parts", phrase.parts.index(group), "parts", group.parts.index(slot))
+        return build_pointer("parts", phrase.parts.index(slot))
+    return build_pointer("parts", phrase.parts.index(group), "parts", group.parts.index(slot))
 
 
 def _check_words(phrase: Phrase, pointer: str) -> None:
@@ -227,10 +227,10 @@ def _check_words(phrase: Phrase, pointer: str) -> None:
         raise LanguageError(
             f"must be at most {MAX_TEXT_LENGTH} printable characters", pointer + "/says"
         )
-    if fault := template_fault(phrase.says, slots, missing):
+    if fault := find_template_fault(phrase.says, slots, missing):
         raise LanguageError(fault, pointer + "/says")
     try:
-        checked_command(phrase.command)
+        check_command(phrase.command)
     except GestureError as error:
         raise LanguageError(str(error), pointer + "/command") from error
     for name in _names_in(phrase.command):
@@ -244,7 +244,7 @@ def _check_words(phrase: Phrase, pointer: str) -> None:
 
 def _names_in(command: Any) -> set[str]:
     if isinstance(command, str):
-        return set(placeholders_in(command))
+        return set(find_placeholders(command))
     if isinstance(command, dict):
         command = list(command.values())
     if isinstance(command, list):

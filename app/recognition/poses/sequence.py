@@ -136,7 +136,7 @@ class PoseSequence:
             When a name is not among the recording's landmarks.
 
         """
-        columns = columns_of(names, self.landmarks, "recording")
+        columns = find_columns(names, self.landmarks, "recording")
         confidence = None if self.confidence is None else self.confidence[:, columns]
         return replace(self, landmarks=tuple(names), xy=self.xy[:, columns], confidence=confidence)
 
@@ -207,7 +207,7 @@ class PoseSequence:
         return (self.column(pair[0]) + self.column(pair[1])) / 2
 
 
-def columns_of(names: Sequence[str], landmarks: Sequence[str], what: str) -> list[int]:
+def find_columns(names: Sequence[str], landmarks: Sequence[str], what: str) -> list[int]:
     """Return where `names` stand among `landmarks`.
 
     Raises
@@ -222,7 +222,7 @@ def columns_of(names: Sequence[str], landmarks: Sequence[str], what: str) -> lis
     return [landmarks.index(name) for name in names]
 
 
-def joined(moments: Sequence[PoseSequence]) -> PoseSequence:
+def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
     """Put the frames of a stream together.
 
     Parameters

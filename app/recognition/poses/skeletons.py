@@ -95,7 +95,7 @@ _PARTS: Final = {
 """Names of a landmark without its side, in snake_case, and what they are called here."""
 
 
-def landmark_named(name: str) -> str | None:
+def translate_landmark(name: str) -> str | None:
     """Return the landmark that another program's name means.
 
     The side may stand before or behind, as a word or a letter, in any case: ``left_wrist``,
@@ -118,7 +118,7 @@ def landmark_named(name: str) -> str | None:
     return None
 
 
-def missing_from(landmarks: Collection[str]) -> tuple[str, ...]:
+def find_missing_landmarks(landmarks: Collection[str]) -> tuple[str, ...]:
     """Return what gestures are made with or measured against and a source does not give.
 
     Those of `UPPER_BODY`, in the order of `POSE_LANDMARKS`.

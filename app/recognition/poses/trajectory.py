@@ -11,7 +11,7 @@ import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.landmarks import other_side
-from app.recognition.poses.sequence import FloatArray, PoseSequence, columns_of
+from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
 
 Result = TypeVar("Result")
 
@@ -124,7 +124,7 @@ class Trajectory:
             When a name is not among the trajectory's landmarks.
 
         """
-        columns = columns_of(names, self.landmarks, "trajectory")
+        columns = find_columns(names, self.landmarks, "trajectory")
         return replace(self, landmarks=tuple(names), xy=self.xy.take(columns, axis=1))
 
     def between(self, start: float, end: float) -> Trajectory:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.motion import SIDES, limbs_of, part_of
+from app.recognition.features.motion import SIDES, list_limbs, parse_body_part
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -19,10 +19,10 @@ LEEWAY = 1.05
 """How much longer than in the demonstration a bone may look: a pose model's error from frame to
 frame."""
 
-_ARMS = limbs_of([side + "wrist" for side in SIDES])
+_ARMS = list_limbs([side + "wrist" for side in SIDES])
 
 
-def within_reach(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
+def limit_limbs(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
     """Shorten the bones of arms that look longer than they can.
 
     An elbow first follows a wrist that has gone too far; then, from the shoulder outwards, what
@@ -41,7 +41,7 @@ def within_reach(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
 
     """
     within = paths.copy()
-    places = {part_of(name): index for index, name in enumerate(demonstration.landmarks)}
+    places = {parse_body_part(name): index for index, name in enumerate(demonstration.landmarks)}
     lengths = _longest(demonstration, places)
     for inner, outer in lengths:
         if outer.endswith("wrist"):

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import displacements
+from app.recognition.preprocessing.salience import measure_displacements
 
 LONGEST_JUMP = 0.25
 """Seconds between the moments around a jump, at most. In that time a hand can go half a torso
@@ -47,7 +47,7 @@ UNFOLLOWED = frozenset(POSE_LANDMARKS) - UPPER_BODY
 Mask = npt.NDArray[np.bool_]
 
 
-def jumps(trajectory: Trajectory) -> Mask:
+def find_outliers(trajectory: Trajectory) -> Mask:
     """Find where landmarks jump.
 
     Returns
@@ -60,7 +60,7 @@ def jumps(trajectory: Trajectory) -> Mask:
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
     followed = _followed(trajectory.landmarks)
     paths = trajectory.xy.take(followed, axis=1)
-    if (unit := body_unit(trajectory)) != 1.0:
+    if (unit := measure_body_unit(trajectory)) != 1.0:
         paths /= unit
     finite, kinked = np.isfinite(paths), _has_kink(paths)
     if finite.all() and not kinked.any():
@@ -97,11 +97,11 @@ def _has_kink(paths: FloatArray) -> Mask:
     return np.asarray(squares.max(axis=0, initial=0) > NOTICED**2)
 
 
-def body_unit(trajectory: Trajectory) -> float:
+def measure_body_unit(trajectory: Trajectory) -> float:
     """Return a torso length, or what stands in for it, in the trajectory's unit; > 0."""
     if trajectory.unit == "torso_length":
         return 1.0
-    return TORSOS_PER_EXTENT * max(displacements(trajectory).values()) or 1.0
+    return TORSOS_PER_EXTENT * max(measure_displacements(trajectory).values()) or 1.0
 
 
 def _strays(paths: FloatArray, time: FloatArray) -> Mask:

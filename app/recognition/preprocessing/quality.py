@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
-from app.recognition.preprocessing.outliers import body_unit
-from app.recognition.text.wording import readable
+from app.recognition.preprocessing.outliers import measure_body_unit
+from app.recognition.text.wording import humanize
 
 FEWEST_FRAMES = 5
 """Frames of a recording, at least: a corner takes three, and the simplest gestures have two strokes
@@ -37,7 +37,7 @@ MOST_LEAPS = 0.2
 landmark's places were misplaced."""
 
 
-def fault(
+def find_fault(
     poses: PoseSequence, landmarks: Sequence[str], trajectory: Trajectory | None = None
 ) -> str | None:
     """Tell what makes a recording too poor to judge.
@@ -62,7 +62,7 @@ def fault(
         return f"none of its {len(poses)} frames shows a landmark"
     if trajectory is None:
         trajectory = Trajectory.from_poses(poses)
-    unit = body_unit(trajectory)
+    unit = measure_body_unit(trajectory)
     for name in landmarks:
         if name not in poses.landmarks:
             continue
@@ -73,14 +73,14 @@ def fault(
             followed = _followed(time, seen) / poses.duration
             if followed < LEAST_FOLLOWED:
                 only = f"only {followed:.0%} of its {poses.duration:.1f} s"
-                return f"the {readable(name)} is followed for {only}"
+                return f"the {humanize(name)} is followed for {only}"
             time, places = time[seen], places[seen]
         lasts = time[1:] - time[:-1]
         steps = places[1:] - places[:-1]
         far = np.vecdot(steps, steps) > (LEAP * unit) ** 2
         leaps = np.count_nonzero(far & (lasts <= LEAP_SECONDS)) / len(lasts)
         if leaps > MOST_LEAPS:
-            return f"the {readable(name)} leaps over a torso length in {leaps:.0%} of its frames"
+            return f"the {humanize(name)} leaps over a torso length in {leaps:.0%} of its frames"
     return None
 
 

@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.outliers import jumps
-from app.recognition.preprocessing.side_swaps import exchanged_back, mistaken_sides
+from app.recognition.preprocessing.outliers import find_outliers
+from app.recognition.preprocessing.side_swaps import find_side_swaps, swap_sides
 
 ROUNDS = 16
 """Most rounds of looking for faults: what one round takes away shows others. Damaged beyond use,
@@ -90,7 +90,7 @@ class Repair:
         return tuple(found)
 
 
-def repaired(poses: PoseSequence) -> Repair:
+def repair_poses(poses: PoseSequence) -> Repair:
     """Undo exchanged sides, and take out the places that landmarks jumped to.
 
     Repairing again changes nothing; a recording without these faults is returned as it is.
@@ -114,14 +114,14 @@ def repaired(poses: PoseSequence) -> Repair:
 
 def _with_sides_right(repair: Repair) -> Repair:
     poses = repair.poses
-    sides = mistaken_sides(repair.trajectory)
+    sides = find_side_swaps(repair.trajectory)
     if not sides.exchanged.any():
         return repair
-    xy = exchanged_back(poses.xy, poses.landmarks, sides.exchanged)
+    xy = swap_sides(poses.xy, poses.landmarks, sides.exchanged)
     xy[sides.blended] = np.nan
     confidence = poses.confidence
     if confidence is not None:
-        confidence = exchanged_back(confidence, poses.landmarks, sides.exchanged)
+        confidence = swap_sides(confidence, poses.landmarks, sides.exchanged)
     return replace(
         repair,
         poses=replace(poses, xy=xy, confidence=confidence),
@@ -132,7 +132,7 @@ def _with_sides_right(repair: Repair) -> Repair:
 
 def _without_jumps(repair: Repair) -> Repair:
     poses = repair.poses
-    off = jumps(repair.trajectory)
+    off = find_outliers(repair.trajectory)
     if not off.any():
         return repair
     xy = np.where(off[..., None], np.nan, poses.xy)

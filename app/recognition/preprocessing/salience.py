@@ -43,7 +43,7 @@ still be chosen by hand.
 """
 
 
-def displacements(trajectory: Trajectory) -> dict[str, float]:
+def measure_displacements(trajectory: Trajectory) -> dict[str, float]:
     """Measure how far each landmark moves, peak to peak.
 
     Parameters
@@ -68,7 +68,7 @@ def displacements(trajectory: Trajectory) -> dict[str, float]:
     return measured
 
 
-def salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
+def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
     """Choose the landmarks whose motion is the gesture.
 
     One of each hand and one of the head at most (`LANDMARK_GROUPS`), always the group's usual
@@ -81,18 +81,18 @@ def salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
 
     """
     moved = _eligible_displacements(trajectory)
-    bar = least_displacement(trajectory)
+    bar = find_least_displacement(trajectory)
     return tuple(name for name in trajectory.landmarks if moved.get(name, 0.0) >= bar)
 
 
-def least_displacement(trajectory: Trajectory) -> float:
-    """Return the displacement from which `salient_landmarks` chooses, in the trajectory's unit."""
+def find_least_displacement(trajectory: Trajectory) -> float:
+    """Return the least displacement of a salient landmark, in the trajectory's unit."""
     moved = _eligible_displacements(trajectory)
     return max(MIN_DISPLACEMENT, MIN_SHARE_OF_LARGEST * max(moved.values(), default=0.0))
 
 
-def chosen_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
-    """Check landmarks that the author chose in place of `salient_landmarks`.
+def choose_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
+    """Check landmarks that the author chose in place of `find_salient_landmarks`.
 
     Returns
     -------
@@ -124,13 +124,13 @@ def chosen_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[st
 
 
 def _eligible_displacements(trajectory: Trajectory) -> dict[str, float]:
-    """Return the displacements of the landmarks that `salient_landmarks` chooses from."""
-    eligible = representatives(trajectory)
-    moved = displacements(trajectory)
+    """Return the displacements of the landmarks that `find_salient_landmarks` chooses from."""
+    eligible = choose_representatives(trajectory)
+    moved = measure_displacements(trajectory)
     return {name: displacement for name, displacement in moved.items() if name in eligible}
 
 
-def representatives(trajectory: Trajectory) -> frozenset[str]:
+def choose_representatives(trajectory: Trajectory) -> frozenset[str]:
     """Return the landmarks that may be salient: one per group, and those outside any group.
 
     Only landmarks that are seen at all.

@@ -17,11 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.features.median import median
-from app.recognition.features.motion import part_of
+from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.landmarks import SHOULDERS, other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.outliers import body_unit
+from app.recognition.preprocessing.outliers import measure_body_unit
 
 TOLL = 0.5
 """What a change of sides must save at least, as a share of the distance between the sides.
@@ -66,7 +66,7 @@ SingleArray = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
-class Sides:
+class SideSwaps:
     """Which frames of a recording of T are mistaken.
 
     Attributes
@@ -83,9 +83,9 @@ class Sides:
 
 
 @lru_cache(maxsize=64)
-def sides_of(landmarks: tuple[str, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def pair_sides(landmarks: tuple[str, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the places of the landmarks of the left side, and of their counterparts."""
-    parts = [part_of(name) for name in landmarks]
+    parts = [parse_body_part(name) for name in landmarks]
     left = tuple(
         index
         for index, part in enumerate(parts)
@@ -101,11 +101,11 @@ def _coordinates_of_sides(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
     First all x, then all y, and of each the left side's before the right one's, so that what is
     added up lies side by side in memory.
     """
-    sides = 2 * np.array(sides_of(landmarks), dtype=np.intp)
+    sides = 2 * np.array(pair_sides(landmarks), dtype=np.intp)
     return np.stack([sides, sides + 1])
 
 
-def mistaken_sides(trajectory: Trajectory) -> Sides:
+def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     """Find the frames in which left and right were mistaken for each other.
 
     All landmarks of a side are exchanged together: the model mistakes the whole body. Frames that
@@ -113,7 +113,7 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     frames.
     """
     frames = len(trajectory)
-    none = Sides(np.zeros(frames, dtype=bool), np.zeros(frames, dtype=bool))
+    none = SideSwaps(np.zeros(frames, dtype=bool), np.zeros(frames, dtype=bool))
     sides = _coordinates_of_sides(trajectory.landmarks)
     if not sides.size:
         return none
@@ -124,7 +124,7 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
     if len(clear) < 3:
         return none
     xy = xy if len(clear) == frames else xy[clear]
-    if (unit := body_unit(trajectory)) != 1.0:
+    if (unit := measure_body_unit(trajectory)) != 1.0:
         xy = xy / unit
     between = _lengths(xy[:, :, 0] - xy[:, :, 1])
     toll = TOLL * median(np.add.reduce(between, axis=1, dtype=np.float64))
@@ -143,10 +143,10 @@ def mistaken_sides(trajectory: Trajectory) -> Sides:
         mistaken = ~mistaken
     exchanged = none.exchanged.copy()
     exchanged[clear] = mistaken
-    return Sides(exchanged, blended | _blended_arms(trajectory, blended))
+    return SideSwaps(exchanged, blended | _blended_arms(trajectory, blended))
 
 
-def exchanged_back(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> FloatArray:
+def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> FloatArray:
     """Give the landmarks of either side the values of the other one.
 
     Parameters
@@ -159,7 +159,7 @@ def exchanged_back(values: FloatArray, landmarks: tuple[str, ...], frames: Mask)
         ``(T,)`` the moments at which to do so, see `Sides.exchanged`.
 
     """
-    left, right = sides_of(landmarks)
+    left, right = pair_sides(landmarks)
     order = np.arange(len(landmarks))
     order[[*left, *right]] = [*right, *left]
     changed = values.copy()

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
+from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, corrected
+from app.recognition.estimation.water import WaterCorrection, correct_colours
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.poses.sequence import PoseSequence, joined
-from app.recognition.poses.skeletons import missing_from
+from app.recognition.poses.sequence import PoseSequence, join_sequences
+from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE, best_salute
 from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
@@ -108,7 +108,7 @@ def extract_poses(
     return record(clip, estimator=estimator, progress=progress, water=water).poses
 
 
-def moment_of(
+def build_frame_sequence(
     found: FrameLandmarks,
     time: float,
     frame_size: tuple[int, int],
@@ -125,7 +125,7 @@ def moment_of(
     frame_size
         Width and height of the image in pixels.
     landmarks
-        Those to keep: what the estimator can find at all (`landmarks_of`).
+        Those to keep: what the estimator can find at all (`list_landmarks`).
 
     """
     if found.body is None:
@@ -150,7 +150,7 @@ class _Collector:
 
     def __init__(self, info: VideoInfo, estimator: PoseEstimator) -> None:
         self._info = info
-        self._landmarks, self._hands_sought = landmarks_of(estimator), finds_hands(estimator)
+        self._landmarks, self._hands_sought = list_landmarks(estimator), finds_hands(estimator)
         self._moments: list[PoseSequence] = []
         self._hands: list[tuple[Hand, ...]] = []
         self._salute: list[float] = []
@@ -159,14 +159,14 @@ class _Collector:
     def add(self, time: float, found: FrameLandmarks) -> None:
         self._without_body += found.body is None
         size = (self._info.width, self._info.height)
-        self._moments.append(moment_of(found, time, size, self._landmarks))
+        self._moments.append(build_frame_sequence(found, time, size, self._landmarks))
         hands = tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
         self._hands.append(hands)
         self._salute.append(best_salute(hands))
 
     def recording(self, warnings: tuple[str, ...]) -> Recording:
         return Recording(
-            poses=joined(self._moments),
+            poses=join_sequences(self._moments),
             hands=tuple(self._hands),
             salute=np.array(self._salute),
             warnings=warnings + self._warnings(),
@@ -178,7 +178,7 @@ class _Collector:
         found = []
         if self._without_body:
             found.append(f"no person in {self._without_body} of {frames} frames")
-        if missing := missing_from(self._landmarks):
+        if missing := find_missing_landmarks(self._landmarks):
             found.append(f"this pose model gives no {', '.join(missing)}")
         if not self._hands_sought:
             return tuple(found)
@@ -206,7 +206,7 @@ def _record(
     collector = _Collector(frames.info, estimator)
     done = 0
     for frame in frames:
-        found = estimator.estimate(corrected(frame.image, water), frame.time)
+        found = estimator.estimate(correct_colours(frame.image, water), frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)

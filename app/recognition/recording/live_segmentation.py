@@ -6,15 +6,15 @@ from collections import deque
 from dataclasses import dataclass
 
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.poses.sequence import PoseSequence, joined
-from app.recognition.recording.extraction import moment_of
+from app.recognition.poses.sequence import PoseSequence, join_sequences
+from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.segmentation import (
     LONGEST_TAKE,
     Take,
     TakeMachine,
     TakeState,
-    take_from,
+    cut_take,
 )
 
 LONGEST_SALUTE = 10.0
@@ -77,7 +77,9 @@ class LiveTakes:
             The landmarks of the frame.
 
         """
-        return self.feed_moment(moment_of(found, time, self.frame_size), best_salute(found.hands))
+        return self.feed_moment(
+            build_frame_sequence(found, time, self.frame_size), best_salute(found.hands)
+        )
 
     def feed_moment(self, moment: PoseSequence, salute: float) -> Sight:
         """Take the next frame, whose landmarks and salute came apart.
@@ -101,7 +103,7 @@ class LiveTakes:
             salute=salute,
             held=self._machine.trigger.held,
             state=self._machine.state,
-            take=take_from(joined(self._moments), bracket) if bracket else None,
+            take=cut_take(join_sequences(self._moments), bracket) if bracket else None,
         )
 
     def finish(self) -> Take | None:
@@ -109,4 +111,4 @@ class LiveTakes:
         if not self._moments:
             return None
         bracket = self._machine.finish(float(self._moments[-1].time[0]))
-        return take_from(joined(self._moments), bracket) if bracket else None
+        return cut_take(join_sequences(self._moments), bracket) if bracket else None

@@ -54,7 +54,7 @@ class Condition:
         return 8 * (value - self.middle) / self.width
 
 
-def fulfilment(excess: float) -> float:
+def score_condition(excess: float) -> float:
     """Return the logistic share in [0, 1] of a `Condition.excess`."""
     # In this order NaN, of coordinates too large to compute with, becomes the lower bound.
     return 1 / (1 + math.exp(-min(max(-50.0, excess), 50.0)))
@@ -172,7 +172,7 @@ def salute_score(hand_xy: FloatArray) -> float:
     except OverflowError:  # landmarks farther apart than numbers go
         return 0.0
     # The share grows with the excess: the least excess is that of the least fulfilled condition.
-    return fulfilment(max(_clear_salute(shape), _wide_salute(shape)))
+    return score_condition(max(_clear_salute(shape), _wide_salute(shape)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,7 +261,7 @@ def _wide_salute(shape: _HandShape) -> float:
     )
 
 
-def published_rule(hand_xy: FloatArray) -> bool:
+def check_published_rule(hand_xy: FloatArray) -> bool:
     """Tell what the published implementation calls a salute, to compare with.
 
     The gap between the tips of middle and ring finger is `PUBLISHED_RATIO` times wider than the

@@ -10,7 +10,7 @@ from app.recognition.errors import PoseError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.sequence import PoseSequence
-from app.recognition.preprocessing.repair import repaired
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.extraction import Progress, record
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import SaluteTrigger
@@ -235,7 +235,7 @@ def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
     ]
     if times:
         found.append(machine.finish(times[-1]))
-    return tuple(take_from(recording.poses, bracket, trim=trim) for bracket in found if bracket)
+    return tuple(cut_take(recording.poses, bracket, trim=trim) for bracket in found if bracket)
 
 
 def find_takes(
@@ -251,7 +251,7 @@ def find_takes(
     return takes_in(recording, trim=trim)
 
 
-def take_from(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:
+def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:
     """Cut a take out of a recording.
 
     Parameters
@@ -271,7 +271,7 @@ def take_from(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Ta
             bracket.first_salute.start,
             bracket.last_salute.end if bracket.last_salute else bracket.end,
         )
-        stroke = find_stroke(repaired(around).poses, bracket.first_salute, bracket.last_salute)
+        stroke = find_stroke(repair_poses(around).poses, bracket.first_salute, bracket.last_salute)
     return Take(
         start=bracket.start,
         end=bracket.end,

@@ -171,7 +171,7 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     motion = motion.between(
         motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
     )
-    pieces = pieces_of(motion)
+    pieces = split_pieces(motion)
     if len(pieces) < 2:
         return whole
     if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):
@@ -195,10 +195,10 @@ def _hand_motion(poses: PoseSequence) -> Motion | None:
         return None
     trajectory = Trajectory.from_poses(seen).select(wrists).filled().resampled_in_time(count)
     moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
-    return motion_along(moving, trajectory.time + poses.time[0])
+    return measure_motion(moving, trajectory.time + poses.time[0])
 
 
-def motion_along(paths: Sequence[FloatArray], time: FloatArray) -> Motion | None:
+def measure_motion(paths: Sequence[FloatArray], time: FloatArray) -> Motion | None:
     """Smooth paths on an even grid, and measure their speed.
 
     Parameters
@@ -261,7 +261,7 @@ def _smoothed(values: FloatArray) -> FloatArray:
     return np.convolve(padded, weights / weights.sum(), mode="valid")
 
 
-def pieces_of(motion: Motion) -> list[Piece]:
+def split_pieces(motion: Motion) -> list[Piece]:
     """Cut where speed has a clear minimum, and drop the pauses between the pieces."""
     speed = motion.speed
     if len(speed) < 3 or speed.max() <= 0:

@@ -12,33 +12,33 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.recognition.gestures.gesture import Gesture, condensed
+from app.recognition.gestures.gesture import Gesture, condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.accidental_motion import accidental_movements
+from app.recognition.simulation.background_motion import simulate_background_motion
 
 MOST_SPLICES = 16
 """Splices made of a language, as many as there are kinds of accidental movements."""
 
 
-def foreign_movements(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
+def draw_negatives(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
     """Make movements that are no gesture of the language: accidental ones, then splices.
 
     All of them condensed, as queries are.
     """
     shown = [gesture.trajectory for gesture in gestures if gesture.trajectory is not None]
-    return _accidental() + tuple(map(condensed, splices(shown)))
+    return _accidental() + tuple(map(condense, splice_all(shown)))
 
 
 @lru_cache(maxsize=1)
 def _accidental() -> tuple[Trajectory, ...]:
-    return tuple(condensed(movement.trajectory) for movement in accidental_movements(1))
+    return tuple(condense(movement.trajectory) for movement in simulate_background_motion(1))
 
 
-def splices(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:
+def splice_all(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:
     """Splice each demonstration with the next one, at most `MOST_SPLICES` of them."""
     following = (*demonstrations[1:], *demonstrations[:1])
     return tuple(
-        spliced(before, after)
+        splice(before, after)
         for before, after in zip(demonstrations, following, strict=True)
         if before is not after
         and min(len(before), len(after)) > 1
@@ -46,7 +46,7 @@ def splices(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:
     )[:MOST_SPLICES]
 
 
-def spliced(before: Trajectory, after: Trajectory) -> Trajectory:
+def splice(before: Trajectory, after: Trajectory) -> Trajectory:
     """Go on from the middle of one movement as another one does from its own.
 
     Parameters

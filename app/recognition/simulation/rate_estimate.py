@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.model_error import Unforeseen
+from app.recognition.simulation.variant_bias import VariantBias
 
 STANDARD_ERRORS = 1.96
 """Standard errors to either side that hold 95 % of a normal distribution."""
@@ -27,7 +27,7 @@ DIGITS = 4
 
 
 @dataclass(frozen=True)
-class Forecast:
+class RateEstimate:
     """An estimated probability.
 
     Attributes
@@ -46,8 +46,8 @@ class Forecast:
 
     @classmethod
     def of_margins(
-        cls, margins: FloatArray, unforeseen: Unforeseen, astray: float = 1.0
-    ) -> Forecast:
+        cls, margins: FloatArray, unforeseen: VariantBias, astray: float = 1.0
+    ) -> RateEstimate:
         """Estimate the probability of a margin below 0.
 
         Parameters
@@ -77,7 +77,7 @@ class Forecast:
         return cls(rate, low, high)
 
     @classmethod
-    def of_count(cls, happened: int, count: int) -> Forecast:
+    def of_count(cls, happened: int, count: int) -> RateEstimate:
         """Estimate from a count out of `count` > 0, with Wilson's interval (Wilson 1927)."""
         share = happened / count
         square = STANDARD_ERRORS**2 / count

@@ -29,11 +29,11 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.errors import RecognitionError
-from app.recognition.features.motion import SIDES, part_of
+from app.recognition.errors import OsgError
+from app.recognition.features.motion import SIDES, parse_body_part
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.limb_length import within_reach
+from app.recognition.preprocessing.limb_length import limit_limbs
 
 Person = Literal["same", "another"]
 
@@ -140,7 +140,7 @@ TRUNK_AND_LEGS = frozenset({"shoulder", "hip", "knee", "ankle", "heel", "foot_in
 """Landmarks that carry no gesture: they only sway."""
 
 
-def variants(
+def draw_variants(
     trajectory: Trajectory, count: int, *, seed: int = 0, person: Person = "same"
 ) -> tuple[Trajectory, ...]:
     """Draw plausible other takes of a demonstration.
@@ -166,19 +166,19 @@ def variants(
 
     Raises
     ------
-    RecognitionError
+    OsgError
         When `count` is negative.
 
     """
-    return varied(trajectory, count, SPREADS[person], seed=seed)
+    return vary(trajectory, count, SPREADS[person], seed=seed)
 
 
-def varied(
+def vary(
     trajectory: Trajectory, count: int, spread: Spread, *, seed: int = 0
 ) -> tuple[Trajectory, ...]:
     """Draw variants with a spread of one's own; parameters and errors as for `variants`."""
     if count < 0:
-        raise RecognitionError(f"cannot draw {count} variants: ask for none or more")
+        raise OsgError(f"cannot draw {count} variants: ask for none or more")
     if len(trajectory) < 2:
         return (trajectory,) * count
     xy = _bridged(trajectory)
@@ -187,7 +187,7 @@ def varied(
     paths = _displaced(xy, trajectory.landmarks, draws, spread)
     if trajectory.unit == "extent":
         paths *= (_extent(xy) / np.maximum(_extent(paths), 1e-12))[:, None, None, None]
-    paths = within_reach(centre + paths, trajectory)
+    paths = limit_limbs(centre + paths, trajectory)
     paths[:, ~np.isfinite(trajectory.xy).all(axis=2)] = np.nan
     lengthened = np.exp2(spread.tempo * draws["tempo"])
     elapsed = trajectory.time - trajectory.time[:1]
@@ -264,7 +264,7 @@ def _carried(
         The K names, and `_wrists` of them.
 
     """
-    parts = [part_of(name) for name in landmarks]
+    parts = [parse_body_part(name) for name in landmarks]
     seen = np.asarray(xy.any(axis=(0, 2)))
     centre = xy.mean(axis=0)
     carried = varied.copy()
@@ -341,7 +341,7 @@ def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
 
     A landmark beyond no wrist, or whose wrist is not among them, carries itself.
     """
-    parts = [part_of(name) for name in landmarks]
+    parts = [parse_body_part(name) for name in landmarks]
     index = {part: number for number, part in enumerate(parts)}
     carriers = []
     for number, part in enumerate(parts):
@@ -353,12 +353,12 @@ def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
 
 def _may_gesture(landmark: str) -> bool:
     """Tell whether a landmark may carry a gesture."""
-    return _without_side(part_of(landmark)) not in TRUNK_AND_LEGS
+    return _without_side(parse_body_part(landmark)) not in TRUNK_AND_LEGS
 
 
 def _limb(landmark: str) -> str:
     """Name the arm that a landmark belongs to, or the landmark itself."""
-    part = part_of(landmark)
+    part = parse_body_part(landmark)
     bare = _without_side(part)
     return part.removesuffix(bare) + "arm" if bare in ARM_PARTS else landmark
 

@@ -9,7 +9,7 @@ CHUNK_BYTES = 2**18
 """Read at a time, as `hashlib.file_digest` does, which Python 3.10 does not have yet."""
 
 
-def sha256_of(path: Path) -> str:
+def hash_file(path: Path) -> str:
     """Return the SHA-256 of a file's content, in hexadecimal.
 
     Raises

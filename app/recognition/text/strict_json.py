@@ -113,7 +113,7 @@ def canonical_json(value: Any) -> str:
     return json.dumps(value)
 
 
-def pointer_to(*steps: str | int) -> str:
+def build_pointer(*steps: str | int) -> str:
     """Write a JSON pointer (RFC 6901), escaping ``~`` and ``/``."""
     return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in steps)
 
@@ -164,12 +164,12 @@ def _faults(value: Any, pointer: str) -> Iterator[Fault]:
 def _faults_of_object(entries: dict[str, Any], pointer: str) -> Iterator[Fault]:
     if isinstance(entries, _ObjectWithDuplicates):
         for key in entries.duplicates:
-            yield Fault(pointer + pointer_to(key), "this key occurs twice")
+            yield Fault(pointer + build_pointer(key), "this key occurs twice")
     for key, entry in entries.items():
         if _has_lone_surrogate(key):
             yield Fault(pointer, "a key with half a surrogate pair")
         else:
-            yield from _faults(entry, pointer + pointer_to(key))
+            yield from _faults(entry, pointer + build_pointer(key))
 
 
 def _is_plain_number(value: Any) -> bool:

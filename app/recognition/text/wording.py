@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 
-def readable(identifier: str) -> str:
+def humanize(identifier: str) -> str:
     """Return the name of a landmark or voter as people say it: ``right_wrist`` is right wrist."""
     return identifier.replace("_", " ")
 
 
-def all_readable(identifiers: Iterable[str]) -> list[str]:
+def humanize_all(identifiers: Iterable[str]) -> list[str]:
     """Return each of the names as people say it."""
-    return [readable(identifier) for identifier in identifiers]
+    return [humanize(identifier) for identifier in identifiers]
 
 
-def listed(items: Sequence[str], last: str = "and") -> str:
+def join_words(items: Sequence[str], last: str = "and") -> str:
     """Say several things in a row: a, b and c."""
     if len(items) < 2:
         return "".join(items)

@@ -1,65 +1,198 @@
-// What slots are filled with: gestures, and the value that each stands for.
+// The panel of slot types: gestures, each with the value it stands for.
 
-import { h, icon } from "../dom.js";
-import { choice, textField, tool } from "./fields.js";
-import { grammar, inSlotType, labels, rememberName, save, slotsOf, typed, without, withSlotType, withSlotTypeRenamed } from "./grammar.js";
+import { h, icon } from "../core/dom.js";
+import { choice, textField, tool } from "./form-fields.js";
+import {
+  inSlotType,
+  rememberName,
+  slotsOf,
+  typed,
+  without,
+  withSlotType,
+  withSlotTypeRenamed,
+} from "./grammar-edits.js";
+import { grammar, labels, save } from "./grammar-store.js";
 
-const READS = [["number", "a number each"], ["text", "a word each"], ["digits", "digits of one number"]];
+const READS = [
+  ["number", "a number each"],
+  ["text", "a word each"],
+  ["digits", "digits of one number"],
+];
 
-const inValues = (name, change) => inSlotType(name, (each) => ({ ...each, values: change(each.values) }));
+const inValues = (name, change) =>
+  inSlotType(name, (each) => ({ ...each, values: change(each.values) }));
 
 /** What a value becomes where the slot type reads its gestures otherwise. */
-const converted = (values, readsAs) => values.map(({ gesture, value }, index) => {
-  if (readsAs === "text") return { gesture, value: String(value) };
-  const number = Number(value);
-  const fits = Number.isFinite(number) && (readsAs === "number" || (Number.isInteger(number) && number >= 0 && number <= 9));
-  return { gesture, value: fits ? number : index % 10 };
-});
+const converted = (values, readsAs) =>
+  values.map(({ gesture, value }, index) => {
+    if (readsAs === "text") return { gesture, value: String(value) };
+    const number = Number(value);
+    const fits =
+      Number.isFinite(number) &&
+      (readsAs === "number" || (Number.isInteger(number) && number >= 0 && number <= 9));
+    return { gesture, value: fits ? number : index % 10 };
+  });
 
 function valueRow(type, place, { gesture, value }, index) {
   const id = `slot-type-${place}-value-${index}`;
   const taken = type.values.map((each) => each.gesture);
-  const options = labels().filter((label) => label === gesture || !taken.includes(label)).map((label) => [label, label]);
-  const put = (change) => inValues(type.name, (values) => values.map((each, at) => (at === index ? { ...each, ...change } : each)));
-  return h("li", {},
-    choice({ id: `${id}-gesture`, label: `Gesture ${index + 1} of ${type.name}`, hidden: true, value: gesture, options, commit: (label) => save(`${type.name}: ${label}`, put({ gesture: label })) }),
+  const options = labels()
+    .filter((label) => label === gesture || !taken.includes(label))
+    .map((label) => [label, label]);
+  const put = (change) =>
+    inValues(type.name, (values) =>
+      values.map((each, at) => (at === index ? { ...each, ...change } : each)),
+    );
+  return h(
+    "li",
+    {},
+    choice({
+      id: `${id}-gesture`,
+      label: `Gesture ${index + 1} of ${type.name}`,
+      hidden: true,
+      value: gesture,
+      options,
+      commit: (label) => save(`${type.name}: ${label}`, put({ gesture: label })),
+    }),
     h("span", { className: "dim", "aria-hidden": "true" }, "="),
-    textField({ id, label: `Value of ${gesture}`, hidden: true, value: String(value), commit: (text) => save(`${gesture} means ${text}`, put({ value: typed(text, type.reads_as) })) }),
-    tool(`${id}-remove`, "close", `Take ${gesture} out of ${type.name}`, () => save(`${gesture} out of ${type.name}`, inValues(type.name, (values) => without(values, index))), type.values.length === 1));
+    textField({
+      id,
+      label: `Value of ${gesture}`,
+      hidden: true,
+      value: String(value),
+      commit: (text) =>
+        save(`${gesture} means ${text}`, put({ value: typed(text, type.reads_as) })),
+    }),
+    tool(
+      `${id}-remove`,
+      "close",
+      `Take ${gesture} out of ${type.name}`,
+      () =>
+        save(
+          `${gesture} out of ${type.name}`,
+          inValues(type.name, (values) => without(values, index)),
+        ),
+      type.values.length === 1,
+    ),
+  );
 }
 
 function addValue(type) {
   const left = labels().filter((label) => !type.values.some(({ gesture }) => gesture === label));
-  const next = type.reads_as === "text" ? null : Math.max(...type.values.map(({ value }) => value)) + 1;
-  return save(`${type.name}: ${left[0]}`, inValues(type.name, (values) => [...values, { gesture: left[0], value: next === null ? left[0] : type.reads_as === "digits" ? next % 10 : next }]));
+  const next =
+    type.reads_as === "text" ? null : Math.max(...type.values.map(({ value }) => value)) + 1;
+  return save(
+    `${type.name}: ${left[0]}`,
+    inValues(type.name, (values) => [
+      ...values,
+      {
+        gesture: left[0],
+        value: next === null ? left[0] : type.reads_as === "digits" ? next % 10 : next,
+      },
+    ]),
+  );
 }
 
 async function rename(type, name) {
-  const kept = await save(`Rename to ${name}`, (base) => withSlotTypeRenamed(base, type.name, name));
+  const kept = await save(`Rename to ${name}`, (base) =>
+    withSlotTypeRenamed(base, type.name, name),
+  );
   if (kept) rememberName(type.name, name);
   return kept;
 }
 
 function slotType(type, place) {
   const id = `slot-type-${place}`;
-  const users = grammar().phrases.filter((phrase) => slotsOf(phrase).some((slot) => slot.type === type.name)).map(({ name }) => name);
-  const remove = tool(`${id}-remove`, "trash", users.length ? `${type.name} is used by ${users.join(", ")}` : `Delete ${type.name}`,
-    () => save(`Deletion of ${type.name}`, (base) => ({ ...base, slot_types: base.slot_types.filter((each) => each.name !== type.name) })), users.length > 0);
-  return h("li", { className: "slot-type" },
-    h("div", { className: "slot-type-head" },
-      textField({ id: `${id}-name`, label: "Name of the values", hidden: true, value: type.name, commit: (text) => rename(type, text.trim()) }),
-      choice({ id: `${id}-reads`, label: `How ${type.name} is read`, hidden: true, value: type.reads_as, options: READS, commit: (readsAs) => save(`${type.name} reads ${readsAs}`, inSlotType(type.name, (each) => ({ ...each, reads_as: readsAs, values: converted(each.values, readsAs) }))) }),
-      remove),
-    h("ul", { className: "slot-values", "aria-label": `Gestures of ${type.name}` }, type.values.map((value, index) => valueRow(type, place, value, index))),
-    h("button", { type: "button", className: "link", id: `${id}-add`, onclick: () => addValue(type), hidden: type.values.length === labels().length }, "Add a gesture"));
+  const users = grammar()
+    .phrases.filter((phrase) => slotsOf(phrase).some((slot) => slot.type === type.name))
+    .map(({ name }) => name);
+  const remove = tool(
+    `${id}-remove`,
+    "trash",
+    users.length ? `${type.name} is used by ${users.join(", ")}` : `Delete ${type.name}`,
+    () =>
+      save(`Deletion of ${type.name}`, (base) => ({
+        ...base,
+        slot_types: base.slot_types.filter((each) => each.name !== type.name),
+      })),
+    users.length > 0,
+  );
+  return h(
+    "li",
+    { className: "slot-type" },
+    h(
+      "div",
+      { className: "slot-type-head" },
+      textField({
+        id: `${id}-name`,
+        label: "Name of the values",
+        hidden: true,
+        value: type.name,
+        commit: (text) => rename(type, text.trim()),
+      }),
+      choice({
+        id: `${id}-reads`,
+        label: `How ${type.name} is read`,
+        hidden: true,
+        value: type.reads_as,
+        options: READS,
+        commit: (readsAs) =>
+          save(
+            `${type.name} reads ${readsAs}`,
+            inSlotType(type.name, (each) => ({
+              ...each,
+              reads_as: readsAs,
+              values: converted(each.values, readsAs),
+            })),
+          ),
+      }),
+      remove,
+    ),
+    h(
+      "ul",
+      { className: "slot-values", "aria-label": `Gestures of ${type.name}` },
+      type.values.map((value, index) => valueRow(type, place, value, index)),
+    ),
+    h(
+      "button",
+      {
+        type: "button",
+        className: "link",
+        id: `${id}-add`,
+        onclick: () => addValue(type),
+        hidden: type.values.length === labels().length,
+      },
+      "Add a gesture",
+    ),
+  );
 }
 
 /** Draw the panel. */
 export function slotTypesPanel() {
   const { slot_types: types } = grammar();
-  return h("section", { className: "panel", "aria-labelledby": "slot-types-title" },
+  return h(
+    "section",
+    { className: "panel", "aria-labelledby": "slot-types-title" },
     h("h2", { id: "slot-types-title" }, "Values"),
-    h("p", { className: "dim" }, "Gestures that stand for a number or a word, to fill the slots of phrases: how often, how deep, which way."),
+    h(
+      "p",
+      { className: "dim" },
+      "Gestures that stand for a number or a word, to fill the slots of phrases: how often, how deep, which way.",
+    ),
     types.length ? h("ul", { className: "slot-types" }, types.map(slotType)) : null,
-    h("div", {}, h("button", { type: "button", id: "add-slot-type", onclick: () => save("New values", withSlotType) }, icon("plus"), "Add values")));
+    h(
+      "div",
+      {},
+      h(
+        "button",
+        {
+          type: "button",
+          id: "add-slot-type",
+          onclick: () => save("New values", (base) => withSlotType(base, labels())),
+        },
+        icon("plus"),
+        "Add values",
+      ),
+    ),
+  );
 }

@@ -31,7 +31,7 @@ def test_a_take_is_recognised_with_every_voters_distances(
     result = answer.json()
     assert (result["label"], result["expected"]) == (shape, shape)
     assert result["gestures"] == ["circle", "line"]
-    voters = PROFILES["full"]
+    voters = PROFILES["full"].voters
     assert result["voters"] == [voter.name for voter in voters]
     assert [len(row) for row in result["distances"]] == [2] * len(voters)
     assert set(result["votes"]) <= set(result["voters"]) == set(result["weights"])

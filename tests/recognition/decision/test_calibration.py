@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.decision.calibration import REACH, calibrated
-from app.recognition.gestures.gesture import condensed
+from app.recognition.decision.calibration import REACH, calibrate
+from app.recognition.gestures.gesture import condense
 from app.recognition.gestures.switches import Switches
-from app.recognition.simulation.variation import variants
+from app.recognition.simulation.variation import draw_variants
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
 
 
@@ -34,14 +34,14 @@ def test_other_takes_than_the_thresholds_were_made_of_are_accepted(language: Lan
     recognizer = Recognizer(language)
     for gesture in language.gestures:
         assert gesture.trajectory is not None
-        takes = variants(gesture.trajectory, 20, seed=77)
-        labels = [recognizer.recognize_trajectory(condensed(take)).label for take in takes]
+        takes = draw_variants(gesture.trajectory, 20, seed=77)
+        labels = [recognizer.recognize_trajectory(condense(take)).label for take in takes]
         assert labels.count(gesture.label) >= 17
 
 
 def test_calibrating_again_changes_nothing(language: Language) -> None:
     assert language.calibrated() is language
-    once, again = (calibrated(language.gestures) for _ in range(2))
+    once, again = (calibrate(language.gestures) for _ in range(2))
     for first, second, kept in zip(once, again, language.gestures, strict=True):
         assert first.thresholds == second.thresholds == kept.thresholds
         assert first.rates == second.rates == kept.rates
@@ -91,7 +91,7 @@ def test_what_is_drawn_with_more_care_reaches_less_far() -> None:
     def scribble(share: np.ndarray) -> np.ndarray:
         return np.asarray(wedge(share) + 0.08 * np.sin(60 * share)[:, None])
 
-    plain, fine = calibrated(
+    plain, fine = calibrate(
         [
             Gesture.from_demonstration(name, recording(shape))
             for name, shape in (("plain", wedge), ("fine", scribble))
@@ -103,7 +103,7 @@ def test_what_is_drawn_with_more_care_reaches_less_far() -> None:
 def test_a_gesture_without_demonstration_gets_no_thresholds() -> None:
     drawn = Gesture.from_demonstration("circle", recording(circle))
     imported = Gesture(label="drawn", salient=drawn.salient, image=drawn.image)
-    shown, bare = calibrated([drawn, imported])
+    shown, bare = calibrate([drawn, imported])
     assert shown.thresholds
     assert not bare.thresholds
     assert bare.rates is None
@@ -112,6 +112,6 @@ def test_a_gesture_without_demonstration_gets_no_thresholds() -> None:
 def test_landmarks_of_other_bodies_have_thresholds_but_no_false_alarm_to_expect() -> None:
     poses = recording(circle).select(["right_wrist"])
     marker = replace(poses, landmarks=("hand_marker",))
-    (gesture,) = calibrated([Gesture.from_demonstration("circle", marker)])
+    (gesture,) = calibrate([Gesture.from_demonstration("circle", marker)])
     assert gesture.thresholds
     assert gesture.rates is None

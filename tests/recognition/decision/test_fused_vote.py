@@ -15,11 +15,11 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.decision.fused_vote import VOTERS
-from app.recognition.decision.motion_references import MAX_GESTURES_READ_OTHERWISE
+from app.recognition.decision.motion_references import MAX_GESTURES_TRAVERSED
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.strategies import (
     SHAPES,
     Shape,
@@ -115,8 +115,8 @@ def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
     assert result.nearest in SHAPES
     assert 0.0 <= result.confidence <= 1.0
     assert result.profile == "full"
-    assert result.voters == VOTERS
-    assert result.distances.shape == (len(VOTERS), len(SHAPES))
+    assert result.voters == VOTER_NAMES
+    assert result.distances.shape == (len(VOTER_NAMES), len(SHAPES))
     assert (result.distances >= 0).all()
     assert json.loads(json.dumps(result.to_dict(), allow_nan=False)) == result.to_dict()
 
@@ -127,7 +127,7 @@ def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> 
     assert not {"tempo", "which_hand"} & set(result.counted)  # one hand in all, none by its tempo
     assert sum(result.weights.values()) == pytest.approx(1.0)
     for voter, label in result.votes.items():
-        row = result.distances[VOTERS.index(voter)]
+        row = result.distances[VOTER_NAMES.index(voter)]
         assert result.gestures[int(row.argmin())] == label
 
 
@@ -184,7 +184,7 @@ def turned_by(angle: float, shape: Shape) -> Shape:
 
 
 def test_among_many_gestures_each_is_taken_as_shown() -> None:
-    count = MAX_GESTURES_READ_OTHERWISE + 1
+    count = MAX_GESTURES_TRAVERSED + 1
     angles = 2 * np.pi * np.arange(count) / count
     many = taught(**{f"wedge {n}": turned_by(angles[n], wedge) for n in range(count)})
     result = many.recognize(recording(turned_by(angles[40], wedge)))
@@ -210,7 +210,8 @@ def test_an_author_can_insist_on_a_direction() -> None:
         for each in ("auto", "on")
     )
     distances = [
-        each.recognize(to_the_left).distances[VOTERS.index("path"), 0] for each in (free, strict)
+        each.recognize(to_the_left).distances[VOTER_NAMES.index("path"), 0]
+        for each in (free, strict)
     ]
     assert distances[0] < 0.1 < distances[1]
 
@@ -221,7 +222,7 @@ def test_an_author_can_waive_a_direction() -> None:
         with_switches(backwards(line), "left", direction="off"),
     ]
     result = Recognizer(Language("pair", pair), "full").recognize(recording(line, jitter=0.01))
-    path = result.distances[VOTERS.index("path")]
+    path = result.distances[VOTER_NAMES.index("path")]
     assert path[1] == pytest.approx(path[0], abs=0.05)
 
 
@@ -250,7 +251,7 @@ def test_a_two_handed_figure_is_known_when_left_and_right_were_exchanged_through
     query = with_sides_mistaken(with_both_hands(circle, wedge, jitter=0.01))
     result = Recognizer(Language("pool", gestures), profile="full").recognize(query)
     assert result.label == "round and up"
-    assert result.distances[VOTERS.index("path"), 0] < 0.1
+    assert result.distances[VOTER_NAMES.index("path"), 0] < 0.1
 
 
 def test_sides_count_where_another_gesture_is_the_same_with_sides_exchanged() -> None:
@@ -262,7 +263,7 @@ def test_sides_count_where_another_gesture_is_the_same_with_sides_exchanged() ->
     query = with_both_hands(circle, wedge, jitter=0.01)
     result = Recognizer(Language("pool", pair), profile="full").recognize(query)
     assert result.label == "right one"
-    path = result.distances[VOTERS.index("path")]
+    path = result.distances[VOTER_NAMES.index("path")]
     assert path[0] < 0.1 < path[1]
 
 
@@ -272,7 +273,7 @@ def test_an_author_can_insist_on_the_sides() -> None:
     query = with_sides_mistaken(with_both_hands(circle, wedge))
     both = Gesture.from_demonstration("both round", with_both_hands(circle, circle))
     result = Recognizer(Language("pool", [strict, both]), profile="full").recognize(query)
-    assert result.distances[VOTERS.index("path"), 0] > 0.1
+    assert result.distances[VOTER_NAMES.index("path"), 0] > 0.1
 
 
 def test_tempo_counts_where_nothing_else_differs() -> None:

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion import MOTION_VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 from tests.recognition.demonstrations import ARMS, shown
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
@@ -27,7 +27,7 @@ def begun_at(share: float, shape: Shape, *, backward: bool) -> Shape:
 
 def described(shape: Shape) -> dict[str, FloatArray]:
     poses = recording(shape, frames=50, jitter=0.01, seed=3, landmarks=ARMS)
-    return describe_movement(condensed(Trajectory.from_poses(poses)), REFERENCES.landmarks)
+    return describe_movement(condense(Trajectory.from_poses(poses)), REFERENCES.landmarks)
 
 
 @given(
@@ -41,7 +41,7 @@ def test_a_closed_figure_is_found_wherever_it_begins_and_whichever_way_it_goes(
     distances = REFERENCES.distances(described(begun_at(share, shape, backward=backward)))[PATH]
     nearest = int(distances.argmin())
     assert GESTURES[REFERENCES.gestures[nearest]].label == shape.__name__
-    assert REFERENCES.readings[nearest].backward is backward
+    assert REFERENCES.traversals[nearest].backward is backward
     assert distances[nearest] < 0.05
 
 
@@ -71,7 +71,7 @@ def test_references_are_remembered_until_what_they_depend_on_changes() -> None:
     changed = MotionReferences.of([one_way, *GESTURES[1:]])
     assert len(changed) < len(REFERENCES)
     assert not any(
-        reading.backward
-        for gesture, reading in zip(changed.gestures, changed.readings, strict=True)
+        traversal.backward
+        for gesture, traversal in zip(changed.gestures, changed.traversals, strict=True)
         if gesture == 0
     )

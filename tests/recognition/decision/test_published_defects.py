@@ -1,6 +1,6 @@
 """What the published implementation gets wrong (2025-03-01, head bf8232a), and this one must not.
 
-Defects of its video reading and of its salutes are tested with clips and takes.
+Defects of its video traversal and of its salutes are tested with clips and takes.
 """
 
 import json
@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
-from app.recognition.features.contour import Outline
+from app.recognition.decision.majority_vote import MajorityVote
+from app.recognition.features.contour import Contour
 from app.recognition.features.trajectory_image import draw
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS, describe
+from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape.shape_voter import describe_drawing
 from tests.recognition.strategies import SHAPES, circle, line, recording, rest, wedge
 from tests.recognition.voters.figures import drawing_of
 
@@ -62,7 +64,7 @@ def test_drift_distance_and_the_cameras_aspect_do_not_change_the_shape(
     """There: no centring, no scale, and x and y divided by the frame's width and height."""
     query = recording(circle, jitter=0.004)
     before, after = (
-        draw(condensed(Trajectory.from_poses(poses)).select(["right_wrist"])).image
+        draw(condense(Trajectory.from_poses(poses)).select(["right_wrist"])).image
         for poses in (query, change(query))
     )
     np.testing.assert_array_equal(after, before)
@@ -87,11 +89,11 @@ def test_every_contour_counts_in_a_defined_order() -> None:
     """There: the first contour found is taken, which may be a speck."""
     image = LANGUAGE.gesture("line").image.copy()
     image[2:5, 2:5] = 255
-    contours = Outline.of(image).contours
+    contours = Contour.of(image).contours
     assert len(contours) == 2
     assert contours[0][:, 0].mean() < contours[1][:, 0].mean()
-    line_alone = Outline.of(LANGUAGE.gesture("line").image)
-    assert Outline.of(image).area == pytest.approx(line_alone.area, rel=0.01)
+    line_alone = Contour.of(LANGUAGE.gesture("line").image)
+    assert Contour.of(image).area == pytest.approx(line_alone.area, rel=0.01)
 
 
 def test_fourier_descriptors_are_real_numbers_of_one_length_for_any_contour() -> None:
@@ -110,7 +112,9 @@ def test_the_outline_lies_anywhere_and_the_descriptor_is_the_same() -> None:
     """There: the DC term keeps the place, and nothing divides by the scale."""
     corner = drawing_of(np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]))
     moved = replace(corner, image=np.roll(corner.image, (9, -7), axis=(0, 1)))
-    here, there = (describe(drawing, PAPER_VOTERS)["fourier"] for drawing in (corner, moved))
+    here, there = (
+        describe_drawing(drawing, PAPER_VOTERS)["fourier"] for drawing in (corner, moved)
+    )
     np.testing.assert_allclose(here, there, atol=1e-6)
 
 
@@ -122,7 +126,8 @@ def test_a_tie_does_not_go_to_whichever_gesture_comes_first() -> None:
     for gestures in (("circle", "wedge"), ("wedge", "circle")):
         language = Language("two", [LANGUAGE.gesture(label) for label in gestures])
         two = Recognizer(language, "paper")
-        assert two._counted(distances).label == gestures[1]
+        assert isinstance(two.vote, MajorityVote)
+        assert two.vote.count_votes(distances).label == gestures[1]
 
 
 def test_recognition_writes_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,17 +5,17 @@ import pytest
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.decision.calibration import REACH
-from app.recognition.decision.fused_vote import VOTERS
 from app.recognition.decision.rejection import (
-    VIEWS,
-    calibrated_confidence,
+    CUE_GROUPS,
+    build_novelty_weights,
+    estimate_confidence,
+    gather_thresholds,
     is_rejected,
-    novelty,
-    novelty_weights,
-    thresholds_of,
+    measure_novelty,
 )
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.strategies import SHAPES, circle, line, recording
 
 TAUGHT = ("circle", "wedge", "infinity", "square")
@@ -57,13 +57,13 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
 
 def test_novelty_is_the_largest_of_what_each_view_tells(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(zigzag, jitter=0.01))
-    assert result.novelty_by_view.keys() == VIEWS.keys()
+    assert result.novelty_by_view.keys() == CUE_GROUPS.keys()
     each = [*result.novelty_by_view.values()]
     np.testing.assert_array_equal(result.novelty, np.fmax.reduce(each))
 
 
 def test_a_view_whose_voters_are_off_tells_nothing(recognizer: Recognizer) -> None:
-    off = Tuning(weights=dict.fromkeys(VIEWS["length"], 0.0))
+    off = Tuning(weights=dict.fromkeys(CUE_GROUPS["length"], 0.0))
     query = recording(circle, frames=95, jitter=0.01)
     before = recognizer.recognize(query).novelty_by_view
     after = Recognizer(recognizer.language, tuning=off).recognize(query).novelty_by_view
@@ -76,26 +76,26 @@ def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_th
     distances = np.array([[2.0, 1.0, 1.0, 0.5], [9.0, 4.0, np.inf, 2.0], [4.0, np.inf, 1.0, 0.2]])
     thresholds = np.array([[1.0, 2.0, np.inf, 1.0], [np.inf, 2.0, 1.0, 2.0], [4.0, 1.0, np.inf, 1]])
     views = np.array([[1.0, 3.0, 0.0], [0.0, 0.0, 2.0]])
-    measured = novelty(distances, thresholds, views)
+    measured = measure_novelty(distances, thresholds, views)
     np.testing.assert_allclose(measured, [2.0, (0.5 + 3 * 2) / 4, np.nan, (0.5 + 3 * 1) / 4])
     assert [is_rejected(each) for each in measured] == [True, True, False, False]
 
 
 def test_what_is_held_alike_does_not_make_up_for_what_is_drawn_otherwise() -> None:
     """A voter of another view that sees no difference leaves the novelty as it is."""
-    views = novelty_weights(VOTERS)
+    views = build_novelty_weights(VOTER_NAMES)
     distances = np.where(views[0] > 0, 2.0, np.inf)[:, None]
     calm = np.where(np.isfinite(distances), distances, 0.0)
-    ones = np.ones((len(VOTERS), 1))
-    assert novelty(calm, ones, views) == novelty(distances, ones, views) == 2.0
+    ones = np.ones((len(VOTER_NAMES), 1))
+    assert measure_novelty(calm, ones, views) == measure_novelty(distances, ones, views) == 2.0
 
 
 def test_a_voter_of_a_view_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
-    thresholds = thresholds_of(recognizer.language.gestures, VOTERS)
-    asked = (novelty_weights(VOTERS) > 0).any(axis=0)
+    thresholds = gather_thresholds(recognizer.language.gestures, VOTER_NAMES)
+    asked = (build_novelty_weights(VOTER_NAMES) > 0).any(axis=0)
     assert np.isfinite(thresholds[asked]).all()
     assert not np.isfinite(thresholds[~asked]).any()
-    assert {voter for view in VIEWS.values() for voter in view} == set(REACH)
+    assert {voter for view in CUE_GROUPS.values() for voter in view} == set(REACH)
 
 
 def test_an_imported_gesture_is_not_rejected() -> None:
@@ -108,10 +108,10 @@ def test_an_imported_gesture_is_not_rejected() -> None:
 
 
 def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
-    alone = [calibrated_confidence(far, far, np.inf) for far in (0.0, 0.1, 0.3, 1.0, 5.0)]
+    alone = [estimate_confidence(far, far, np.inf) for far in (0.0, 0.1, 0.3, 1.0, 5.0)]
     assert alone == sorted(alone, reverse=True)
     assert alone[0] > 0.99
     assert alone[-1] < 0.01
-    beside = [calibrated_confidence(0.3, 0.1, second) for second in (0.1, 0.3, 1.0)]
+    beside = [estimate_confidence(0.3, 0.1, second) for second in (0.1, 0.3, 1.0)]
     assert beside == sorted(beside)
-    assert 0.0 <= calibrated_confidence(1e300, 1e300, 1e300) < 1e-9
+    assert 0.0 <= estimate_confidence(1e300, 1e300, 1e300) < 1e-9

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.decision.score_table import Comparison
-from app.recognition.gestures.gesture import condensed
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.gestures.gesture import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
@@ -20,8 +20,8 @@ LANGUAGE = Language(
 RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 
 
-def compared(recognizer: Recognizer, poses: PoseSequence) -> Comparison:
-    return recognizer.compare(condensed(Trajectory.from_poses(poses)))
+def compared(recognizer: Recognizer, poses: PoseSequence) -> ScoreTable:
+    return recognizer.compare(condense(Trajectory.from_poses(poses)))
 
 
 @pytest.mark.parametrize("profile", PROFILES)
@@ -43,9 +43,9 @@ def test_the_smallest_score_wins_in_profile_full(query: PoseSequence) -> None:
 def test_a_figure_read_backwards_costs_half_as_much_again() -> None:
     comparison = compared(RECOGNIZERS["full"], recording(lambda share: line(1 - share)))
     at = LANGUAGE.labels.index("line")
-    reading = comparison.readings[at]
-    assert reading is not None
-    assert reading.backward
+    traversal = comparison.traversals[at]
+    assert traversal is not None
+    assert traversal.backward
     assert comparison.turned[at] == pytest.approx(comparison.contributions[:, at].sum() / 2)
 
 
@@ -62,7 +62,7 @@ def test_the_mirror_image_that_fits_is_named() -> None:
         frame_size=query.frame_size,
     )
     assert not compared(recognizer, shown).mirrored.any()
-    trajectory = condensed(Trajectory.from_poses(shown)).mirrored()
+    trajectory = condense(Trajectory.from_poses(shown)).mirrored()
     assert recognizer.compare(trajectory).mirrored.tolist() == [
         label == "wedge" for label in LANGUAGE.labels
     ]

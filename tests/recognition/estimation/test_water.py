@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import Image
-from app.recognition.estimation.water import LUMA, corrected, is_murky
+from app.recognition.estimation.water import LUMA, correct_colours, is_murky
 
 COLOURS = st.tuples(st.integers(0, 255), st.integers(0, 255), st.integers(0, 255))
 
@@ -38,7 +38,7 @@ def colour_cast(image: Image) -> float:
 
 def test_murk_is_taken_away() -> None:
     murky = in_water(scene(), 0.75)
-    clear = corrected(murky, "on")
+    clear = correct_colours(murky, "on")
     assert brightness_range(clear) > 3 * brightness_range(murky)
     assert colour_cast(clear) < colour_cast(murky) / 3
 
@@ -46,7 +46,7 @@ def test_murk_is_taken_away() -> None:
 def test_what_was_lighter_stays_lighter() -> None:
     """Also where nothing is stretched out of range: the order of grey values is kept."""
     ramp = np.repeat(np.linspace(60, 110, 128).astype(np.uint8)[None, :, None], 3, axis=2)
-    shown = corrected(np.repeat(ramp, 64, axis=0), "on")
+    shown = correct_colours(np.repeat(ramp, 64, axis=0), "on")
     assert (np.diff(shown[0, :, 0].astype(int)) >= 0).all()
     assert np.ptp(shown) > 200
 
@@ -55,13 +55,13 @@ def test_auto_corrects_the_murky_and_leaves_the_clear_alone() -> None:
     clear, murky = scene(), in_water(scene(), 0.75)
     assert not is_murky(clear)
     assert is_murky(murky)
-    assert corrected(clear, "auto") is clear
-    np.testing.assert_array_equal(corrected(murky, "auto"), corrected(murky, "on"))
+    assert correct_colours(clear, "auto") is clear
+    np.testing.assert_array_equal(correct_colours(murky, "auto"), correct_colours(murky, "on"))
 
 
 def test_off_never_corrects() -> None:
     murky = in_water(scene(), 0.9)
-    assert corrected(murky, "off") is murky
+    assert correct_colours(murky, "off") is murky
 
 
 @given(COLOURS, st.floats(0, 1), st.tuples(st.integers(1, 9), st.integers(1, 9)))
@@ -70,7 +70,7 @@ def test_any_water_gives_a_picture_of_the_same_size(
 ) -> None:
     image = in_water(scene()[: size[0], : size[1]], murk, colour)
     before = image.copy()
-    shown = corrected(image, "on")
+    shown = correct_colours(image, "on")
     assert shown.shape == image.shape
     assert shown.dtype == np.uint8
     np.testing.assert_array_equal(image, before)
@@ -78,9 +78,9 @@ def test_any_water_gives_a_picture_of_the_same_size(
 
 def test_an_unknown_setting_is_refused_with_the_ones_there_are() -> None:
     with pytest.raises(EstimatorError, match="'sea'; there are: auto, on, off"):
-        corrected(scene(), cast(Any, "sea"))
+        correct_colours(scene(), cast(Any, "sea"))
 
 
 def test_what_is_no_rgb_image_is_refused() -> None:
     with pytest.raises(EstimatorError, match="expected"):
-        corrected(scene()[..., 0], "on")
+        correct_colours(scene()[..., 0], "on")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
-from app.recognition.estimation import create_estimator, finds_hands, landmarks_of
-from app.recognition.estimation.yolo_pose import YoloPose, decoded
+from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
+from app.recognition.estimation.yolo_pose import YoloPose, decode_people
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -123,7 +123,7 @@ def test_a_model_of_something_else_is_told_by_the_shape_it_gives(tmp_path: Path)
 @pytest.mark.parametrize("shape", [(1, 84, 8400), (1, 300, 6), (2, 56, 8400), (56, 8400)])
 def test_detection_models_and_batches_are_refused_with_their_shape(shape: tuple[int, ...]) -> None:
     with pytest.raises(ModelError, match=str(shape).replace("(", r"\(").replace(")", r"\)")):
-        decoded([np.zeros(shape, np.float32)], Path("yolo11n.onnx"))
+        decode_people([np.zeros(shape, np.float32)], Path("yolo11n.onnx"))
 
 
 @pytest.mark.usefixtures("installed_models")
@@ -150,7 +150,7 @@ def test_an_estimator_is_named_by_its_file(tmp_path: Path) -> None:
     assert seen.body is not None
     np.testing.assert_allclose(seen.body.xy[COLUMNS], places, atol=1.5)
     assert seen.hands == ()
-    assert landmarks_of(estimator) == COCO_17
+    assert list_landmarks(estimator) == COCO_17
     assert not finds_hands(estimator)
     estimator.reset()
     estimator.close()

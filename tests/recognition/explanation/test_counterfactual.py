@@ -5,13 +5,13 @@ from collections import Counter
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.explanation.context import Situation
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual import (
     MOST,
     MOST_OF_A_KIND,
     Counterfactuals,
-    counterfactuals,
-    margin,
+    find_counterfactuals,
+    measure_margin,
 )
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
@@ -28,20 +28,20 @@ RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 def found_for(
     poses: PoseSequence, expected: str, recognizer: Recognizer, whole: PoseSequence | None = None
 ) -> Counterfactuals:
-    situation = Situation(recognizer=recognizer, poses=poses, whole=whole or poses)
+    situation = RecognitionContext(recognizer=recognizer, poses=poses, whole=whole or poses)
     assert situation.result.label != expected
-    return counterfactuals(situation, expected)
+    return find_counterfactuals(situation, expected)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
     query = recording(wedge, jitter=0.02)
-    situation = Situation(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
-    told = counterfactuals(situation, "circle")
+    situation = RecognitionContext(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
+    told = find_counterfactuals(situation, "circle")
     assert told.found
     assert told.tried >= len(told.found)
     for each in told.found:
-        after = each.change.applied(situation).result
+        after = each.change.apply(situation).result
         assert after.label == each.label == "circle"
         assert after.confidence == each.confidence
 
@@ -131,4 +131,4 @@ def test_no_weight_helps_a_gesture_whose_keypoint_is_not_seen() -> None:
     ],
 )
 def test_the_margin_is_to_the_nearest_other(scores: list[float], expected: float) -> None:
-    assert margin(scores, 0) == pytest.approx(expected)
+    assert measure_margin(scores, 0) == pytest.approx(expected)

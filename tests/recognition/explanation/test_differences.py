@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.explanation.differences import Difference, differences
+from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -38,10 +38,10 @@ def told(
     query: PoseSequence, shape: Shape = hook, *, sees_direction: bool = True
 ) -> tuple[Difference, ...]:
     gesture = Gesture.from_demonstration("hook", recording(shape))
-    trajectory = condensed(Trajectory.from_poses(query))
+    trajectory = condense(Trajectory.from_poses(query))
     pairing = Pairing.of(trajectory, gesture, AS_SHOWN, start=START)
     assert pairing is not None
-    return differences(pairing, sees_direction=sees_direction)
+    return find_differences(pairing, sees_direction=sees_direction)
 
 
 def mirrored(shape: Shape) -> Shape:
@@ -161,13 +161,13 @@ def bent(degrees: float) -> PoseSequence:
 @pytest.mark.parametrize(("shown", "way"), [(40, "80 degrees farther clockwise"), (0, None)])
 def test_a_wrist_that_is_bent_otherwise_is_told_by_degrees(shown: float, way: str | None) -> None:
     gesture = Gesture.from_demonstration("hook", bent(-shown))
-    trajectory = condensed(Trajectory.from_poses(bent(shown)))
+    trajectory = condense(Trajectory.from_poses(bent(shown)))
     pairing = Pairing.of(trajectory, gesture, AS_SHOWN)
     assert pairing is not None
-    found = differences(pairing, sees_direction=True)
+    found = find_differences(pairing, sees_direction=True)
     assert [each.kind for each in found] == ([] if way is None else ["wrist"])
     assert all(way is not None and way in each.words for each in found)
-    assert differences(pairing, sees_direction=False) == ()
+    assert find_differences(pairing, sees_direction=False) == ()
 
 
 def test_a_joint_that_was_not_seen_is_told_with_the_time() -> None:

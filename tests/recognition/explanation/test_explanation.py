@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from app.recognition import Gesture, Language, PoseSequence, RecognitionError, Recognizer
-from app.recognition.explanation.context import Situation
+from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
-from app.recognition.text.wording import readable
+from app.recognition.text.wording import humanize
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.explanation.test_differences import corners
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
@@ -25,8 +25,8 @@ LANGUAGE = Language(
 RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 
 
-def situation(poses: PoseSequence, recognizer: Recognizer) -> Situation:
-    return Situation(recognizer=recognizer, poses=poses, whole=poses)
+def situation(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
+    return RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)
 
 
 def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanation:
@@ -154,7 +154,7 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
 
 
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
-    with pytest.raises(RecognitionError, match=r"no gesture 'spiral'.*circle, wedge"):
+    with pytest.raises(OsgError, match=r"no gesture 'spiral'.*circle, wedge"):
         explain(situation(recording(circle), RECOGNIZERS["full"]), "spiral")
 
 
@@ -198,8 +198,8 @@ def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
         f"It would have been read as 'wedge' {first.change.words}."
     )
     loudest = explanation.verdicts[0].voter
-    assert readable(loudest) in explanation.sentence
-    identifiers = [voter.name for voter in PROFILES[profile] if "_" in voter.name]
+    assert humanize(loudest) in explanation.sentence
+    identifiers = [voter.name for voter in PROFILES[profile].voters if "_" in voter.name]
     assert not any(name in explanation.sentence for name in identifiers)
 
 

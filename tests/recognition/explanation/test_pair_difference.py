@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation.pair_difference import contrast
+from app.recognition.explanation.pair_difference import compare_pair
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line
@@ -18,7 +18,7 @@ def ell(share: FloatArray) -> FloatArray:
 
 def test_what_only_one_of_them_does_is_told_with_its_time() -> None:
     recognizer = Recognizer(pool(line=line, ell=ell, circle=circle), "full")
-    found = contrast(recognizer, 1, 0)
+    found = compare_pair(recognizer, 1, 0)
     assert found is not None
     assert "'line'" in found.words
     start, end = found.stroke
@@ -29,5 +29,5 @@ def test_what_only_one_of_them_does_is_told_with_its_time() -> None:
 def test_without_a_demonstration_there_is_nothing_to_compare() -> None:
     imported = Gesture(label="old", salient=("right_wrist",), image=shown("line", line).image)
     recognizer = Recognizer(Language("mixed", [shown("circle", circle), imported]), "full")
-    assert contrast(recognizer, 1, 0) is None
-    assert contrast(recognizer, 0, 1) is None
+    assert compare_pair(recognizer, 1, 0) is None
+    assert compare_pair(recognizer, 0, 1) is None

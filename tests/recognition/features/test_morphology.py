@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.features.morphology import closed
+from app.recognition.features.morphology import close_image
 
 
 @given(
@@ -24,7 +24,7 @@ def test_the_result_is_opencvs_to_the_last_pixel(
     image = np.pad(strokes * np.uint8(255), ((border,) * 2, (border, border + to_a_whole_byte)))
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (diameter + 1, diameter + 1))
     expected = cv2.morphologyEx(image, cv2.MORPH_CLOSE, disc)
-    np.testing.assert_array_equal(closed(image, diameter), expected)
+    np.testing.assert_array_equal(close_image(image, diameter), expected)
 
 
 @pytest.mark.parametrize(("gap", "filled"), [(20, True), (40, False)])
@@ -32,4 +32,4 @@ def test_a_gap_is_filled_where_the_disc_does_not_fit(gap: int, filled: bool) -> 
     image = np.zeros((200, 200), dtype=np.uint8)
     image[40:160, 50:70] = 255
     image[40:160, 70 + gap : 90 + gap] = 255
-    assert bool(closed(image, 28)[100, 70 + gap // 2]) is filled
+    assert bool(close_image(image, 28)[100, 70 + gap // 2]) is filled

@@ -7,12 +7,12 @@ import pytest
 
 from app.recognition.features.motion import (
     STEPS,
-    followed_landmarks,
-    hands_in,
-    limbs_of,
-    movement,
-    on_both_sides,
-    part_of,
+    build_movement,
+    find_followed_landmarks,
+    find_hands,
+    list_limbs,
+    parse_body_part,
+    uses_both_sides,
 )
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.trajectory import Trajectory
@@ -22,7 +22,7 @@ WRIST = ("right_wrist",)
 
 
 def test_steps_are_equally_long_and_reached_in_time() -> None:
-    seen = movement(Trajectory.from_poses(recording(circle)), WRIST)
+    seen = build_movement(Trajectory.from_poses(recording(circle)), WRIST)
     assert seen.paths.shape == (STEPS, 1, 2)
     steps = np.linalg.norm(np.diff(seen.paths[:, 0], axis=0), axis=1)
     assert steps.std() < 0.02 * steps.mean()
@@ -31,14 +31,14 @@ def test_steps_are_equally_long_and_reached_in_time() -> None:
 
 
 def test_jitter_is_smoothed() -> None:
-    calm = movement(Trajectory.from_poses(recording(circle)), WRIST)
-    shaky = movement(Trajectory.from_poses(recording(circle, jitter=0.03)), WRIST)
+    calm = build_movement(Trajectory.from_poses(recording(circle)), WRIST)
+    shaky = build_movement(Trajectory.from_poses(recording(circle, jitter=0.03)), WRIST)
     assert np.abs(shaky.paths - calm.paths).mean() < 0.03
 
 
 def test_what_is_never_seen_does_not_move() -> None:
     poses = recording(circle).select(["right_wrist", "right_shoulder", "left_shoulder"])
-    seen = movement(Trajectory.from_poses(poses), ("left_wrist", "right_wrist"))
+    seen = build_movement(Trajectory.from_poses(poses), ("left_wrist", "right_wrist"))
     assert not seen.paths[:, 0].any()
     assert seen.paths[:, 1].any()
 
@@ -47,7 +47,7 @@ def test_a_gap_is_bridged_however_long() -> None:
     poses = recording(circle)
     hidden = poses.xy.copy()
     hidden[10:40, poses.landmarks.index("right_wrist")] = np.nan
-    seen = movement(Trajectory.from_poses(replace(poses, xy=hidden)), WRIST)
+    seen = build_movement(Trajectory.from_poses(replace(poses, xy=hidden)), WRIST)
     assert np.isfinite(seen.paths).all()
 
 
@@ -55,18 +55,18 @@ def test_exchanging_sides_is_naming_the_landmarks_of_the_other_side() -> None:
     wrists = ("left_wrist", "right_wrist")
     shown = Trajectory.from_poses(recording(circle))
     mistaken = replace(shown, landmarks=tuple(map(other_side, shown.landmarks)))
-    exchanged = movement(shown, wrists).with_sides_exchanged(wrists)
-    np.testing.assert_allclose(exchanged.paths, movement(mistaken, wrists).paths)
-    np.testing.assert_allclose(exchanged.limbs, movement(mistaken, wrists).limbs)
+    exchanged = build_movement(shown, wrists).with_sides_exchanged(wrists)
+    np.testing.assert_allclose(exchanged.paths, build_movement(mistaken, wrists).paths)
+    np.testing.assert_allclose(exchanged.limbs, build_movement(mistaken, wrists).limbs)
     spread = np.ptp(exchanged.paths, axis=0).max(axis=1)
     assert spread[0] > 0.5 > 1e-9 > spread[1]
     again = exchanged.with_sides_exchanged(wrists)
-    np.testing.assert_array_equal(again.paths, movement(shown, wrists).paths)
+    np.testing.assert_array_equal(again.paths, build_movement(shown, wrists).paths)
 
 
 def test_a_landmark_in_the_middle_is_on_both_sides() -> None:
-    assert on_both_sides(("left_wrist", "right_wrist", "nose"))
-    assert not on_both_sides(("left_elbow", "right_wrist"))
+    assert uses_both_sides(("left_wrist", "right_wrist", "nose"))
+    assert not uses_both_sides(("left_elbow", "right_wrist"))
 
 
 def test_limbs_are_seen_under_other_names() -> None:
@@ -75,8 +75,8 @@ def test_limbs_are_seen_under_other_names() -> None:
     kinect["right_wrist"] = "WristRight"
     kept = poses.select([*kinect, "left_shoulder"])
     named = replace(kept, landmarks=(*kinect.values(), "ShoulderLeft"))
-    ours = movement(replace(Trajectory.from_poses(kept), unit="extent"), WRIST)
-    theirs = movement(
+    ours = build_movement(replace(Trajectory.from_poses(kept), unit="extent"), WRIST)
+    theirs = build_movement(
         replace(Trajectory.from_poses(kept), landmarks=named.landmarks), ("WristRight",)
     )
     np.testing.assert_allclose(theirs.limbs, ours.limbs)
@@ -93,12 +93,12 @@ def test_limbs_are_seen_under_other_names() -> None:
     ],
 )
 def test_parts_of_the_body_have_one_name(name: str, part: str) -> None:
-    assert part_of(name) == part
+    assert parse_body_part(name) == part
 
 
 def test_a_language_follows_what_is_salient_in_any_gesture() -> None:
-    followed = followed_landmarks([("right_wrist",), ("left_wrist", "right_wrist"), ()])
+    followed = find_followed_landmarks([("right_wrist",), ("left_wrist", "right_wrist"), ()])
     assert followed == ("left_wrist", "right_wrist")
-    assert {inner.split("_")[0] for inner, _ in limbs_of(WRIST)} == {"right"}
-    assert hands_in(("left_wrist", "left_hand_tip")) == 1
-    assert hands_in(("left_wrist", "right_wrist", "nose")) == 3
+    assert {inner.split("_")[0] for inner, _ in list_limbs(WRIST)} == {"right"}
+    assert find_hands(("left_wrist", "left_hand_tip")) == 1
+    assert find_hands(("left_wrist", "right_wrist", "nose")) == 3

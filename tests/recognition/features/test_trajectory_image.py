@@ -16,9 +16,9 @@ from app.recognition.features.trajectory_image import (
     SIZE,
     STROKE_WIDTH,
     draw,
-    simplified,
+    simplify,
 )
-from app.recognition.gestures.gesture import condensed
+from app.recognition.gestures.gesture import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, strokes
@@ -29,7 +29,7 @@ five pixels wide, so images that differ by jitter in the samples overlap by more
 
 
 def image_of(poses: PoseSequence, *names: str) -> BinaryImage:
-    trajectory = condensed(Trajectory.from_poses(poses))
+    trajectory = condense(Trajectory.from_poses(poses))
     return draw(trajectory.select(names or ("right_wrist",))).image
 
 
@@ -74,7 +74,7 @@ def test_mirroring_a_recording_mirrors_its_image(poses: PoseSequence) -> None:
 def test_twice_the_frame_rate_gives_the_same_shape(poses: PoseSequence) -> None:
     trajectory = Trajectory.from_poses(poses).select(["right_wrist"])
     doubled = trajectory.resampled_in_time(2 * len(trajectory) - 1)
-    assert overlap(draw(condensed(doubled)).image, draw(condensed(trajectory)).image) > SAME_SHAPE
+    assert overlap(draw(condense(doubled)).image, draw(condense(trajectory)).image) > SAME_SHAPE
 
 
 @given(recordings())
@@ -145,11 +145,11 @@ def test_simplification_keeps_the_ends_and_stays_within_its_tolerance(
     stroke: Shape, tolerance: float
 ) -> None:
     points = stroke(np.linspace(0, 1, 60))
-    corners = simplified(points, tolerance)
+    corners = simplify(points, tolerance)
     np.testing.assert_array_equal(corners[[0, -1]], points[[0, -1]])
     kept = {tuple(corner) for corner in corners}
     assert kept <= {tuple(point) for point in points}
-    assert len(simplified(corners, tolerance)) <= len(corners)
+    assert len(simplify(corners, tolerance)) <= len(corners)
     finely = np.concatenate([np.linspace(one, other, 200) for one, other in pairwise(corners)])
     away = np.linalg.norm(points[:, None] - finely[None], axis=2).min(axis=1)
     assert away.max() <= tolerance + 0.01
@@ -157,7 +157,7 @@ def test_simplification_keeps_the_ends_and_stays_within_its_tolerance(
 
 def test_simplification_of_a_straight_line_is_its_ends() -> None:
     straight = np.linspace((0, 0), (3, 1), 30)
-    np.testing.assert_array_equal(simplified(straight, 0.01), straight[[0, -1]])
+    np.testing.assert_array_equal(simplify(straight, 0.01), straight[[0, -1]])
 
 
 @pytest.mark.parametrize(

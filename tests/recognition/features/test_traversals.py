@@ -2,21 +2,21 @@
 
 import numpy as np
 
-from app.recognition.features.motion import STEPS, Movement, movement
+from app.recognition.features.motion import STEPS, Movement, build_movement
 from app.recognition.features.traversals import (
     AS_SHOWN,
     BACKWARD_PENALTY,
     SIDES_EXCHANGED,
     STARTS,
     is_closed,
-    readings,
+    list_traversals,
 )
 from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
 
 def moved(shape: Shape) -> Movement:
-    return movement(Trajectory.from_poses(recording(shape)), ("right_wrist",))
+    return build_movement(Trajectory.from_poses(recording(shape)), ("right_wrist",))
 
 
 def to_and_fro(share: np.ndarray) -> np.ndarray:
@@ -31,25 +31,25 @@ def test_only_what_encloses_something_is_closed() -> None:
 
 
 def test_a_closed_figure_begins_anywhere_and_an_open_one_at_its_ends() -> None:
-    assert len(readings(moved(circle), hands=1, both_ways=True)) == 2 * STARTS
-    assert len(readings(moved(circle), hands=1, both_ways=False)) == STARTS
-    assert len(readings(moved(line), hands=1, both_ways=True)) == 2
-    assert readings(moved(line), hands=1, both_ways=False) == (AS_SHOWN,)
+    assert len(list_traversals(moved(circle), hands=1, both_ways=True)) == 2 * STARTS
+    assert len(list_traversals(moved(circle), hands=1, both_ways=False)) == STARTS
+    assert len(list_traversals(moved(line), hands=1, both_ways=True)) == 2
+    assert list_traversals(moved(line), hands=1, both_ways=False) == (AS_SHOWN,)
 
 
 def test_figures_of_two_hands_are_read_as_shown() -> None:
-    assert readings(moved(circle), hands=2, both_ways=True) == (AS_SHOWN,)
+    assert list_traversals(moved(circle), hands=2, both_ways=True) == (AS_SHOWN,)
 
 
 def test_sides_may_have_been_exchanged_where_both_take_part() -> None:
-    asked = readings(moved(circle), hands=2, both_ways=True, either_side=True)
+    asked = list_traversals(moved(circle), hands=2, both_ways=True, either_side=True)
     assert asked == (AS_SHOWN, SIDES_EXCHANGED)
     assert SIDES_EXCHANGED.penalty > AS_SHOWN.penalty
 
 
 def test_every_reading_takes_every_step_once_and_only_turning_round_costs() -> None:
-    for reading in readings(moved(circle), hands=1, both_ways=True):
-        assert sorted(reading.order) == list(range(STEPS))
-        step = (reading.order[1] - reading.order[0]) % STEPS
-        assert reading.backward == (step == STEPS - 1)
-        assert reading.penalty == (BACKWARD_PENALTY if reading.backward else 1.0)
+    for traversal in list_traversals(moved(circle), hands=1, both_ways=True):
+        assert sorted(traversal.order) == list(range(STEPS))
+        step = (traversal.order[1] - traversal.order[0]) % STEPS
+        assert traversal.backward == (step == STEPS - 1)
+        assert traversal.penalty == (BACKWARD_PENALTY if traversal.backward else 1.0)

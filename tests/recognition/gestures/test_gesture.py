@@ -8,9 +8,9 @@ from hypothesis import given
 
 from app.recognition import Gesture, GestureError, PoseSequence
 from app.recognition.features.trajectory_image import draw
-from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_LANDMARKS, MAX_MOMENTS, condensed
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_LANDMARKS, MAX_MOMENTS, condense
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS
 from tests.recognition.strategies import circle, recording, recordings, rest
 
 
@@ -184,15 +184,15 @@ def test_condensing_bridges_gaps_before_it_resamples() -> None:
     poses = recording(circle, frames=240)
     xy = poses.xy.copy()
     xy[100:104] = np.nan
-    whole = condensed(Trajectory.from_poses(replace(poses, xy=xy)))
+    whole = condense(Trajectory.from_poses(replace(poses, xy=xy)))
     assert len(whole) == MAX_MOMENTS
     assert np.isfinite(whole.select(["right_wrist"]).xy).all()
     assert not draw(whole.select(["right_wrist"])).empty
 
 
 def test_condensing_twice_is_condensing_once() -> None:
-    once = condensed(Trajectory.from_poses(recording(circle, frames=240, jitter=0.01)))
-    twice = condensed(once)
+    once = condense(Trajectory.from_poses(recording(circle, frames=240, jitter=0.01)))
+    twice = condense(once)
     np.testing.assert_array_equal(twice.xy, once.xy)
     np.testing.assert_array_equal(twice.time, once.time)
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition import Gesture, Language, LanguageError, RecognitionError, Recognizer
-from app.recognition.gestures.gesture import condensed
-from app.recognition.gestures.profile import voters_of
+from app.recognition import Gesture, Language, LanguageError, OsgError, Recognizer
+from app.recognition.gestures.gesture import condense
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.voters.registry import VOTER_NAMES
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 
@@ -31,7 +31,7 @@ def test_a_voter_that_is_off_neither_votes_nor_contributes(
     off = Recognizer(language, profile, tuning=Tuning(weights={"zernike": 0.0}))
     assert "zernike" in Recognizer(language, profile).recognize(query).counted
     assert "zernike" not in off.recognize(query).counted
-    compared = off.compare(condensed(Trajectory.from_poses(query)))
+    compared = off.compare(condense(Trajectory.from_poses(query)))
     assert not compared.contributions[compared.voters.index("zernike")].any()
 
 
@@ -83,14 +83,14 @@ def test_profile_paper_puts_sides_right_when_told_to(language: Language) -> None
 
 
 def test_a_tuning_that_fits_nothing_is_refused(language: Language) -> None:
-    with pytest.raises(RecognitionError, match="no voter 'psychic'"):
+    with pytest.raises(OsgError, match="no voter 'psychic'"):
         Recognizer(language, "paper", tuning=Tuning(weights={"psychic": 2.0}))
     voters = Recognizer(language, "paper").recognize(recording(circle)).voters
-    with pytest.raises(RecognitionError, match="all voters are off"):
+    with pytest.raises(OsgError, match="all voters are off"):
         Recognizer(language, "paper", tuning=Tuning(weights=dict.fromkeys(voters, 0.0)))
-    with pytest.raises(RecognitionError, match="number from 0 to 100"):
+    with pytest.raises(OsgError, match="number from 0 to 100"):
         Tuning(weights={"hu": -1.0})
-    with pytest.raises(RecognitionError, match="number from 0 to 50"):
+    with pytest.raises(OsgError, match="number from 0 to 50"):
         Tuning(simplification=float("nan"))
 
 
@@ -129,7 +129,7 @@ def test_a_tuning_is_said_in_words() -> None:
 
 TUNINGS = st.builds(
     Tuning,
-    weights=st.dictionaries(st.sampled_from(voters_of("full")), st.floats(0.1, 100), max_size=4),
+    weights=st.dictionaries(st.sampled_from(VOTER_NAMES), st.floats(0.1, 100), max_size=4),
     simplification=st.floats(0, 50),
     keypoints_repaired=st.sampled_from([None, True, False]),
 )
@@ -155,7 +155,7 @@ def test_a_language_as_any_other_says_nothing_of_it() -> None:
         ("tuning", {"weights": {"hu": -1.0}}, "/tuning/weights/hu"),
         ("tuning", {"weights": {"hu": 1e9}}, "/tuning/weights/hu"),
         ("tuning", {"weights": {"psychic": 1.0}}, "/tuning/weights"),
-        ("tuning", {"weights": dict.fromkeys(voters_of("full"), 0.0)}, "/tuning/weights"),
+        ("tuning", {"weights": dict.fromkeys(VOTER_NAMES, 0.0)}, "/tuning/weights"),
         ("tuning", {"simplification": "fine"}, "/tuning/simplification"),
         ("tuning", {"keypoints_repaired": 1}, "/tuning/keypoints_repaired"),
         ("tuning", {"gain": 3}, "/tuning/gain"),

@@ -2,22 +2,22 @@
 
 from app.recognition import Language, Recognizer
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.false_alarms import alarms
+from app.recognition.health.false_alarms import find_false_alarms
 from app.recognition.poses.sequence import PoseSequence
-from app.recognition.simulation.accidental_motion import MANNERS, accidental_movements
+from app.recognition.simulation.background_motion import MANNERS, simulate_background_motion
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, infinity
 
 
 def test_figures_drawn_in_the_air_are_not_set_off_by_anything() -> None:
-    read = alarms(Recognizer(pool(circle=circle, infinity=infinity), "full"), 1)
+    read = find_false_alarms(Recognizer(pool(circle=circle, infinity=infinity), "full"), 1)
     assert len(read) == len(MANNERS)
     assert sum(alarm.taken for alarm in read) <= 1
 
 
 def test_a_gesture_like_an_accidental_movement_is_set_off_by_it() -> None:
     (waving,) = [
-        each.trajectory for each in accidental_movements(1, seed=9) if each.kind == "waving"
+        each.trajectory for each in simulate_background_motion(1, seed=9) if each.kind == "waving"
     ]
     poses = PoseSequence(
         landmarks=waving.landmarks,
@@ -26,5 +26,5 @@ def test_a_gesture_like_an_accidental_movement_is_set_off_by_it() -> None:
         frame_size=(640, 480),
     )
     language = Language("greeting", [Gesture.from_demonstration("hello", poses)])
-    read = alarms(Recognizer(language, "full"), 1, seed=9)
+    read = find_false_alarms(Recognizer(language, "full"), 1, seed=9)
     assert [alarm.taken for alarm in read if alarm.kind == "waving"] == [True]

@@ -7,9 +7,13 @@ import numpy as np
 import pytest
 
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.finding import demonstration_findings, longest_held_up, visible_share
+from app.recognition.health.finding import (
+    check_demonstration,
+    find_longest_held_up,
+    measure_visible_share,
+)
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.simulation.accidental_motion import accidental_movements
+from app.recognition.simulation.background_motion import simulate_background_motion
 from tests.recognition.demonstrations import shown
 from tests.recognition.strategies import circle, line
 
@@ -32,7 +36,7 @@ def imported() -> Gesture:
 
 
 def codes(gesture: Gesture) -> list[str]:
-    return [finding.code for finding in demonstration_findings(gesture)]
+    return [finding.code for finding in check_demonstration(gesture)]
 
 
 def test_a_good_demonstration_has_no_findings() -> None:
@@ -52,7 +56,7 @@ def test_a_good_demonstration_has_no_findings() -> None:
 def test_a_fault_is_found_and_told_about_that_gesture(
     code: str, make: Callable[[], Gesture]
 ) -> None:
-    (finding,) = demonstration_findings(make())
+    (finding,) = check_demonstration(make())
     assert finding.code == code
     assert finding.gestures == ("circle",)
     assert "circle" in finding.message
@@ -62,18 +66,18 @@ def test_a_fault_is_found_and_told_about_that_gesture(
 def test_a_hand_held_up_may_be_taken_for_a_salute() -> None:
     (pointing,) = [
         each.trajectory
-        for each in accidental_movements(1, seed=3)
+        for each in simulate_background_motion(1, seed=3)
         if each.kind == "venting the vest"
     ]
-    assert longest_held_up(pointing) > 0.3
-    assert longest_held_up(GOOD.trajectory or pointing) == 0
+    assert find_longest_held_up(pointing) > 0.3
+    assert find_longest_held_up(GOOD.trajectory or pointing) == 0
 
 
 def test_half_hidden_is_half_seen() -> None:
     hidden = half_hidden().trajectory
     assert hidden is not None
-    assert visible_share(hidden, "right_wrist") == pytest.approx(0.5, abs=0.02)
-    assert visible_share(hidden, "left_wrist") == 1
+    assert measure_visible_share(hidden, "right_wrist") == pytest.approx(0.5, abs=0.02)
+    assert measure_visible_share(hidden, "left_wrist") == 1
 
 
 def test_a_line_that_is_quick_but_possible_is_no_fault() -> None:

@@ -1,16 +1,16 @@
 """Remedies: proposed only where rehearsing the changed language shows that they help."""
 
 from app.recognition import Language, Recognizer
-from app.recognition.health.remedy import HELPS, MOST_PROPOSED, Rehearsing, pair_remedies
+from app.recognition.health.remedy import HELPS, MOST_PROPOSED, TrialRunner, find_pair_remedies
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, infinity, line
 
-REHEARSING = Rehearsing(takes=4, seed=0, person="another")
+REHEARSING = TrialRunner(takes=4, seed=0, person="another")
 
 
 def remedies_of(language: Language) -> tuple[list[str], list[float]]:
     recognizer = Recognizer(language, "full")
-    found = pair_remedies(language, (0, 1), REHEARSING(recognizer), REHEARSING)
+    found = find_pair_remedies(language, (0, 1), REHEARSING(recognizer), REHEARSING)
     return [remedy.kind for remedy in found], [remedy.after.rate for remedy in found]
 
 
@@ -24,7 +24,7 @@ def test_two_equal_gestures_are_told_apart_by_another_hand_or_by_both() -> None:
 
 def test_a_remedy_carries_the_effect_that_was_computed() -> None:
     language = pool(circle=circle, ring=circle)
-    (first, *_) = pair_remedies(
+    (first, *_) = find_pair_remedies(
         language, (0, 1), REHEARSING(Recognizer(language, "full")), REHEARSING
     )
     assert first.before.rate == 0.5
@@ -36,5 +36,5 @@ def test_what_does_not_help_is_not_proposed() -> None:
     """A line is nothing like an infinity: no change could halve a confusion of zero."""
     language = pool(line=line, infinity=infinity)
     before = REHEARSING(Recognizer(language, "full"))
-    proposed = pair_remedies(language, (0, 1), before, REHEARSING)
+    proposed = find_pair_remedies(language, (0, 1), before, REHEARSING)
     assert all(remedy.after.rate <= HELPS * remedy.before.rate for remedy in proposed)

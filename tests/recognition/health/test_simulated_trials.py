@@ -4,46 +4,46 @@ import numpy as np
 import pytest
 
 from app.recognition import Language, Recognizer
-from app.recognition.health.simulated_trials import rehearse
+from app.recognition.health.simulated_trials import simulate_trials
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line, wedge
 
 
 def test_a_line_is_not_taken_for_a_circle() -> None:
-    rehearsal = rehearse(Recognizer(pool(circle=circle, line=line), "full"), 8, person="same")
-    assert rehearsal.scores.shape == (2, 8, 2)
-    assert rehearsal.scores.argmin(axis=2).tolist() == [[0] * 8, [1] * 8]
-    assert rehearsal.confusion(0, 1).rate < 0.05
-    assert rehearsal.misread(1).rate < 0.05
+    trials = simulate_trials(Recognizer(pool(circle=circle, line=line), "full"), 8, person="same")
+    assert trials.scores.shape == (2, 8, 2)
+    assert trials.scores.argmin(axis=2).tolist() == [[0] * 8, [1] * 8]
+    assert trials.confusion(0, 1).rate < 0.05
+    assert trials.misread(1).rate < 0.05
 
 
 def test_the_same_demonstration_twice_is_a_guess() -> None:
     language = pool(circle=circle, ring=circle)
-    rehearsal = rehearse(Recognizer(language, "full"), 4)
-    assert rehearsal.confusion(0, 1).rate == pytest.approx(0.5)
-    assert rehearsal.confusion(1, 0).rate == pytest.approx(0.5)
+    trials = simulate_trials(Recognizer(language, "full"), 4)
+    assert trials.confusion(0, 1).rate == pytest.approx(0.5)
+    assert trials.confusion(1, 0).rate == pytest.approx(0.5)
 
 
 def test_what_is_refused_or_misread_is_missed() -> None:
-    rehearsal = rehearse(Recognizer(pool(circle=circle, line=line), "full"), 6)
+    trials = simulate_trials(Recognizer(pool(circle=circle, line=line), "full"), 6)
     for performer in range(2):
-        missed = rehearsal.missed(performer).rate
-        assert missed >= rehearsal.refused(performer).rate
-        assert missed >= rehearsal.misread(performer).rate
-    assert 0 < rehearsal.refused(0).rate < 0.3
+        missed = trials.missed(performer).rate
+        assert missed >= trials.refused(performer).rate
+        assert missed >= trials.misread(performer).rate
+    assert 0 < trials.refused(0).rate < 0.3
 
 
 def test_only_the_gestures_asked_for_are_performed() -> None:
     recognizer = Recognizer(pool(circle=circle, line=line, wedge=wedge), "full")
-    whole = rehearse(recognizer, 3)
-    some = rehearse(recognizer, 3, gestures=[2])
+    whole = simulate_trials(recognizer, 3)
+    some = simulate_trials(recognizer, 3, gestures=[2])
     assert some.gestures.tolist() == [2]
     np.testing.assert_array_equal(some.scores[0], whole.scores[2])
 
 
 def test_a_language_of_one_gesture_is_never_misread() -> None:
-    rehearsal = rehearse(Recognizer(Language("one", [shown("circle", circle)]), "full"), 3)
-    assert rehearsal.misread(0).rate < 1e-5
+    trials = simulate_trials(Recognizer(Language("one", [shown("circle", circle)]), "full"), 3)
+    assert trials.misread(0).rate < 1e-5
 
 
 def test_every_take_is_announced_and_an_exception_ends_it() -> None:
@@ -56,5 +56,5 @@ def test_every_take_is_announced_and_an_exception_ends_it() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        rehearse(recognizer, 4, advance=advance)
+        simulate_trials(recognizer, 4, advance=advance)
     assert len(announced) == 3

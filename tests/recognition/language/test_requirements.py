@@ -4,7 +4,7 @@ import pytest
 
 from app.recognition import Gesture, Language
 from app.recognition.errors import LandmarkError
-from app.recognition.language.requirements import require_landmarks, requirements_of
+from app.recognition.language.requirements import find_requirements, require_landmarks
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.strategies import circle, line, recording
@@ -18,7 +18,7 @@ def test_a_language_needs_the_landmarks_its_gestures_follow() -> None:
             Gesture.from_demonstration("left line", recording(line, hand="left_wrist")),
         ],
     )
-    needed = requirements_of(language)
+    needed = find_requirements(language)
     assert needed.salient == ("left_wrist", "right_wrist")
     assert not set(needed.limbs) & {*needed.salient, *needed.torso}
     assert set(needed.torso) == {"left_shoulder", "right_shoulder", "left_hip", "right_hip"}
@@ -26,7 +26,7 @@ def test_a_language_needs_the_landmarks_its_gestures_follow() -> None:
 
 
 def test_an_empty_language_needs_no_landmark_of_a_gesture() -> None:
-    needed = requirements_of(Language("empty"))
+    needed = find_requirements(Language("empty"))
     assert needed.salient == needed.limbs == ()
 
 

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.matching.dtw import (
-    ElasticReferences,
-    ElasticViews,
-    elastic_distances,
-    elastic_pairs,
+    DtwBatch,
+    DtwReferences,
+    dtw_distances,
+    dtw_pairs,
 )
-from app.recognition.matching.dtw_kernel import alignment_costs
+from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.matching.step_distances import squared_distances
 from app.recognition.poses.sequence import FloatArray
 
@@ -40,32 +40,32 @@ def sequences(draw: st.DrawFn, count: int) -> FloatArray:
 @given(sequences(4), st.integers(0, 15))
 def test_it_equals_the_plain_loop(drawn: FloatArray, band: int) -> None:
     expected = [plain_loop(drawn[0], reference, band) for reference in drawn[1:]]
-    np.testing.assert_allclose(elastic_distances(drawn[0], drawn[1:], band), expected, atol=1e-9)
+    np.testing.assert_allclose(dtw_distances(drawn[0], drawn[1:], band), expected, atol=1e-9)
 
 
 @given(sequences(1), st.integers(0, 15))
 def test_a_sequence_is_at_distance_zero_from_itself(drawn: FloatArray, band: int) -> None:
-    assert elastic_distances(drawn[0], drawn, band)[0] == 0.0
+    assert dtw_distances(drawn[0], drawn, band)[0] == 0.0
 
 
 @given(sequences(2), st.integers(0, 15))
 def test_it_is_symmetric(drawn: FloatArray, band: int) -> None:
-    there = elastic_distances(drawn[0], drawn[1:], band)
-    back = elastic_distances(drawn[1], drawn[:1], band)
+    there = dtw_distances(drawn[0], drawn[1:], band)
+    back = dtw_distances(drawn[1], drawn[:1], band)
     np.testing.assert_allclose(there, back, atol=1e-9)
 
 
 @given(sequences(2), st.integers(0, 6))
 def test_it_is_the_same_from_end_to_start(drawn: FloatArray, band: int) -> None:
-    forward = elastic_distances(drawn[0], drawn[1:], band)
-    backward = elastic_distances(drawn[0, ::-1], drawn[1:, ::-1], band)
+    forward = dtw_distances(drawn[0], drawn[1:], band)
+    backward = dtw_distances(drawn[0, ::-1], drawn[1:, ::-1], band)
     np.testing.assert_allclose(forward, backward, atol=1e-9)
 
 
 @given(sequences(2), st.integers(0, 6))
 def test_a_wider_band_never_costs_more(drawn: FloatArray, band: int) -> None:
-    narrow = elastic_distances(drawn[0], drawn[1:], band)
-    assert elastic_distances(drawn[0], drawn[1:], band + 1)[0] <= narrow[0] + 1e-9
+    narrow = dtw_distances(drawn[0], drawn[1:], band)
+    assert dtw_distances(drawn[0], drawn[1:], band + 1)[0] <= narrow[0] + 1e-9
 
 
 @given(st.integers(0, 8), st.integers(0, 2**32 - 1))
@@ -73,9 +73,9 @@ def test_a_delay_within_the_band_costs_nothing(delay: int, seed: int) -> None:
     path = np.random.default_rng(seed).normal(size=(20, 2)).cumsum(axis=0)
     early = np.concatenate([path, np.repeat(path[-1:], delay, axis=0)])
     late = np.concatenate([np.repeat(path[:1], delay, axis=0), path])
-    assert elastic_distances(early, late[None], delay)[0] == pytest.approx(0.0, abs=1e-9)
+    assert dtw_distances(early, late[None], delay)[0] == pytest.approx(0.0, abs=1e-9)
     if delay:
-        assert elastic_distances(early, late[None], delay - 1)[0] > 0.0
+        assert dtw_distances(early, late[None], delay - 1)[0] > 0.0
 
 
 def test_a_component_that_is_not_known_is_left_out() -> None:
@@ -83,23 +83,23 @@ def test_a_component_that_is_not_known_is_left_out() -> None:
     query, references = generator.normal(size=(9, 4)), generator.normal(size=(2, 9, 4))
     hidden = references.copy()
     hidden[1, :, 2:] = np.nan
-    distances = elastic_distances(query, hidden, 3)
-    assert distances[0] == pytest.approx(elastic_distances(query, references, 3)[0])
-    half = elastic_distances(query[:, :2], references[1:, :, :2], 3)[0]
+    distances = dtw_distances(query, hidden, 3)
+    assert distances[0] == pytest.approx(dtw_distances(query, references, 3)[0])
+    half = dtw_distances(query[:, :2], references[1:, :, :2], 3)[0]
     assert distances[1] == pytest.approx(2 * half)
 
 
 def test_nothing_in_common_is_infinitely_far() -> None:
     query = np.array([[0.0, np.nan], [1.0, np.nan]])
     references = np.array([[[np.nan, 0.0], [np.nan, 1.0]], [[0.0, 0.0], [1.0, 0.0]]])
-    np.testing.assert_array_equal(elastic_distances(query, references, 1), [np.inf, 0.0])
+    np.testing.assert_array_equal(dtw_distances(query, references, 1), [np.inf, 0.0])
 
 
 @given(sequences(2), st.integers(0, 15))
 def test_the_costs_of_the_alignment_add_up_to_the_distance(drawn: FloatArray, band: int) -> None:
-    pairs = elastic_pairs(drawn[0], drawn[1], band)
+    pairs = dtw_pairs(drawn[0], drawn[1], band)
     costs = ((drawn[0][pairs[:, 0]] - drawn[1][pairs[:, 1]]) ** 2).sum(axis=1)
-    distance = elastic_distances(drawn[0], drawn[1:], band)[0]
+    distance = dtw_distances(drawn[0], drawn[1:], band)[0]
     assert costs.sum() / len(drawn[0]) == pytest.approx(distance, abs=1e-9)
 
 
@@ -107,7 +107,7 @@ def test_the_costs_of_the_alignment_add_up_to_the_distance(drawn: FloatArray, ba
 def test_the_alignment_runs_on_from_start_to_end_within_the_band(
     drawn: FloatArray, band: int
 ) -> None:
-    pairs = elastic_pairs(drawn[0], drawn[1], band)
+    pairs = dtw_pairs(drawn[0], drawn[1], band)
     assert pairs[0].tolist() == [0, 0]
     assert pairs[-1].tolist() == [len(drawn[0]) - 1] * 2
     assert {tuple(step) for step in np.diff(pairs, axis=0)} <= {(0, 1), (1, 0), (1, 1)}
@@ -118,37 +118,39 @@ def test_the_alignment_leaves_out_what_is_not_known() -> None:
     generator = np.random.default_rng(4)
     query, reference = generator.normal(size=(9, 4)), generator.normal(size=(9, 4))
     query[:, 3] = np.nan
-    pairs = elastic_pairs(query, reference, 3)
+    pairs = dtw_pairs(query, reference, 3)
     costs = squared_distances(query, reference[None])[pairs[:, 0], pairs[:, 1], 0]
-    assert costs.sum() / 9 == pytest.approx(elastic_distances(query, reference[None], 3)[0])
+    assert costs.sum() / 9 == pytest.approx(dtw_distances(query, reference[None], 3)[0])
 
 
 @given(sequences(5), st.integers(0, 15))
 def test_prepared_references_may_be_asked_for_a_few(drawn: FloatArray, band: int) -> None:
-    query, references = drawn[0], ElasticReferences(drawn[1:], band)
-    every = elastic_distances(query, drawn[1:], band)
+    query, references = drawn[0], DtwReferences(drawn[1:], band)
+    every = dtw_distances(query, drawn[1:], band)
     # Single precision: right to a millionth of the sequences' mean square.
     right = 1e-6 * max(1.0, float((drawn**2).sum(axis=2).max()))
     np.testing.assert_allclose(references.distances(query), every, atol=right)
     costs = references.step_costs(query, np.array([2, 0]))
-    np.testing.assert_allclose(alignment_costs(costs, len(query), band), every[[2, 0]], atol=right)
+    np.testing.assert_allclose(
+        compute_alignment_costs(costs, len(query), band), every[[2, 0]], atol=right
+    )
 
 
 @given(sequences(3), st.integers(0, 15))
 def test_a_prepared_sequence_is_at_distance_zero_from_itself(drawn: FloatArray, band: int) -> None:
     sized = drawn / np.sqrt((drawn**2).sum(axis=2).mean(axis=1)).clip(1e-9)[:, None, None]
-    assert ElasticReferences(sized, band).distances(sized[1])[1] == 0.0
+    assert DtwReferences(sized, band).distances(sized[1])[1] == 0.0
 
 
 def test_components_that_no_reference_knows_are_left_out_before() -> None:
     generator = np.random.default_rng(5)
     query, references = generator.normal(size=(9, 4)), generator.normal(size=(3, 9, 4))
     references[..., 3] = np.nan
-    known = elastic_distances(query[:, :3], references[..., :3], 2)
-    np.testing.assert_allclose(ElasticReferences(references, 2).distances(query), known, rtol=1e-5)
+    known = dtw_distances(query[:, :3], references[..., :3], 2)
+    np.testing.assert_allclose(DtwReferences(references, 2).distances(query), known, rtol=1e-5)
     query[:, 0] = np.nan
-    known = elastic_distances(query[:, 1:3], references[..., 1:3], 2)
-    np.testing.assert_allclose(ElasticReferences(references, 2).distances(query), known, rtol=1e-5)
+    known = dtw_distances(query[:, 1:3], references[..., 1:3], 2)
+    np.testing.assert_allclose(DtwReferences(references, 2).distances(query), known, rtol=1e-5)
 
 
 @pytest.mark.parametrize("rows", [None, np.array([2, 0])])
@@ -159,11 +161,11 @@ def test_views_asked_together_answer_as_each_does_alone(
     generator = np.random.default_rng(6)
     sizes = (2, 3, 4)
     queries = [generator.normal(size=(9, size)) for size in sizes]
-    views = [ElasticReferences(generator.normal(size=(4, 9, size)), 3) for size in sizes]
+    views = [DtwReferences(generator.normal(size=(4, 9, size)), 3) for size in sizes]
     for index in hidden:
         views[index].sequences[1, 4:, 0] = np.nan
     views[2].sequences[..., 3] = np.nan
-    together = ElasticViews(tuple(views))
+    together = DtwBatch(tuple(views))
     for _ in range(2):
         costs = together.step_costs(queries, rows)
         for index, view in enumerate(views):

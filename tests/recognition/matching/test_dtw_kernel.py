@@ -4,15 +4,15 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from app.recognition.matching.dtw import elastic_distances
-from app.recognition.matching.dtw_kernel import alignment_costs, half_of
+from app.recognition.matching.dtw import dtw_distances
+from app.recognition.matching.dtw_kernel import compute_alignment_costs, count_half_steps
 from app.recognition.poses.sequence import FloatArray
 
 BAND, STEPS = 4, 12
 
 
 def distances(drawn: FloatArray) -> FloatArray:
-    return elastic_distances(drawn[0], drawn[1:], BAND)
+    return dtw_distances(drawn[0], drawn[1:], BAND)
 
 
 def test_threads_do_not_write_into_each_others_totals() -> None:
@@ -33,9 +33,9 @@ def test_what_was_aligned_before_leaves_nothing_behind() -> None:
 
 
 def test_the_answer_is_in_memory_of_its_own() -> None:
-    count = half_of(STEPS, BAND)
+    count = count_half_steps(STEPS, BAND)
     costs = np.random.default_rng(3).random((2, count, count, 5))
-    first = alignment_costs(costs, STEPS, BAND)
+    first = compute_alignment_costs(costs, STEPS, BAND)
     expected = first.copy()
-    alignment_costs(costs + 1.0, STEPS, BAND)
+    compute_alignment_costs(costs + 1.0, STEPS, BAND)
     np.testing.assert_array_equal(first, expected)

@@ -12,7 +12,7 @@ import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
-from app.recognition.language.schema import published_schema
+from app.recognition.language.schema import load_schema
 from app.recognition.phrases.grammar import DEFAULT_TIMEOUT, Grammar
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.phrases.phrase import OneOf
@@ -39,7 +39,7 @@ def test_a_grammar_goes_through_the_file_as_it_was(language: Language) -> None:
     again = Language.from_json(text)
     assert again.grammar == MISSIONS
     assert again.to_json() == text
-    jsonschema.Draft202012Validator(json.loads(published_schema())).validate(json.loads(text))
+    jsonschema.Draft202012Validator(json.loads(load_schema())).validate(json.loads(text))
 
 
 def test_a_phrase_takes_one_line_so_that_revisions_can_be_compared(language: Language) -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.interpretation import mission_of
+from app.recognition.phrases.interpretation import interpret_message
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 from app.recognition.phrases.phrase import Phrase, Slot
 from tests.recognition.grammars import LABELS, MISSIONS, NUMBER, grammars, one, sentences
@@ -163,10 +163,10 @@ def test_every_message_means_what_it_was_made_to_mean(
 ) -> None:
     if find_ambiguities(grammar):
         return
-    labels, reading = data.draw(st.sampled_from(list(sentences(grammar))))
+    labels, parse = data.draw(st.sampled_from(list(sentences(grammar))))
     events = heard(PhraseParser(grammar), *labels)
     assert kinds(events) == ["continues"] * (len(labels) - 1) + ["complete"]
-    assert events[-1].mission == mission_of(grammar, reading)
+    assert events[-1].mission == interpret_message(grammar, parse)
     assert events[-1].gestures == labels
 
 

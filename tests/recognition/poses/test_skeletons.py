@@ -10,8 +10,8 @@ from app.recognition.poses.skeletons import (
     COCO_17,
     COCO_18,
     LandmarkSet,
-    landmark_named,
-    missing_from,
+    find_missing_landmarks,
+    translate_landmark,
 )
 
 
@@ -40,12 +40,12 @@ def test_what_coco_and_openpose_lack_of_the_upper_body_are_the_fingers(
         for name in LANDMARK_GROUPS[f"{side}_hand"]
         if not name.endswith("wrist")
     }
-    assert set(missing_from([name for name in landmarks if name])) == fingers
+    assert set(find_missing_landmarks([name for name in landmarks if name])) == fingers
 
 
 def test_what_is_missing_for_gestures_is_told_in_order() -> None:
-    assert missing_from(POSE_LANDMARKS) == missing_from(UPPER_BODY) == ()
-    assert missing_from({*UPPER_BODY} - {"right_hip", "nose"}) == ("nose", "right_hip")
+    assert find_missing_landmarks(POSE_LANDMARKS) == find_missing_landmarks(UPPER_BODY) == ()
+    assert find_missing_landmarks({*UPPER_BODY} - {"right_hip", "nose"}) == ("nose", "right_hip")
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_what_is_missing_for_gestures_is_told_in_order() -> None:
     ],
 )
 def test_a_side_may_stand_before_or_behind(name: str) -> None:
-    assert landmark_named(name) == "left_wrist"
+    assert translate_landmark(name) == "left_wrist"
 
 
 @pytest.mark.parametrize(
@@ -76,14 +76,14 @@ def test_a_side_may_stand_before_or_behind(name: str) -> None:
     ],
 )
 def test_names_of_other_programs_are_known(name: str, landmark: str) -> None:
-    assert landmark_named(name) == landmark
+    assert translate_landmark(name) == landmark
 
 
 @pytest.mark.parametrize(
     "name", ["Neck", "MidHip", "wrist", "rear", "tail", "left", "left_nose", ""]
 )
 def test_a_name_without_a_counterpart_means_none(name: str) -> None:
-    assert landmark_named(name) is None
+    assert translate_landmark(name) is None
 
 
 @given(st.sampled_from(POSE_LANDMARKS), st.sampled_from(["snake", "upper", "camel", "spaced"]))
@@ -95,4 +95,4 @@ def test_every_landmark_is_known_in_every_style(landmark: str, style: str) -> No
         "camel": words[0] + "".join(word.title() for word in words[1:]),
         "spaced": " ".join(words),
     }[style]
-    assert landmark_named(written) == landmark
+    assert translate_landmark(written) == landmark

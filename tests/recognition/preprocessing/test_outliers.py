@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.outliers import MOST_JUMPS, jumps
+from app.recognition.preprocessing.outliers import MOST_JUMPS, find_outliers
 from tests.recognition.strategies import Shape, circle, line, recording, square, strokes, wedge
 
 COLUMN = Trajectory.from_poses(recording(circle)).landmarks.index("right_wrist")
@@ -22,7 +22,7 @@ def thrown_off(trajectory: Trajectory, frames: list[int], by: tuple[float, float
 
 
 def found(trajectory: Trajectory) -> list[int]:
-    off = jumps(trajectory)
+    off = find_outliers(trajectory)
     assert not np.delete(off, COLUMN, axis=1).any()
     return np.flatnonzero(off[:, COLUMN]).tolist()
 

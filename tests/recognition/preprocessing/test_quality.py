@@ -10,8 +10,8 @@ from hypothesis import given
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.preprocessing.quality import fault
-from app.recognition.preprocessing.side_swaps import sides_of
+from app.recognition.preprocessing.quality import find_fault
+from app.recognition.preprocessing.side_swaps import pair_sides
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
 WRIST = POSE_LANDMARKS.index("right_wrist")
@@ -43,36 +43,36 @@ def leaping(poses: PoseSequence) -> PoseSequence:
 
 @given(recordings())
 def test_a_recording_of_a_gesture_is_good_enough(poses: PoseSequence) -> None:
-    assert fault(poses, HAND) is None
+    assert find_fault(poses, HAND) is None
 
 
 def test_a_clock_that_does_not_run_in_seconds_is_no_fault() -> None:
     poses = recording(circle)
-    assert fault(replace(poses, time=poses.time * 30), HAND) is None
-    assert fault(replace(poses, time=poses.time / 30), HAND) is None
+    assert find_fault(replace(poses, time=poses.time * 30), HAND) is None
+    assert find_fault(replace(poses, time=poses.time / 30), HAND) is None
 
 
 def test_half_a_gesture_out_of_view_is_told_with_its_share() -> None:
     poses = unseen(recording(circle), slice(10, 58))
-    assert fault(poses, HAND) == "the right wrist is followed for only 17% of its 2.0 s"
-    assert fault(poses, ("left_wrist",)) is None
+    assert find_fault(poses, HAND) == "the right wrist is followed for only 17% of its 2.0 s"
+    assert find_fault(poses, ("left_wrist",)) is None
 
 
 def test_short_gaps_are_no_fault() -> None:
     xy = recording(circle).xy.copy()
     xy[np.arange(60) % 5 > 0, WRIST] = np.nan
-    assert fault(replace(recording(circle), xy=xy), HAND) is None
+    assert find_fault(replace(recording(circle), xy=xy), HAND) is None
 
 
 def test_leaps_are_told_with_their_share() -> None:
-    told = fault(leaping(recording(circle)), HAND)
+    told = find_fault(leaping(recording(circle)), HAND)
     assert told is not None
     assert told.startswith("the right wrist leaps over a torso length in ")
 
 
 @pytest.mark.parametrize("frames", [0, 1, 4])
 def test_a_few_frames_are_too_few(frames: int) -> None:
-    assert fault(recording(circle, frames=frames), HAND) == (
+    assert find_fault(recording(circle, frames=frames), HAND) == (
         f"it has {frames} frames, and at least 5 are needed"
     )
 
@@ -80,7 +80,7 @@ def test_a_few_frames_are_too_few(frames: int) -> None:
 def test_an_empty_recording_shows_nothing() -> None:
     poses = recording(circle)
     nothing = replace(poses, xy=np.full_like(poses.xy, np.nan))
-    assert fault(nothing, HAND) == "none of its 60 frames shows a landmark"
+    assert find_fault(nothing, HAND) == "none of its 60 frames shows a landmark"
 
 
 @pytest.mark.parametrize("poor", [leaping, lambda poses: unseen(poses, slice(15, 59))])
@@ -106,7 +106,7 @@ def test_the_mirror_image_is_judged_by_the_hand_that_shows_it(recognizer: Recogn
     either = Recognizer(Language(name="either hand", gestures=[mirrored]))
     xy = poses.xy.copy()
     xy[..., 0] = 640 - xy[..., 0]
-    left, right = sides_of(poses.landmarks)
+    left, right = pair_sides(poses.landmarks)
     xy[:, [*left, *right]] = xy[:, [*right, *left]]
     other_hand = unseen(replace(poses, xy=xy), slice(1, None))
     assert either.recognize(other_hand).label == "circle"

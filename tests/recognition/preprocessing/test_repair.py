@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.preprocessing.repair import repaired
-from app.recognition.preprocessing.side_swaps import sides_of
+from app.recognition.preprocessing.repair import repair_poses
+from app.recognition.preprocessing.side_swaps import pair_sides
 from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
@@ -40,23 +40,23 @@ def damaged(draw: st.DrawFn) -> PoseSequence:
 
 @given(recordings())
 def test_an_undamaged_recording_is_returned_as_it_is(poses: PoseSequence) -> None:
-    repair = repaired(poses)
+    repair = repair_poses(poses)
     assert repair.poses is poses
     assert repair.findings == ()
 
 
 @given(damaged())
 def test_repairing_again_changes_nothing(poses: PoseSequence) -> None:
-    once = repaired(poses).poses
-    assert repaired(once).poses == once
+    once = repair_poses(poses).poses
+    assert repair_poses(once).poses == once
 
 
 @given(damaged())
 def test_no_place_is_invented(poses: PoseSequence) -> None:
     """Every place that is left was in the same frame before, on the same side or the other."""
-    repair = repaired(poses)
+    repair = repair_poses(poses)
     before, after = poses.xy, repair.poses.xy
-    left, right = sides_of(poses.landmarks)
+    left, right = pair_sides(poses.landmarks)
     order = np.arange(len(poses.landmarks))
     order[[*left, *right]] = [*right, *left]
     kept = np.isfinite(after).all(axis=2)
@@ -70,7 +70,7 @@ def test_size_and_place_in_the_image_do_not_matter(
     poses: PoseSequence, scale: float, shift: float
 ) -> None:
     moved = replace(poses, xy=poses.xy * scale + shift)
-    one, other = repaired(poses), repaired(moved)
+    one, other = repair_poses(poses), repair_poses(moved)
     np.testing.assert_array_equal(one.exchanged, other.exchanged)
     np.testing.assert_array_equal(one.jumps, other.jumps)
 
@@ -79,16 +79,16 @@ def test_exchanged_sides_are_put_right_with_their_confidence() -> None:
     poses = recording(circle, jitter=0.005)
     confidence = np.random.default_rng(1).uniform(size=poses.xy.shape[:2])
     whole = replace(poses, confidence=confidence)
-    left, right = sides_of(poses.landmarks)
+    left, right = pair_sides(poses.landmarks)
     mistaken = with_sides_exchanged(poses, [7, 8, 30])
     swapped = confidence.copy()
     swapped[np.ix_([7, 8, 30], [*left, *right])] = confidence[np.ix_([7, 8, 30], [*right, *left])]
-    assert repaired(replace(mistaken, confidence=swapped)).poses == whole
+    assert repair_poses(replace(mistaken, confidence=swapped)).poses == whole
 
 
 def test_what_was_done_is_told_with_counts() -> None:
     poses = with_sides_exchanged(with_jumps(recording(circle), [12, 40, 41]), [20, 21])
-    assert repaired(poses).findings == (
+    assert repair_poses(poses).findings == (
         "left and right were exchanged back in 2 of 60 frames",
         "places that landmarks jumped to were left out: right_wrist in 3 of 60 frames",
     )
@@ -97,9 +97,9 @@ def test_what_was_done_is_told_with_counts() -> None:
 @pytest.mark.parametrize("frames", [0, 1, 2, 3])
 def test_short_and_empty_recordings_are_returned_as_they_are(frames: int) -> None:
     poses = recording(circle, frames=frames)
-    assert repaired(poses).poses is poses
+    assert repair_poses(poses).poses is poses
     unseen = replace(poses, xy=np.full_like(poses.xy, np.nan))
-    assert repaired(unseen).poses is unseen
+    assert repair_poses(unseen).poses is unseen
 
 
 def test_jumps_cost_profile_full_no_confidence() -> None:

@@ -13,15 +13,15 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import (
     MIN_DISPLACEMENT,
-    chosen_landmarks,
-    displacements,
-    salient_landmarks,
+    choose_landmarks,
+    find_salient_landmarks,
+    measure_displacements,
 )
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, rest, strokes
 
 
 def salient(poses: PoseSequence) -> tuple[str, ...]:
-    return salient_landmarks(Trajectory.from_poses(poses))
+    return find_salient_landmarks(Trajectory.from_poses(poses))
 
 
 def with_path(poses: PoseSequence, name: str, offsets: FloatArray) -> PoseSequence:
@@ -37,7 +37,7 @@ def sway(width: float, frames: int = 60) -> FloatArray:
 
 
 def test_displacement_is_peak_to_peak_in_torso_lengths() -> None:
-    measured = displacements(Trajectory.from_poses(recording(line)))
+    measured = measure_displacements(Trajectory.from_poses(recording(line)))
     assert measured["right_wrist"] == pytest.approx(0.9, abs=1e-6)  # 5 to 95 % of a line of 1
     assert measured["left_wrist"] == pytest.approx(0.0, abs=1e-6)
 
@@ -46,7 +46,7 @@ def test_a_landmark_never_seen_has_no_displacement() -> None:
     poses = recording(circle)
     xy = poses.xy.copy()
     xy[:, POSE_LANDMARKS.index("nose")] = np.nan
-    assert displacements(Trajectory.from_poses(replace(poses, xy=xy)))["nose"] == 0.0
+    assert measure_displacements(Trajectory.from_poses(replace(poses, xy=xy)))["nose"] == 0.0
 
 
 @given(strokes(), st.sampled_from(["left_wrist", "right_wrist", "nose"]))
@@ -102,7 +102,7 @@ def test_the_threshold_is_in_torso_lengths_not_in_pixels() -> None:
 
 def test_the_author_may_choose_any_landmark_that_is_seen() -> None:
     whole = Trajectory.from_poses(recording(circle))
-    assert chosen_landmarks(whole, ["right_wrist", "left_ankle"]) == ("right_wrist", "left_ankle")
+    assert choose_landmarks(whole, ["right_wrist", "left_ankle"]) == ("right_wrist", "left_ankle")
 
 
 @pytest.mark.parametrize(
@@ -122,4 +122,4 @@ def test_a_choice_that_does_not_fit_the_recording_is_refused(
     xy = poses.xy.copy()
     xy[:, POSE_LANDMARKS.index("nose")] = np.nan
     with pytest.raises(GestureError, match=complaint):
-        chosen_landmarks(Trajectory.from_poses(replace(poses, xy=xy)), choice)
+        choose_landmarks(Trajectory.from_poses(replace(poses, xy=xy)), choice)

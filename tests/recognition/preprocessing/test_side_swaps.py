@@ -6,7 +6,7 @@ import pytest
 from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.side_swaps import mistaken_sides, sides_of
+from app.recognition.preprocessing.side_swaps import find_side_swaps, pair_sides
 from tests.recognition.strategies import circle, recording
 
 HANDS = ("left_wrist", "right_wrist")
@@ -17,7 +17,7 @@ def shown() -> Trajectory:
 
 
 def with_sides_exchanged(trajectory: Trajectory, frames: list[int]) -> Trajectory:
-    left, right = sides_of(trajectory.landmarks)
+    left, right = pair_sides(trajectory.landmarks)
     order = np.arange(len(trajectory.landmarks))
     order[[*left, *right]] = [*right, *left]
     xy = trajectory.xy.copy()
@@ -48,30 +48,30 @@ def level(x: FloatArray) -> FloatArray:
 @pytest.mark.parametrize("landmarks", [POSE_LANDMARKS, HANDS], ids=["body", "hands"])
 def test_mistaken_frames_are_found(frames: list[int], landmarks: tuple[str, ...]) -> None:
     seen = with_sides_exchanged(shown().select(landmarks), frames)
-    assert np.flatnonzero(mistaken_sides(seen).exchanged).tolist() == frames
+    assert np.flatnonzero(find_side_swaps(seen).exchanged).tolist() == frames
 
 
 def test_a_steady_recording_has_none() -> None:
-    sides = mistaken_sides(shown())
+    sides = find_side_swaps(shown())
     assert not sides.exchanged.any()
     assert not sides.blended.any()
 
 
 def test_hands_that_cross_stay_what_they_are() -> None:
     sweep = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 20))
-    assert not mistaken_sides(hands_at(level(sweep), level(-sweep))).exchanged.any()
+    assert not find_side_swaps(hands_at(level(sweep), level(-sweep))).exchanged.any()
 
 
 def test_hands_that_clap_stay_what_they_are() -> None:
     apart = 0.05 + np.abs(np.cos(np.linspace(0, 3 * np.pi, 90)))
-    assert not mistaken_sides(hands_at(level(apart), level(-apart))).exchanged.any()
+    assert not find_side_swaps(hands_at(level(apart), level(-apart))).exchanged.any()
 
 
 def test_a_frame_between_the_sides_is_blended() -> None:
     seen = with_sides_exchanged(shown(), list(range(20, 40)))
     xy = seen.xy.copy()
     xy[[19, 40]] = (seen.xy[[18, 41]] + seen.xy[[21, 38]]) / 2
-    sides = mistaken_sides(
+    sides = find_side_swaps(
         Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
     )
     assert np.flatnonzero(sides.blended).tolist() == [19, 40]
@@ -84,7 +84,7 @@ def test_arms_that_are_still_blended_after_the_shoulders_are_found() -> None:
     for name in ("elbow", "wrist"):
         left, right = (seen.landmarks.index(f"{side}_{name}") for side in ("left", "right"))
         xy[41:43, [left, right]] += 0.1 * (xy[41:43, [right, left]] - xy[41:43, [left, right]])
-    sides = mistaken_sides(
+    sides = find_side_swaps(
         Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
     )
     assert np.flatnonzero(sides.blended).tolist() == [41, 42]
@@ -94,7 +94,7 @@ def test_frames_that_show_nothing_are_passed_over() -> None:
     seen = with_sides_exchanged(shown(), list(range(20, 30)))
     xy = seen.xy.copy()
     xy[17:22] = np.nan
-    sides = mistaken_sides(
+    sides = find_side_swaps(
         Trajectory(landmarks=seen.landmarks, xy=xy, time=seen.time, unit=seen.unit)
     )
     assert np.flatnonzero(sides.exchanged).tolist() == list(range(22, 30))
@@ -102,9 +102,9 @@ def test_frames_that_show_nothing_are_passed_over() -> None:
 
 def test_one_side_cannot_be_exchanged() -> None:
     one = shown().select(["right_wrist", "right_elbow"])
-    assert not mistaken_sides(one).exchanged.any()
+    assert not find_side_swaps(one).exchanged.any()
 
 
 def test_sides_are_found_by_other_trackers_names() -> None:
-    assert sides_of(("WristRight", "Head", "WristLeft")) == ((2,), (0,))
+    assert pair_sides(("WristRight", "Head", "WristLeft")) == ((2,), (0,))
     assert other_side("head") == "head"

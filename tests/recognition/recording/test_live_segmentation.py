@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand
-from app.recognition.poses.sequence import joined
-from app.recognition.recording.extraction import moment_of
+from app.recognition.poses.sequence import join_sequences
+from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import LONGEST_SALUTE, LiveTakes, Sight
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
@@ -36,7 +36,9 @@ def watched(recording: Recording) -> list[Sight]:
 def test_the_takes_of_a_camera_are_those_of_its_recording() -> None:
     seen = list(frames_of(recording_of("circle", "line")))
     recording = Recording(
-        poses=joined([moment_of(found, time, FRAME_SIZE) for time, found in seen]),
+        poses=join_sequences(
+            [build_frame_sequence(found, time, FRAME_SIZE) for time, found in seen]
+        ),
         hands=tuple(found.hands for _, found in seen),
         salute=np.array([best_salute(found.hands) for _, found in seen]),
     )
@@ -79,7 +81,9 @@ def test_a_take_that_was_begun_is_what_a_recording_cut_there_says() -> None:
     assert not [each for each in frames if takes.feed(*each).take]
     begun = takes.finish()
     recording = Recording(
-        poses=joined([moment_of(found, time, FRAME_SIZE) for time, found in frames]),
+        poses=join_sequences(
+            [build_frame_sequence(found, time, FRAME_SIZE) for time, found in frames]
+        ),
         hands=tuple(found.hands for _, found in frames),
         salute=np.array([best_salute(found.hands) for _, found in frames]),
     )

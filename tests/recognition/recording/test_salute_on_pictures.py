@@ -8,7 +8,7 @@ import pytest
 
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.salute import published_rule
+from app.recognition.recording.salute import check_published_rule
 from benchmarks.salute import Picture, Rates, clip_pictures, image_pictures, salutes
 
 
@@ -20,7 +20,7 @@ def estimator() -> Iterator[PoseEstimator]:
 
 def assert_better(pictures: list[Picture]) -> None:
     """At least the published rule's recall, at most a tenth of its false positives."""
-    own, published = Rates.of(salutes, pictures), Rates.of(published_rule, pictures)
+    own, published = Rates.of(salutes, pictures), Rates.of(check_published_rule, pictures)
     assert own.recall >= published.recall
     assert own.false_positives <= published.false_positives / 10
 

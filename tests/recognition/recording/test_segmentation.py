@@ -18,7 +18,7 @@ from app.recognition.recording.segmentation import (
     Take,
     TakeMachine,
     TakeState,
-    take_from,
+    cut_take,
     takes_in,
 )
 from tests.recognition.motions import (
@@ -241,7 +241,7 @@ def test_a_stream_finds_the_takes_of_the_recording() -> None:
         bracket = machine.update(time, score)
         if bracket is not None:
             seen_so_far = recording.poses.between(0, recording.poses.time[index])
-            found.append(take_from(seen_so_far, bracket))
+            found.append(cut_take(seen_so_far, bracket))
     (streamed,), (recalled,) = found, takes_in(recording)
     assert streamed == recalled
 

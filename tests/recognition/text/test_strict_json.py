@@ -11,8 +11,8 @@ from app.recognition.text.strict_json import (
     MAX_FAULTS,
     MAX_SAFE_INTEGER,
     StrictJSONError,
+    build_pointer,
     canonical_json,
-    pointer_to,
     read_json,
 )
 
@@ -109,8 +109,8 @@ def test_an_unterminated_text_full_of_quotes_does_not_take_forever() -> None:
 
 
 def test_pointers_escape_what_pointers_are_made_of() -> None:
-    assert pointer_to("gestures", 0, "a/b~c") == "/gestures/0/a~1b~0c"
-    assert pointer_to() == ""
+    assert build_pointer("gestures", 0, "a/b~c") == "/gestures/0/a~1b~0c"
+    assert build_pointer() == ""
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,12 @@
 
 import pytest
 
-from app.recognition.text.wording import all_readable, listed, readable
+from app.recognition.text.wording import humanize, humanize_all, join_words
 
 
 def test_identifiers_are_said_as_words() -> None:
-    assert readable("wrist_bend") == "wrist bend"
-    assert all_readable(["hu", "left_foot_index"]) == ["hu", "left foot index"]
+    assert humanize("wrist_bend") == "wrist bend"
+    assert humanize_all(["hu", "left_foot_index"]) == ["hu", "left foot index"]
 
 
 @pytest.mark.parametrize(
@@ -15,4 +15,4 @@ def test_identifiers_are_said_as_words() -> None:
     [(["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")],
 )
 def test_a_list_ends_with_and(words: list[str], sentence: str) -> None:
-    assert listed(words) == sentence
+    assert join_words(words) == sentence

@@ -138,7 +138,7 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
 ) -> None:
     said = bench.heard(GestureRecognition, "/auv/gestures")
     seen = bench.heard(Hands, "/auv/hands", BEST_EFFORT)
-    (command,) = documented("robot", "--ros2")
+    (command,) = documented("robot", "--ros2", page="robots/ros2-nodes.md")
     given = {"pool.json": str(language_file), "0": str(clip)}
     asked = [given.get(argument, argument) for argument in command]
     for _ in range(ATTEMPTS):

@@ -40,9 +40,11 @@ TOPICS = {
     "/auv/vulcan_salute_detected": "std_msgs/msg/Bool",
 }
 EXECUTABLES = {"command_node": (CommandNode,), "gesture_process": (GestureNode, CommandNode)}
-DOCUMENTED = re.findall(
-    r"^ros2 run osg_ros (.+)$", (ROOT / "docs" / "robots.md").read_text("utf-8"), re.MULTILINE
-)
+DOCUMENTED = [
+    command
+    for page in sorted((ROOT / "docs" / "robots").glob("ros2-*.md"))
+    for command in re.findall(r"^ros2 run osg_ros (.+)$", page.read_text("utf-8"), re.MULTILINE)
+]
 DROP_IN = ("pose_keypoints", "hand_keypoints", "vulcan_salute_detected", "recognized_gesture")
 
 

@@ -141,11 +141,11 @@ class DiverHands:
         if not belief >= LEAST_PEAK:
             return None
         cells = np.array([maps.shape[2], maps.shape[1]])
-        xy = region.to_image(peaks(maps) / cells * size, size)
+        xy = region.to_image(find_peaks(maps) / cells * size, size)
         return Hand(xy, _side_of(xy, body), min(score, 1.0) * belief)
 
 
-def peaks(maps: npt.NDArray[np.float32]) -> FloatArray:
+def find_peaks(maps: npt.NDArray[np.float32]) -> FloatArray:
     """Return ``(K, 2)`` the highest cells of heat maps ``(K, rows, columns)``, column then row.
 
     A peak inside the map is moved by a `QUARTER` towards its higher neighbour, across and down.

@@ -18,7 +18,7 @@ from app.recognition.estimation.landmark_models.hand_regions import (
 )
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
 from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
-from app.recognition.estimation.landmark_models.suppression import overlaps
+from app.recognition.estimation.landmark_models.suppression import measure_overlaps
 from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 
@@ -237,13 +237,13 @@ def _arms_of(followed: Iterable[SeenHand], body: Body) -> dict[Side, SeenHand]:
 
 
 def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:
-    return any(duplicates(seen.hand, one.hand) for one in others)
+    return any(find_duplicates(seen.hand, one.hand) for one in others)
 
 
-def duplicates(one: Hand, other: Hand) -> bool:
+def find_duplicates(one: Hand, other: Hand) -> bool:
     """Tell whether two results show the same hand."""
     near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
     distances = np.linalg.norm(one.xy - other.xy, axis=1)
     if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:
         return False
-    return bool(overlaps(box_of(one.xy), box_of(other.xy)[None])[0] > DUPLICATE_OVERLAP)
+    return bool(measure_overlaps(box_of(one.xy), box_of(other.xy)[None])[0] > DUPLICATE_OVERLAP)

@@ -81,7 +81,9 @@ class ModelSession:
         if not path.is_file():
             raise ModelError(f"no model file {path}; run `osg-studio models install`")
         self.input_size = signature.input_size
-        self._session = opened(path, threads, provider, remedy="run `osg-studio models install`")
+        self._session = open_session(
+            path, threads, provider, remedy="run `osg-studio models install`"
+        )
         self._input, self._outputs = _matched(path, self._session, signature)
         self._pixels = np.empty((self.input_size, self.input_size, 3), np.uint8)
         self._tensor = np.empty((1, self.input_size, self.input_size, 3), np.float32)
@@ -131,7 +133,7 @@ def available_providers() -> tuple[Provider, ...]:
     return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
 
 
-def opened(path: Path, threads: int, provider: Provider, *, remedy: str) -> Any:
+def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -> Any:
     """Open a model file in ONNX Runtime, set up as all models here are.
 
     Parameters

@@ -13,7 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import ModelError
-from app.recognition.estimation.landmark_models.onnx_session import Provider, check_provider, opened
+from app.recognition.estimation.landmark_models.onnx_session import (
+    Provider,
+    check_provider,
+    open_session,
+)
 
 TYPES: Final = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 """What exports take: single or half precision."""
@@ -57,7 +61,7 @@ class PlanarModel:
         needed = f"{purpose} is needed"
         if not path.is_file():
             raise ModelError(f"no model file {path}; {needed}")
-        self._session = opened(path, threads, provider, remedy=needed)
+        self._session = open_session(path, threads, provider, remedy=needed)
         inputs = self._session.get_inputs()
         shape = tuple(inputs[0].shape) if len(inputs) == 1 else ()
         if len(shape) != 4 or inputs[0].type not in TYPES or not _takes_planes(shape):

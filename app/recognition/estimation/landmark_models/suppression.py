@@ -55,7 +55,7 @@ def blend_overlapping(
     points, scores = points[order], scores[order]
     detections = []
     while len(scores):
-        same = overlaps(points[0, :2], points[:, :2]) > threshold
+        same = measure_overlaps(points[0, :2], points[:, :2]) > threshold
         same[0] = True
         weights = scores[same] / scores[same].sum()
         blended = np.tensordot(weights, points[same], axes=1)
@@ -64,7 +64,7 @@ def blend_overlapping(
     return tuple(detections)
 
 
-def overlaps(box: FloatArray, boxes: FloatArray) -> FloatArray:
+def measure_overlaps(box: FloatArray, boxes: FloatArray) -> FloatArray:
     """Return ``(N,)`` intersection over union of one box ``(2, 2)`` with ``(N, 2, 2)`` others.
 
     Boxes are given by their corners (left, top) and (right, bottom). Boxes without any area

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.landmark_models.diver_hands import DiverHands, peaks
+from app.recognition.estimation.landmark_models.diver_hands import DiverHands, find_peaks
 from app.recognition.poses.frame import Body, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -99,7 +99,7 @@ def test_the_side_is_that_of_the_nearer_wrist(model: DiverHands) -> None:
 @given(st.integers(0, 2**32 - 1))
 def test_a_peak_lies_within_a_quarter_of_the_highest_cell(seed: int) -> None:
     maps = np.random.default_rng(seed).random((21, 6, 9)).astype(np.float32)
-    for place, heat in zip(peaks(maps), maps, strict=True):
+    for place, heat in zip(find_peaks(maps), maps, strict=True):
         row, column = np.unravel_index(heat.argmax(), heat.shape)
         assert np.abs(place - (column, row)).max() <= 0.25
 

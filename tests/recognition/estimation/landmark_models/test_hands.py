@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.arms import wrist_distance
-from app.recognition.estimation.landmark_models.hands import duplicates
+from app.recognition.estimation.landmark_models.hands import find_duplicates
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -37,21 +37,21 @@ def hand(xy: FloatArray) -> Hand:
 
 
 def test_the_same_hand_found_twice_is_one() -> None:
-    assert duplicates(hand(flat_hand()), hand(flat_hand() + 3))
+    assert find_duplicates(hand(flat_hand()), hand(flat_hand() + 3))
 
 
 def test_two_hands_side_by_side_are_two() -> None:
-    assert not duplicates(hand(flat_hand()), hand(flat_hand() + (110, 0)))
+    assert not find_duplicates(hand(flat_hand()), hand(flat_hand() + (110, 0)))
 
 
 def test_crossed_hands_that_overlap_are_two() -> None:
-    assert not duplicates(hand(flat_hand()), hand(turned(flat_hand(), math.pi / 2)))
+    assert not find_duplicates(hand(flat_hand()), hand(turned(flat_hand(), math.pi / 2)))
 
 
 @given(ANGLES, SHIFTS, st.floats(0.3, 3))
 def test_being_the_same_hand_is_mutual(angle: float, shift: FloatArray, size: float) -> None:
     one, other = hand(flat_hand()), hand(turned(flat_hand(size=100 * size), angle) + shift)
-    assert duplicates(one, other) == duplicates(other, one)
+    assert find_duplicates(one, other) == find_duplicates(other, one)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.suppression import blend_overlapping, overlaps
+from app.recognition.estimation.landmark_models.suppression import (
+    blend_overlapping,
+    measure_overlaps,
+)
 from app.recognition.poses.sequence import FloatArray
 
 
@@ -35,7 +38,7 @@ def test_results_overlap_no_better_one_they_could_have_joined(
     bests = [points[scores == detection.score][0, :2] for detection in found]
     for index, box in enumerate(bests):
         for better in bests[:index]:
-            assert overlaps(better, box[None])[0] <= 0.3
+            assert measure_overlaps(better, box[None])[0] <= 0.3
 
 
 @given(candidates())
@@ -88,4 +91,4 @@ def test_boxes_without_area_share_nothing_and_end() -> None:
 def test_overlap_of_known_boxes() -> None:
     box = np.array([[0.0, 0.0], [2.0, 2.0]])
     others = np.array([box, box + 1, box + 2, [[0, 0], [1, 2]]])
-    np.testing.assert_allclose(overlaps(box, others), [1, 1 / 7, 0, 0.5])
+    np.testing.assert_allclose(measure_overlaps(box, others), [1, 1 / 7, 0, 0.5])

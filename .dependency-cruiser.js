@@ -1,0 +1,37 @@
+/** The rooms of the page, from the bottom: a room imports from those before it and from itself. */
+const ROOMS = ["core", "clips", "languages", "upload", "export", "studio"];
+
+/** Views that build on the rooms; they do not import each other. */
+const VIEWS = ["editor", "health", "live", "phrases"];
+
+const inside = (names) => `^static/js/(${names.join("|")})/`;
+
+const upwards = ROOMS.map((name, index) => ({
+  name: `${name}-imports-nothing-above-it`,
+  severity: "error",
+  from: { path: inside([name]) },
+  to: { path: inside([...ROOMS.slice(index + 1), ...VIEWS]) },
+}));
+
+const sideways = VIEWS.map((name) => ({
+  name: `${name}-imports-no-other-view`,
+  severity: "error",
+  from: { path: inside([name]) },
+  to: { path: inside(VIEWS.filter((other) => other !== name)) },
+}));
+
+export default {
+  forbidden: [
+    { name: "no-import-circle", severity: "error", from: {}, to: { circular: true } },
+    { name: "no-missing-module", severity: "error", from: {}, to: { couldNotResolve: true } },
+    {
+      name: "no-module-that-nothing-imports",
+      severity: "error",
+      from: { orphan: true, pathNot: "\\.d\\.ts$" },
+      to: {},
+    },
+    ...upwards,
+    ...sideways,
+  ],
+  options: { doNotFollow: { path: "node_modules" } },
+};

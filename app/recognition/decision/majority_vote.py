@@ -1,0 +1,154 @@
+"""The majority vote of profile ``paper``: each voter votes for its nearest gesture."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.recognition.decision.rejection import CUE_GROUPS
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.gestures.switches import Sensitivity
+from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.voters.registry import PAPER_VOTERS
+
+
+class MajorityVote:
+    """Counts the votes of the paper's seven voters (paper, Sec. IV-D); never rejects.
+
+    Parameters
+    ----------
+    gestures
+        G gestures, at least one.
+    tuning
+        Its weights are what each vote counts.
+
+    Raises
+    ------
+    OsgError
+        When the weights do not fit the voters.
+
+    """
+
+    def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
+        self._labels = tuple(gesture.label for gesture in gestures)
+        self._factors = tuning.weights_of([voter.name for voter in PAPER_VOTERS])
+        self._shapes = ShapeReferences(gestures, tuning.simplification)
+
+    @property
+    def landmarks(self) -> tuple[str, ...]:
+        """The landmarks that any gesture follows, in alphabetical order."""
+        return self._shapes.needed
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The same."""
+        return self._shapes.needed
+
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
+        """Return None: drawings alone are compared, whatever the switches say."""
+        return None
+
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
+        """Compare a condensed query with every gesture, voter by voter."""
+        distances = self._shapes.distances(trajectory)
+        count = len(self._labels)
+        return ScoreTable(
+            voters=tuple(voter.name for voter in PAPER_VOTERS),
+            distances=distances,
+            contributions=weigh_relative_distances(distances, self._factors),
+            turned=np.zeros(count),
+            traversals=(None,) * count,
+            mirrored=np.zeros(count, dtype=bool),
+            novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
+        )
+
+    def may_win(
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
+    ) -> bool:
+        """Tell whether no gesture has more votes when a voter's vote is reweighted."""
+        count: dict[str, float] = defaultdict(float)
+        for name, vote in result.counted.items():
+            weight = result.weights[name]
+            count[vote] += weight * factor if name == voter else weight
+        return count[self._labels[gesture]] >= max(count.values())
+
+    def decide(self, compared: ScoreTable) -> Recognition:
+        """Decide for the gesture with most votes; see `count_votes`."""
+        return self.count_votes(compared.distances)
+
+    def count_votes(self, distances: FloatArray) -> Recognition:
+        """Count the votes that follow from distances ``(7, G)``.
+
+        Among equals the gesture with the smallest mean relative distance wins, among those the
+        first in the language.
+        """
+        gestures = self._labels
+        votes = {
+            voter.name: int(row.argmin())
+            for voter, row in zip(PAPER_VOTERS, distances, strict=True)
+            if np.isfinite(row).any()
+        }
+        voters = tuple(voter.name for voter in PAPER_VOTERS)
+        weights = dict(zip(voters, (self._factors / self._factors.sum()).tolist(), strict=True))
+        count: dict[int, float] = defaultdict(float)
+        for voter, index in votes.items():
+            count[index] += weights[voter]
+        relative = weigh_relative_distances(distances, self._factors).sum(axis=0)
+        winner = min(count, key=lambda index: (-count[index], relative[index], index))
+        return Recognition(
+            label=gestures[winner],
+            nearest=gestures[winner],
+            confidence=(count[winner] / sum(count.values()) + _margin(relative, winner)) / 2,
+            profile="paper",
+            voters=voters,
+            gestures=gestures,
+            distances=distances,
+            votes={voter: gestures[index] for voter, index in votes.items()},
+            weights=weights,
+            scores=relative,
+            novelty=np.full(len(gestures), np.nan),
+        )
+
+
+def weigh_relative_distances(distances: FloatArray, weights: FloatArray) -> FloatArray:
+    """Bring voters with different units to one number per gesture, their sum.
+
+    Parameters
+    ----------
+    distances
+        ``(V, G)``, infinite where not comparable.
+    weights
+        ``(V,)``, 0: left out.
+
+    Returns
+    -------
+    ``(V, G)``, whose sum over the voters is the mean relative distance: the weighted mean, over
+    the voters that can compare anything, of a distance divided by that voter's mean over all
+    comparable gestures. 1 = as far as the average gesture; infinite where not comparable.
+
+    """
+    comparable = np.isfinite(distances)
+    voting = comparable.any(axis=1) & (weights > 0)
+    if not voting.any():
+        return np.full_like(distances, np.inf)
+    sums = np.where(comparable, distances, 0.0).sum(axis=1)
+    means = sums[voting] / comparable[voting].sum(axis=1)
+    shares = weights[voting] / weights[voting].sum()
+    contributions = np.zeros_like(distances)
+    contributions[voting] = distances[voting] * (shares / np.where(means > 0, means, 1.0))[:, None]
+    return contributions
+
+
+def _margin(relative: FloatArray, winner: int) -> float:
+    """Return 1 - (the winner's distance over the nearest other's), 0 where the other is nearer."""
+    nearest_other = float(np.delete(relative, winner).min(initial=np.inf))
+    if relative[winner] >= nearest_other:
+        return 0.0
+    return 1.0 - float(relative[winner]) / nearest_other

@@ -1,0 +1,42 @@
+"""The interface of votes: how a profile decides between the gestures of a language."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import ScoreTable
+from app.recognition.gestures.switches import Sensitivity
+from app.recognition.poses.trajectory import Trajectory
+
+
+class Vote(Protocol):
+    """Compares a query with every gesture of a language, and decides for one or none."""
+
+    @property
+    def landmarks(self) -> tuple[str, ...]:
+        """The landmarks that any gesture follows, in alphabetical order."""
+        ...
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The salient landmarks of which a query must move at least one."""
+        ...
+
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
+        """Compare a condensed query with every gesture, voter by voter."""
+        ...
+
+    def decide(self, compared: ScoreTable) -> Recognition:
+        """Decide for a gesture or none; one of the scores must be finite."""
+        ...
+
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
+        """Return what about a gesture counts; None where its movement is not compared."""
+        ...
+
+    def may_win(
+        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
+    ) -> bool:
+        """Estimate whether a gesture may win when a voter's weight is multiplied by a factor."""
+        ...

@@ -1,0 +1,79 @@
+"""Outlook of one gesture in its language: quick enough to be asked while the gesture is edited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.recognition.gestures.gesture import condense
+from app.recognition.health.check import TAKES, check_pairs
+from app.recognition.health.report import PairHealth
+from app.recognition.health.simulated_trials import simulate_trials
+from app.recognition.recognizer import Recognizer
+from app.recognition.simulation.rate_estimate import RateEstimate
+
+MOST_NEIGHBOURS = 3
+"""Gestures rehearsed beside the one in question, the nearest: farther ones are hardly ever confused
+with it, and all of a language would take as long as its whole health report."""
+
+
+@dataclass(frozen=True)
+class GestureEstimate:
+    """What is to be expected of one gesture.
+
+    Attributes
+    ----------
+    pairs
+        It and each of its nearest gestures, the nearest first.
+    missed
+        How often a take of it is read as another gesture, or refused.
+    refused
+        How often it is read as no gesture at all.
+
+    """
+
+    pairs: tuple[PairHealth, ...]
+    missed: RateEstimate
+    refused: RateEstimate
+
+
+def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | None:
+    """Rehearse one gesture and its nearest ones, as `check_health` rehearses all by default.
+
+    Parameters
+    ----------
+    recognizer
+        Of its language, profile ``full``.
+    label
+        The gesture's.
+
+    Returns
+    -------
+    Its forecasts are those of the health report; None for a gesture without a demonstration.
+
+    Raises
+    ------
+    LanguageError
+        When the language has no such gesture.
+
+    """
+    language = recognizer.language
+    if language.gesture(label).trajectory is None:
+        return None
+    own = language.labels.index(label)
+    distances = np.full((len(language.gestures),) * 2, np.inf)
+
+    def measure(index: int) -> None:
+        shown = language.gestures[index].trajectory
+        if shown is not None:
+            distances[index] = recognizer.compare(condense(shown)).scores
+
+    measure(own)
+    others = [index for index in range(len(language.gestures)) if index != own]
+    nearest = sorted(others, key=lambda index: distances[own, index])[:MOST_NEIGHBOURS]
+    for index in nearest:
+        measure(index)
+    trials = simulate_trials(recognizer, TAKES, gestures=(own, *nearest))
+    pairs = (check_pairs(language, (own, index), trials, distances) for index in nearest)
+    return GestureEstimate(pairs=tuple(pairs), missed=trials.missed(0), refused=trials.refused(0))

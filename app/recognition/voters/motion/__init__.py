@@ -1,0 +1,1 @@
+"""Voters that compare movements: path, posture, order and time."""

@@ -1,0 +1,42 @@
+"""Voter: the direction of travel, aligned by DTW."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.features.motion import Movement
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import DtwVoter
+from app.recognition.voters.voter import Cue
+
+
+class Direction(DtwVoter):
+    """DTW distance between the directions of travel (Taranta et al. 2017, Jackknife).
+
+    The joint unit vector of all landmarks' velocities at equal steps: of no size, so that small
+    details count as much as large ones.
+    """
+
+    name = "direction"
+    unit = "mean squared difference of unit vectors along the alignment, at most 4 a step"
+    prior = 1.0
+    within = 0.131
+    between = 1.3
+    cue = Cue("figure", weight=0.5, reach=7.0)
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 L)`` joint unit vectors."""
+        paths = movement.paths
+        steps = np.empty_like(paths)
+        steps[1:-1] = (paths[2:] - paths[:-2]) / 2
+        steps[0], steps[-1] = paths[1] - paths[0], paths[-1] - paths[-2]
+        flat = steps.reshape(len(steps), -1)
+        length = np.sqrt(np.vecdot(flat, flat))
+        return np.asarray(flat / (length + 1e-9)[:, None])
+
+    def prior_for(self, landmarks: int) -> float:
+        """Return the prior divided by the number of landmarks.
+
+        The joint direction of many landmarks is mostly the sway of those at rest.
+        """
+        return self.prior / landmarks

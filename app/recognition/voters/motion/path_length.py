@@ -1,0 +1,39 @@
+"""Voter: the length of the path for its size."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.features.motion import Movement
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.voter import Cue, absolute_differences
+
+SHORTEST_LENGTH = 1.0
+"""Shortest path taken seriously, in sizes: a straight stroke is three and a half of its sizes long,
+and only what does not move is shorter."""
+
+
+class PathLength(MotionVoter):
+    """How long the way is, for its size: a line against a zigzag (Rubine 1991, total length).
+
+    The joint path of all landmarks, in sizes.
+    """
+
+    name = "path_length"
+    unit = "doublings of the length in sizes"
+    prior = 0.0
+    within = 0.11
+    between = 0.28
+    cue = Cue("length", weight=1.0, reach=7.0, squared=False, varies_by_gesture=False)
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the logarithm to base 2 of the length, ``(1,)``."""
+        figure = movement.figure.reshape(len(movement.figure), -1)
+        steps = figure[1:] - figure[:-1]
+        length = float(np.sqrt(np.vecdot(steps, steps)).sum())
+        return np.log2([max(length, SHORTEST_LENGTH)])
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return absolute differences, ``(M,)``."""
+        return absolute_differences(query, references)

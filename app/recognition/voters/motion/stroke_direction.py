@@ -1,0 +1,36 @@
+"""Voter: the sense of rotation, and the way from start to end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.features.motion import Movement
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.voter import euclidean_distances
+
+
+class StrokeDirection(MotionVoter):
+    """Which way the stroke goes: its sense of rotation, and from where to where.
+
+    Signed area (positive: clockwise in the image) in squared sizes, and the way from start to end
+    in sizes, of each landmark: left against right, clockwise against counter-clockwise.
+    """
+
+    name = "stroke_direction"
+    unit = "sizes between the ends, squared sizes between the signed areas"
+    prior = 0.05
+    within = 0.35
+    between = 2.5
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(3 L,)``: per landmark the signed area, then x and y of the way."""
+        paths = movement.figure
+        before, after = paths[:-1], paths[1:]
+        cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+        way = paths[-1] - paths[0]
+        return np.concatenate([np.add.reduce(cross)[:, None] / 2, way], axis=1).ravel()
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return Euclidean distances, ``(M,)``."""
+        return euclidean_distances(query, references)

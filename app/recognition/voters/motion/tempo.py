@@ -1,0 +1,34 @@
+"""Voter: the duration of the movement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.features.motion import Movement
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.voter import absolute_differences
+
+SHORTEST_SECONDS = 0.05
+"""Shortest duration taken seriously, two frames: a logarithm needs a floor."""
+
+
+class Tempo(MotionVoter):
+    """How long the movement takes."""
+
+    name = "tempo"
+    unit = "doublings of the duration"
+    prior = 0.0
+    within = 0.35
+    between = 0.5
+    weight_where_needed = 0.3
+    """What a doubling of the duration adds to the score of a gesture whose tempo counts: more than
+    the distance of two takes (0.1), less than that of two gestures (1)."""
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the logarithm to base 2 of the seconds, ``(1,)``."""
+        return np.log2([max(movement.duration, SHORTEST_SECONDS)])
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return absolute differences, ``(M,)``."""
+        return absolute_differences(query, references)

@@ -1,0 +1,56 @@
+"""All voters, in the order of results. To add one, add its module and a line here."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from app.recognition.voters.motion.cloud import Cloud
+from app.recognition.voters.motion.direction import Direction
+from app.recognition.voters.motion.hand_attitude import HandAttitude
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.path_length import PathLength
+from app.recognition.voters.motion.posture import Posture
+from app.recognition.voters.motion.stroke_direction import StrokeDirection
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.motion.which_hand import WhichHand
+from app.recognition.voters.motion.wrist_bend import WristBend
+from app.recognition.voters.shape.aspect_ratio import AspectRatio
+from app.recognition.voters.shape.circularity import Circularity
+from app.recognition.voters.shape.fourier import FourierDescriptors
+from app.recognition.voters.shape.hu import HuMoments
+from app.recognition.voters.shape.path_complexity import PathComplexity
+from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.shape.solidity import Solidity
+from app.recognition.voters.shape.zernike import ZernikeMoments
+from app.recognition.voters.voter import Voter
+
+PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
+    HuMoments(),
+    ZernikeMoments(),
+    FourierDescriptors(),
+    AspectRatio(),
+    Solidity(),
+    Circularity(),
+    PathComplexity(),
+)
+"""The paper's seven (Sec. IV-D): three primary voters, then four secondary ones."""
+
+MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
+    Path(),
+    Direction(),
+    Posture(),
+    HandAttitude(),
+    WristBend(),
+    Cloud(),
+    StrokeDirection(),
+    WhichHand(),
+    PathLength(),
+    Tempo(),
+)
+"""The voters of profile ``full`` beside the paper's seven."""
+
+VOTERS: Final[tuple[Voter, ...]] = (*PAPER_VOTERS, *MOTION_VOTERS)
+"""All voters of profile ``full``."""
+
+VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in VOTERS)

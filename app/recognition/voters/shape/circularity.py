@@ -1,0 +1,20 @@
+"""Voter: the circularity of the contour."""
+
+from math import pi
+
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.voters.shape.proportion import Proportion
+
+
+class Circularity(Proportion):
+    """``4 pi a / p^2`` of the outline's area a and perimeter p: 1 for a disc, 0.79 for a square."""
+
+    name = "circularity"
+    unit = "share of the area of a disc with the same perimeter"
+    prior = 0.05
+    within = 0.055
+    between = 0.17
+
+    def measure(self, drawing: Drawing) -> float:
+        """Return the circularity, in (0, 1]."""
+        return 4 * pi * drawing.contour.area / drawing.contour.perimeter**2

@@ -1,0 +1,52 @@
+"""Voter: Hu's seven moment invariants."""
+
+import numpy as np
+
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.voter import euclidean_distances
+
+FLOOR = 1e-2
+"""Magnitude below which an invariant counts as zero.
+
+Invariants of strokes lie between 1 and 1e-10. Those that are zero in theory, for symmetric
+figures, come out anywhere up to this when a person draws them, and on a plain logarithm their
+noise would outweigh the invariants that mean something.
+"""
+
+
+class HuMoments(ShapeVoter):
+    """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
+
+    From the normalised central moments of the stroke's pixels, on a logarithmic scale that keeps
+    the sign: ``sign(h) log10(1 + |h| / FLOOR)``, for they span ten decades and unscaled the
+    first would outvote the other six.
+    """
+
+    name = "hu"
+    unit = "Euclidean distance between the seven invariants, each in decades"
+    prior = 0.05
+    within = 2.9
+    between = 4.7
+
+    def length(self, keypoints: int) -> int:
+        """Return the number of descriptors, whatever the number of keypoints."""
+        return 7
+
+    def describe(self, drawing: Drawing) -> FloatArray:
+        """Return the seven invariants, ``(7,)``."""
+        nu = drawing.moments.central
+        # Hu's sums are products of complex moments, which a rotation merely turns (Flusser 2000).
+        spread, ellipse = nu(2, 0) + nu(0, 2), complex(nu(2, 0) - nu(0, 2), 2 * nu(1, 1))
+        lean = complex(nu(3, 0) + nu(1, 2), nu(2, 1) + nu(0, 3))
+        triangle = complex(nu(3, 0) - 3 * nu(1, 2), 3 * nu(2, 1) - nu(0, 3))
+        against = lean.conjugate()
+        turned = triangle * against**3
+        sizes = (spread, abs(ellipse) ** 2, abs(triangle) ** 2, abs(lean) ** 2)
+        invariants = np.array([*sizes, turned.real, (ellipse * against**2).real, turned.imag])
+        return np.asarray(np.sign(invariants) * np.log10(1 + np.abs(invariants) / FLOOR))
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return Euclidean distances, ``(G,)``."""
+        return euclidean_distances(query, references)

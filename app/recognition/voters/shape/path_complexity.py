@@ -1,0 +1,18 @@
+"""Voter: the length of the contour for the size of its box."""
+
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.voters.shape.proportion import Proportion
+
+
+class PathComplexity(Proportion):
+    """Length of the outline over the perimeter of its bounding box: high for a zigzag."""
+
+    name = "path_complexity"
+    unit = "perimeters of the bounding box"
+    prior = 0.2
+    within = 0.1
+    between = 0.23
+
+    def measure(self, drawing: Drawing) -> float:
+        """Return the complexity, about 0.8 for a circle, 1 for a square and more for a zigzag."""
+        return drawing.contour.perimeter / (2 * sum(drawing.contour.box))

@@ -1,0 +1,18 @@
+"""Voter: the solidity of the contour."""
+
+from app.recognition.features.trajectory_image import Drawing
+from app.recognition.voters.shape.proportion import Proportion
+
+
+class Solidity(Proportion):
+    """Area inside the outline over the area of its convex hull: 1 for a disc, small for a V."""
+
+    name = "solidity"
+    unit = "share of the convex hull's area"
+    prior = 0.05
+    within = 0.075
+    between = 0.29
+
+    def measure(self, drawing: Drawing) -> float:
+        """Return the share, in (0, 1]."""
+        return drawing.contour.area / drawing.contour.hull_area

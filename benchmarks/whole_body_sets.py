@@ -1,0 +1,100 @@
+"""Whole bodies recorded by depth cameras, seen as a camera in front sees them.
+
+Only gestures of the arms are kept. Nobody has tuned anything on these sets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition import PoseSequence
+from app.recognition.poses.sequence import FloatArray
+from benchmarks.recorded_sets import FRAME, RATE, RecordedSet
+
+FOCAL = 525.0
+"""Pixels: the focal length of a Kinect's colour camera at 640 x 480."""
+
+ARM_CLASSES = {
+    "utd_other": (
+        "arm_curl",
+        "baseball_swing",
+        "basketball_shoot",
+        "bowling",
+        "boxing",
+        "catch",
+        "pickup_throw",
+        "push",
+        "tennis_serve",
+        "tennis_swing",
+    ),
+    "utkinect": ("clapHands", "pull", "push", "throw", "waveHands"),
+}
+"""Of each set the classes that arms perform, by name."""
+
+OUR_NAMES = {"left_hand": "left_index", "right_hand": "right_index", "head": "nose"}
+"""Joints whose nearest landmark of ours has another name."""
+
+UPPER_BODY = tuple(
+    f"{side}_{part}"
+    for part in ("shoulder", "elbow", "wrist", "hand", "hip")
+    for side in ("left", "right")
+)
+"""Joints that are kept."""
+
+
+def whole_body_sets(folder: Path, turned: float = 0.0) -> Iterator[RecordedSet]:
+    """Read the sets.
+
+    Parameters
+    ----------
+    folder
+        It holds ``utd_other.npz`` and ``utkinect.npz``.
+    turned
+        Degrees by which everybody is turned about the vertical before the camera looks.
+
+    """
+    for name, classes in ARM_CLASSES.items():
+        with np.load(folder / f"{name}.npz", allow_pickle=True) as file:
+            content: dict[str, npt.NDArray[Any]] = dict(file)
+        labels = content["label"].astype(str)
+        chosen = np.flatnonzero(np.isin(labels, classes))
+        yield RecordedSet(
+            name,
+            [_seen_by_camera(content, int(index), turned) for index in chosen],
+            labels[chosen],
+            content["subject"][chosen].astype(str),
+        )
+
+
+def _seen_by_camera(
+    content: dict[str, npt.NDArray[Any]], index: int, turned: float
+) -> PoseSequence:
+    joints = [str(name) for name in content["joint_names"]]
+    places: FloatArray = content["x"][index].astype(np.float64)
+    places = places[:, [joints.index(name) for name in UPPER_BODY]]
+    seen = _turn(places, turned)
+    frames = content["frame"][index] if "frame" in content else np.arange(len(places))
+    depth = np.where(seen[..., 2] > 0.1, seen[..., 2], np.nan)
+    xy = np.stack([seen[..., 0] / depth, -seen[..., 1] / depth], axis=2) * FOCAL
+    time = np.asarray(frames, dtype=np.float64) / RATE
+    first = np.concatenate([[True], np.diff(time) > 0])
+    return PoseSequence(
+        landmarks=tuple(OUR_NAMES.get(name, name) for name in UPPER_BODY),
+        xy=xy[first] + np.array(FRAME) / 2,
+        time=time[first] - time[0],
+        frame_size=FRAME,
+    )
+
+
+def _turn(places: FloatArray, degrees: float) -> FloatArray:
+    """Turn ``(T, K, 3)`` about the vertical through their mean."""
+    middle = np.nanmean(places, axis=(0, 1))
+    angle = np.radians(degrees)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    turn = np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]])
+    return np.asarray((places - middle) @ turn.T + middle)

@@ -1,0 +1,86 @@
+"""Errors: the exceptions of the core, and the codes of the HTTP interface's problem documents."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from mkdocs.exceptions import PluginError
+from tables import cell, table
+
+import app.api
+from app.recognition import OsgError, errors
+
+MEANINGS = {
+    "check_cancelled": "the health check was cancelled by another request",
+    "clip_not_ready": "the keypoints of the clip are not extracted yet",
+    "disk_full": "the server's disk is full",
+    "expected_missing": "an explanation needs the gesture that was meant",
+    "field_invalid": "a form field or `Upload-Metadata` key is not valid",
+    "foreign_origin": "the request comes from a page of another server",
+    "gesture_needed": "a phrase uses the gesture that should be deleted",
+    "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
+    "internal": "unexpected error; the server's log has the details",
+    "job_not_needed": "the job is done, or the topic is chosen already",
+    "label_taken": "another gesture of the language has this label",
+    "language_invalid": "the language or its file is not valid; `errors` has the JSON pointer",
+    "malformed_upload": "the upload is not valid multipart or tus",
+    "model_missing": "a pose or hand model is not installed",
+    "no_demonstration": "the gesture has no demonstration, only an image",
+    "not_found": "no such clip, language, gesture, job or recognition",
+    "queue_full": "too many clips of this client are waiting",
+    "range_empty": "the range holds no keypoints",
+    "range_not_satisfiable": "the requested byte range lies outside the file",
+    "request_invalid": "a parameter or the body is not valid; `errors` lists each fault",
+    "revision_conflict": "the language has a newer revision than `If-Match`",
+    "server_stopping": "the server is shutting down",
+    "storage_unavailable": "the server's storage cannot be read or written",
+    "store_unavailable": "the database cannot answer now",
+    "take_ambiguous": "the range holds several takes",
+    "token_required": "the token is missing or wrong",
+    "too_large": "the body is above the limit for its kind",
+    "topic_needed": "the recording has several usable topics; choose one first",
+    "topic_unusable": "a topic was given for a file that is no bag",
+    "tus_version": "the upload uses another version of tus than 1.0.0",
+    "unsupported_media_type": "the file is neither a video, a bag nor a known keypoint file",
+    "upload_broken_off": "the connection ended before the upload was complete",
+    "upload_offset": "the part does not begin where the upload stands",
+    "upload_too_slow": "the upload is slower than the limit",
+    "video_unreadable": "the video cannot be read",
+}
+
+
+def core_errors() -> str:
+    """Return the tree of the core's exceptions as a table."""
+    return table(["exception", "raised"], list(_tree(OsgError, 0)))
+
+
+def problem_codes() -> str:
+    """Return the table of the codes that the API's source raises; each needs its meaning here."""
+    raised = dict(_raised())
+    if unmatched := raised.keys() ^ MEANINGS.keys():
+        raise PluginError(f"problem codes without meaning, or no longer used: {sorted(unmatched)}")
+    return table(
+        ["code", "status", "meaning"],
+        [(f"`{code}`", str(raised[code]), cell(MEANINGS[code])) for code in sorted(raised)],
+    )
+
+
+def _raised() -> Iterator[tuple[str, int]]:
+    for path in sorted(Path(app.api.__path__[0]).rglob("*.py")):
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            match call:
+                case ast.Call(
+                    func=ast.Name(id="ProblemError"),
+                    args=[ast.Constant(value=int(status)), ast.Constant(value=str(code)), *_],
+                ):
+                    yield code, status
+
+
+def _tree(kind: type[Exception], depth: int) -> Iterator[tuple[str, str]]:
+    summary = (kind.__doc__ or "").split("\n\n")[0]
+    yield f"{'&nbsp;' * 4 * depth}`{kind.__name__}`", cell(summary)
+    for child in kind.__subclasses__():
+        if child.__module__ == errors.__name__:
+            yield from _tree(child, depth + 1)

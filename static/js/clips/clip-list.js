@@ -1,0 +1,207 @@
+// The list of clips in the library: each with its picture, its progress and its buttons.
+
+import * as api from "../core/api.js";
+import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { recordAction, showDone } from "../core/undo.js";
+import { BUSY, needsTopic, reloadClips, select, statusText } from "./clip-store.js";
+import { openTopics } from "./topic-dialog.js";
+
+/** @import { Clip, Job, State } from "../core/types.d.ts" */
+
+const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
+/** @type {string | null} */
+let inView = null; // the clip that the list was last scrolled to
+
+/** @param {Clip} clip */
+async function remove(clip) {
+  const done = await attempt("Deleting the clip", async () => {
+    await api.clips.remove(clip.id);
+    return true;
+  });
+  if (!done) return;
+  const at = state.clips.findIndex(({ id }) => id === clip.id);
+  await reloadClips();
+  // The next one moves up to its place, as in every list.
+  if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
+  recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
+  showDone("Clip deleted", clip.name);
+}
+
+/** @param {Clip} clip */
+async function retry(clip) {
+  await attempt("Retrying", () => api.clips.retry(clip.id));
+  await reloadClips();
+}
+
+/** @param {Clip} clip */
+function buttons(clip) {
+  if (BUSY.has(clip.status))
+    return [
+      iconButton("close", `Cancel ${clip.name}`, () =>
+        attempt("Cancelling", () => api.jobs.cancel(clip.job_id)),
+      ),
+    ];
+  const choose = needsTopic(clip)
+    ? h(
+        "button",
+        {
+          type: "button",
+          className: "choose-topic",
+          "aria-label": `Choose the topic of ${clip.name}`,
+          onclick: () => openTopics(clip),
+        },
+        "Choose\u2026",
+      )
+    : null;
+  const again =
+    clip.status === "done" || choose
+      ? null
+      : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
+  return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
+}
+
+/**
+ * The clip's picture; once made it is kept, since progress redraws the rest often.
+ *
+ * @param {Clip} clip
+ * @param {HTMLElement} [element]
+ */
+function posterOf(clip, element) {
+  const known = element?.querySelector(".poster:not(.blank)");
+  if (known) return known;
+  const poster = h("img", {
+    className: "poster",
+    src: api.clips.poster(clip.id),
+    alt: "",
+    loading: "lazy",
+    width: 64,
+    height: 48,
+  });
+  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
+  return poster;
+}
+
+/**
+ * How far a progress bar is, where that is known.
+ *
+ * @param {Job} [job]
+ */
+const lengthOf = (job) => (job?.total ? { max: job.total, value: job.done } : {});
+
+/**
+ * Move the progress on in place.
+ *
+ * @param {HTMLElement} element
+ * @param {Clip} clip
+ * @param {Job} [job]
+ */
+function advance(element, clip, job) {
+  /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = statusText(
+    clip,
+    job,
+  );
+  Object.assign(/** @type {HTMLElement} */ (element.querySelector("progress")), lengthOf(job));
+}
+
+/**
+ * Replace an element's content; the button of the same name keeps the focus.
+ *
+ * @param {HTMLElement} element
+ * @param {...(string | Node)} content
+ */
+function replaceKeepingFocus(element, ...content) {
+  const { activeElement } = document;
+  const name = element.contains(activeElement) ? activeElement?.getAttribute("aria-label") : null;
+  element.replaceChildren(...content);
+  if (!name) return;
+  const named = /** @type {HTMLElement[]} */ ([...element.querySelectorAll("[aria-label]")]);
+  named.find((each) => each.getAttribute("aria-label") === name)?.focus();
+}
+
+/**
+ * @param {Clip} clip
+ * @param {HTMLElement} [element]
+ */
+function draw(clip, element) {
+  const job = state.jobs.get(clip.job_id);
+  const busy = BUSY.has(clip.status);
+  const chosen = clip.id === state.clip;
+  const signature = JSON.stringify([clip, job, chosen]);
+  if (element?.dataset.signature === signature) return element;
+  // Progress comes ten times a second: a button must not be replaced under the pointer.
+  const shape = JSON.stringify([{ ...clip, status: busy }, chosen]);
+  if (busy && element?.dataset.shape === shape) {
+    element.dataset.signature = signature;
+    advance(element, clip, job);
+    return element;
+  }
+  const drawn = element ?? h("li");
+  drawn.dataset.signature = signature;
+  drawn.dataset.shape = shape;
+  drawn.className = `clip ${needsTopic(clip) ? "waiting" : clip.status}${chosen ? " chosen" : ""}`;
+  replaceKeepingFocus(
+    drawn,
+    h(
+      "button",
+      {
+        type: "button",
+        className: "clip-open",
+        "aria-label": `Show ${clip.name}`,
+        title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`,
+        "aria-pressed": String(chosen),
+        onclick: () => select(clip.id),
+      },
+      posterOf(clip, element),
+      h(
+        "span",
+        { className: "clip-text" },
+        h("b", {}, clip.name),
+        h("span", { className: "stage-text" }, statusText(clip, job)),
+        busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...lengthOf(job) }) : null,
+      ),
+    ),
+    h("div", { className: "clip-buttons" }, buttons(clip)),
+  );
+  return drawn;
+}
+
+/** @param {State} state */
+export function drawClips({ clips, clip: chosen }) {
+  byId("clip-count").textContent = clips.length ? String(clips.length) : "";
+  const search = byId("find-clip");
+  search.hidden = clips.length <= SEEN_AT_ONCE;
+  const wanted = search.hidden ? "" : search.value.trim().toLowerCase();
+  const shown = clips.filter(({ name }) => name.toLowerCase().includes(wanted));
+  const list = byId("clips");
+  reconcile(list, shown, (clip) => clip.id, draw);
+  byId("no-clip").textContent =
+    clips.length && !shown.length ? `No clip is called \u201c${search.value.trim()}\u201d.` : "";
+  if (chosen !== inView && list.clientHeight) bringIntoView(list, chosen);
+}
+
+/**
+ * Scroll the list, and nothing else, to the clip on display.
+ *
+ * @param {HTMLElement} list
+ * @param {string | null} chosen
+ */
+function bringIntoView(list, chosen) {
+  /** @type {HTMLElement | null} */
+  const item = list.querySelector(".chosen");
+  if (!item) return;
+  inView = chosen;
+  const top = item.offsetTop - list.offsetTop;
+  const seen =
+    top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
+  if (!seen) list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
+}
+
+/** Let the clips be found by their names. */
+export function findClips() {
+  byId("find-clip").oninput = () => {
+    inView = null; // Where the clip on display is among those found is another place.
+    drawClips(state);
+  };
+}

@@ -1,0 +1,104 @@
+// The clips as the server has them: loading, selecting, and how far each one's poses are.
+
+import * as api from "../core/api.js";
+import { duration, plural, timeLeft } from "../core/format.js";
+import { refresh } from "../core/list-refresh.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { registerUndo } from "../core/undo.js";
+
+/** @import { Clip, Job } from "../core/types.d.ts" */
+
+export const BUSY = new Set(["queued", "running"]);
+/** @type {Record<string, string>} */
+const STAGES = {
+  queued: "Waiting in the queue",
+  starting: "Starting",
+  poses: "Finding poses",
+  saving: "Saving",
+};
+
+export async function reloadClips() {
+  const clips = await attempt("Loading the clips", api.clips.list);
+  if (clips) update({ clips });
+}
+
+/**
+ * Load one clip that changed.
+ *
+ * @param {string} id
+ */
+export const reloadClip = (id) =>
+  refresh(id, {
+    load: api.clips.get,
+    current: () => state.clips,
+    order: (one, other) =>
+      other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
+    take: (clips) => update({ clips }),
+  });
+
+/**
+ * Show another clip.
+ *
+ * @param {string | null} id
+ */
+export function select(id) {
+  update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
+}
+
+/**
+ * Store a job's progress, as the server reports it.
+ *
+ * @param {Job} job
+ */
+export function followJob(job) {
+  update({ jobs: new Map(state.jobs).set(job.id, job) });
+  const clip = state.clips.find((each) => each.job_id === job.id);
+  if (!clip || clip.status !== job.status) reloadClip(job.clip_id);
+}
+
+/**
+ * Whether a clip is a dive recording whose topic is not chosen yet.
+ *
+ * @param {Clip} clip
+ */
+export const needsTopic = (clip) => clip.error_code === "topic_needed";
+
+/**
+ * @param {Clip} clip
+ * @param {Job} [job]
+ */
+function progressText(clip, job) {
+  const stage = STAGES[job?.stage ?? ""] ?? STAGES[clip.status] ?? "Working";
+  if (!job?.total || job.stage !== "poses") return stage;
+  const left = job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`;
+  return `${stage}, ${job.done} of ${job.total} frames${left}`;
+}
+
+/**
+ * The state of a clip in words.
+ *
+ * @param {Clip} clip
+ * @param {Job} [job]
+ */
+export function statusText(clip, job) {
+  if (needsTopic(clip)) return `${plural(clip.topics.length, "topic")}: choose one`;
+  if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
+  if (clip.status === "cancelled") return "Cancelled before its poses were found";
+  if (BUSY.has(clip.status)) return progressText(clip, job);
+  return [
+    clip.duration ? duration(clip.duration) : null,
+    clip.frames ? plural(clip.frames, "frame") : null,
+  ]
+    .filter(Boolean)
+    .join(" \u00b7 ");
+}
+
+registerUndo("clip", {
+  undo: ({ id }) =>
+    api.clips
+      .restore(id)
+      .then(reloadClips)
+      .then(() => select(id)),
+  redo: ({ id }) => api.clips.remove(id).then(reloadClips),
+});

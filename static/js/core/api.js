@@ -1,0 +1,248 @@
+// The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
+
+/** @import { Clip, Explanation, ExportContents, HealthReport, Job, Language, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Take, Timeline, Workspace } from "./types.d.ts" */
+
+const BASE = "/api/v1";
+
+export class ApiError extends Error {
+  /**
+   * @param {Problem} problem
+   * @param {number} status
+   */
+  constructor(problem, status) {
+    super(problem.detail || problem.title || `The server answered ${status}.`);
+    this.name = "ApiError";
+    this.title = problem.title || "Something went wrong";
+    this.code = problem.code;
+    this.status = status;
+  }
+}
+
+/** The error of a request that got no answer. */
+export const unreachable = () =>
+  new ApiError(
+    {
+      title: "No connection",
+      detail: "The server did not answer. Is it still running? The page reconnects by itself.",
+      code: "offline",
+    },
+    0,
+  );
+
+/**
+ * Whether a request failed only because the server is away for now.
+ *
+ * @param {{ code?: string }} error
+ */
+export const isAway = ({ code }) => code === "offline" || code === "server_stopping";
+
+/**
+ * Read the problem JSON of a response; a proxy's own error page has none.
+ *
+ * @param {Response} response
+ * @returns {Promise<Problem>}
+ */
+export async function problemOf(response) {
+  try {
+    return await response.json();
+  } catch {
+    return { title: response.statusText };
+  }
+}
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {{ body?: any, headers?: Record<string, string>, raw?: boolean }} [options]
+ * @returns {Promise<any>}
+ */
+async function request(method, path, { body, headers = {}, raw = false } = {}) {
+  /** @type {RequestInit & { headers: Record<string, string> }} */
+  const options = { method, headers: { ...headers } };
+  if (body !== undefined) {
+    options.body = raw ? body : JSON.stringify(body);
+    options.headers["Content-Type"] = "application/json";
+  }
+  let response;
+  try {
+    response = await fetch(BASE + path, options);
+  } catch {
+    throw unreachable();
+  }
+  if (!response.ok) throw new ApiError(await problemOf(response), response.status);
+  return response.status === 204 ? null : response.json();
+}
+
+const id = encodeURIComponent;
+/** @param {{ revision?: number }} language */
+const matching = (language) => ({ "If-Match": `"${language.revision}"` });
+/**
+ * @param {{ id: string }} language
+ * @param {string} label
+ */
+const gestureAt = (language, label) => `/languages/${id(language.id)}/gestures/${id(label)}`;
+
+export const clips = {
+  /** @type {() => Promise<Clip[]>} */
+  list: () => request("GET", "/clips"),
+  /** @type {(clip: string) => Promise<Timeline>} */
+  timeline: (clip) => request("GET", `/clips/${id(clip)}/timeline`),
+  /** @type {(clip: string) => string} */
+  filmstrip: (clip) => `${BASE}/clips/${id(clip)}/filmstrip`,
+  /** @type {(clip: string) => Promise<Clip>} */
+  get: (clip) => request("GET", `/clips/${id(clip)}`),
+  /** @type {(clip: string) => Promise<Poses>} */
+  poses: (clip) => request("GET", `/clips/${id(clip)}/poses`),
+  /** @type {(clip: string) => Promise<Take[]>} */
+  takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
+  /** @type {(clip: string) => Promise<any>} */
+  remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
+  /** @type {(clip: string) => Promise<any>} */
+  restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
+  /** @type {(clip: string) => Promise<any>} */
+  retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
+  /** @type {(clip: string, topic: string) => Promise<any>} */
+  chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
+  /** @type {(clip: string) => string} */
+  poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
+  /** @type {(clip: string) => string} */
+  session: (clip) => `${BASE}/clips/${id(clip)}/session.mcap`,
+  /** @type {(clip: string) => string} */
+  video: (clip) => `${BASE}/clips/${id(clip)}/video`,
+};
+
+export const jobs = {
+  /** @type {(job: string) => Promise<Job>} */
+  get: (job) => request("GET", `/jobs/${id(job)}`),
+  /** @type {(job: string) => Promise<any>} */
+  cancel: (job) => request("DELETE", `/jobs/${id(job)}`),
+};
+
+export const samples = {
+  /** @type {() => Promise<Sample[]>} */
+  list: () => request("GET", "/samples"),
+  /** @type {(name: string) => Promise<any>} */
+  add: (name) => request("POST", "/samples", { body: { name } }),
+  /** @type {() => Promise<SampleLanguage[]>} */
+  languages: () => request("GET", "/samples/languages"),
+  /** @type {(name: string) => Promise<Language>} */
+  addLanguage: (name) => request("POST", "/samples/languages", { body: { name } }),
+};
+
+export const languages = {
+  /** @type {() => Promise<LanguageSummary[]>} */
+  list: () => request("GET", "/languages"),
+  /** @type {(language: string) => Promise<Language>} */
+  get: (language) => request("GET", `/languages/${id(language)}`),
+  /** @type {(name: string) => Promise<Language>} */
+  create: (name) => request("POST", "/languages", { body: { name } }),
+  /** @type {(language: { id: string, revision: number }, change: object) => Promise<Language>} */
+  change: (language, change) =>
+    request("PATCH", `/languages/${id(language.id)}`, {
+      body: change,
+      headers: matching(language),
+    }),
+  /** @type {(language: string) => Promise<Language>} */
+  duplicate: (language) => request("POST", `/languages/${id(language)}/duplicate`),
+  /** @type {(language: string) => Promise<Revision[]>} */
+  revisions: (language) => request("GET", `/languages/${id(language)}/revisions`),
+  /** @type {(language: string, older: number | null, newer: number) => Promise<RevisionDiff>} */
+  compare: (language, older, newer) =>
+    request(
+      "GET",
+      `/languages/${id(language)}/comparison?newer=${newer}${older === null ? "" : `&older=${older}`}`,
+    ),
+  /** @type {(language: { id: string, revision: number }, gestures: string[], paused: boolean) => Promise<PhrasesAnswer>} */
+  phrases: ({ id: language, revision }, gestures, paused) => {
+    const query = new URLSearchParams({
+      revision: String(revision),
+      then: paused ? "pause" : "wait",
+    });
+    for (const label of gestures) query.append("gesture", label);
+    return request("GET", `/languages/${id(language)}/phrases?${query}`);
+  },
+  /** @type {(language: string, revision: number) => Promise<HealthReport>} */
+  check: (language, revision) =>
+    request("GET", `/languages/${id(language)}/check?revision=${revision}`),
+  /** @type {(language: string, revision: number) => Promise<any>} */
+  cancelCheck: (language, revision) =>
+    request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
+  /** @type {(language: string, one: string, other: string, revision: number) => Promise<PairDifference>} */
+  contrast: (language, one, other, revision) =>
+    request(
+      "GET",
+      `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`,
+    ),
+  /** @type {(language: string, label: string, revision: number) => string} */
+  image: (language, label, revision) =>
+    `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
+  /** @type {(language: string) => Promise<Language>} */
+  restore: (language) => request("POST", `/languages/${id(language)}/restore`),
+  /** @type {(language: { id: string, revision?: number }) => Promise<any>} */
+  remove: (language) =>
+    request(
+      "DELETE",
+      `/languages/${id(language.id)}`,
+      "revision" in language ? { headers: matching(language) } : {},
+    ),
+  /** @type {(name: string, text: string) => Promise<Language>} */
+  import: (name, text) =>
+    request("POST", `/languages/import?name=${id(name)}`, { body: text, raw: true }),
+  /** @type {(language: { id: string, revision: number }, revision: number) => Promise<Language>} */
+  revert: (language, revision) =>
+    request("POST", `/languages/${id(language.id)}/revert`, {
+      body: { revision },
+      headers: matching(language),
+    }),
+  /** @type {(language: string, body: object) => Promise<Preview>} */
+  preview: (language, body) => request("POST", `/languages/${id(language)}/preview`, { body }),
+  /** @type {(language: string, body: object) => Promise<Outlook>} */
+  previewHealth: (language, body) =>
+    request("POST", `/languages/${id(language)}/preview/health`, { body }),
+  /** @type {(language: string, label: string) => Promise<Poses>} */
+  demonstration: (language, label) =>
+    request("GET", `${gestureAt({ id: language }, label)}/demonstration`),
+  /** @type {(language: { id: string, revision: number }, gesture: object) => Promise<Language>} */
+  addGesture: (language, gesture) =>
+    request("POST", `/languages/${id(language.id)}/gestures`, {
+      body: gesture,
+      headers: matching(language),
+    }),
+  /** @type {(language: { id: string, revision: number }, label: string, change: object) => Promise<Language>} */
+  changeGesture: (language, label, change) =>
+    request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
+  /** @type {(language: { id: string, revision: number }, label: string) => Promise<Language>} */
+  removeGesture: (language, label) =>
+    request("DELETE", gestureAt(language, label), { headers: matching(language) }),
+  /** @type {(language: string) => Promise<ExportContents>} */
+  exportContents: (language) => request("GET", `/languages/${id(language)}/export/contents`),
+  /** @type {(language: string, format: string) => string} */
+  exportUrl: (language, format) => `${BASE}/languages/${id(language)}/export?format=${format}`,
+};
+
+export const recognitions = {
+  /** @type {(query: object) => Promise<Recognition>} */
+  create: (query) => request("POST", "/recognitions", { body: query }),
+  /** @type {(language: string) => Promise<Recognition[]>} */
+  list: (language) => request("GET", `/recognitions?language_id=${id(language)}&limit=500`),
+  /** @type {(recognition: string) => Promise<Recognition>} */
+  get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
+  /** @type {(recognition: string) => string} */
+  analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
+  /** @type {(recognition: string) => Promise<Explanation>} */
+  explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
+};
+
+export const workspaces = {
+  /** @type {(dark: boolean) => Promise<Workspace>} */
+  open: (dark) => request("POST", "/workspaces", { body: { dark } }),
+  /** @type {(workspace: string) => Promise<Workspace>} */
+  find: (workspace) => request("GET", `/workspaces/${id(workspace)}`),
+  /** @type {(workspace: string, dark: boolean) => Promise<any>} */
+  change: (workspace, dark) => request("PATCH", `/workspaces/${id(workspace)}`, { body: { dark } }),
+  /** @type {(workspace: string, view: object) => Promise<any>} */
+  show: (workspace, view) => request("PUT", `/workspaces/${id(workspace)}/view`, { body: view }),
+};
+
+/** Follow everything that changes on the server. */
+export const changes = () => new EventSource(`${BASE}/events`);

@@ -1,0 +1,107 @@
+// A modal dialog with a form; it stays open and shows the error until its task succeeds.
+
+import { byId, h } from "./dom.js";
+
+/** @import { Field } from "./types.d.ts" */
+
+/**
+ * Ask for values in a dialog.
+ *
+ * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
+ * task; its error is shown in the dialog. Resolves to what `submit` returned, or null.
+ *
+ * @param {{ title: string, text?: string, fields: Field[], action: string, submit: (values: Record<string, string>) => any, preview?: HTMLElement | null }} question
+ * @returns {Promise<any>}
+ */
+export function ask({ title, text = "", fields, action, submit, preview = null }) {
+  const dialog = byId("dialog");
+  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
+  const confirm = h("button", { type: "submit", className: "primary" }, action);
+  const inputs = fields.map((field) => inputOf(field));
+  return new Promise((resolve) => {
+    /** @type {any} */
+    let answer = null;
+    const form = h(
+      "form",
+      { method: "dialog", noValidate: true },
+      h("h2", { id: "dialog-title" }, title),
+      text ? h("p", { className: "dim" }, text) : null,
+      preview,
+      fields.map((field, index) => rowOf(field, inputs[index])),
+      problem,
+      h(
+        "div",
+        { className: "dialog-actions" },
+        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+        confirm,
+      ),
+    );
+    form.onsubmit = async (event) => {
+      event.preventDefault();
+      const empty = fields.findIndex(
+        (field, index) => field.required && !inputs[index].value.trim(),
+      );
+      if (empty >= 0)
+        return showProblem(`${fields[empty].label} is empty; type one.`, inputs[empty]);
+      confirm.disabled = true;
+      try {
+        answer = await submit(
+          Object.fromEntries(
+            fields.map((field, index) => [field.name, inputs[index].value.trim()]),
+          ),
+        );
+        dialog.close();
+      } catch (error) {
+        if (error.code === "cancelled") return dialog.close();
+        showProblem(error.message, inputs[0]);
+      } finally {
+        confirm.disabled = false;
+      }
+    };
+    /** @type {(message: string, input?: HTMLElement) => void} */
+    const showProblem = (message, input) => {
+      problem.textContent = message;
+      problem.hidden = false;
+      input?.focus();
+    };
+    dialog.replaceChildren(form);
+    dialog.setAttribute("aria-labelledby", "dialog-title");
+    dialog.onclose = () => resolve(answer);
+    dialog.showModal();
+    inputs[0]?.select?.();
+  });
+}
+
+/** @param {Field} field */
+function inputOf(field) {
+  const properties = {
+    id: `field-${field.name}`,
+    name: field.name,
+    value: field.value ?? "",
+    autocomplete: "off",
+    required: Boolean(field.required),
+    maxLength: field.most ?? 2000,
+  };
+  return field.multiline
+    ? h("textarea", { ...properties, rows: 2 })
+    : h("input", { ...properties, type: "text" });
+}
+
+/**
+ * @param {Field} field
+ * @param {HTMLElement} input
+ */
+function rowOf(field, input) {
+  return h(
+    "div",
+    { className: "field" },
+    h(
+      "label",
+      { for: input.id },
+      field.label,
+      field.required ? null : h("span", { className: "dim" }, " (optional)"),
+    ),
+    input,
+    field.hint ? h("p", { className: "dim" }, field.hint) : null,
+  );
+}

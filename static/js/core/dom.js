@@ -1,0 +1,126 @@
+// Creating DOM elements. Text becomes text nodes only: nothing a user wrote is parsed as markup.
+
+/** @type {Record<string, string>} */
+const ICONS = {
+  back: "M15 4v12L7 10zM5 4v12",
+  chevron: "M12 4l-6 6 6 6",
+  close: "M5 5l10 10M15 5L5 15",
+  down: "M5 8l5 5 5-5",
+  forth: "M5 4v12l8-6zM15 4v12",
+  link: "M8 12l4-4M9 6l2-2a3.500 3.500 0 0 1 5 5l-2 2M11 14l-2 2a3.500 3.500 0 0 1-5-5l2-2",
+  loop: "M6 6h8a3 3 0 0 1 3 3v1M14 14H6a3 3 0 0 1-3-3v-1M12 3.500l2.500 2.500L12 8.500M8 16.500L5.500 14 8 11.500",
+  more: "M4 10h.01M10 10h.01M16 10h.01",
+  pause: "M7 4v12M13 4v12",
+  play: "M6 4v12l10-6z",
+  plus: "M10 4v12M4 10h12",
+  rename: "M4 16l1-4 8-8 3 3-8 8z",
+  retry: "M15.5 6.5A6.5 6.5 0 1 0 16.5 11M16 3v4h-4",
+  salute:
+    "M6 17c-1.5-2-3.5-4-3.5-5.5 1.500-1 2.800.5 3.500 1.300L4.200 5.500c1.500-.8 2.200.3 2.400 1L8 10.500 7.600 3.500c1.500-.5 2 .6 2 1.200l.4 6 2.400-6.500c1.600 0 1.700 1 1.500 1.700L12.200 11l3.300-4c1.300.5 1.300 1.400.8 2.200L13 14.500 12 17z",
+  trash: "M4 6h12M8 6V4h4v2M6 6l1 10h6l1-10",
+  up: "M5 12l5-5 5 5",
+};
+
+/**
+ * Find an element that index.html promises.
+ *
+ * @param {string} id
+ * @returns {any} Typed loosely: its kind of element stands in index.html.
+ */
+export const byId = (id) => /** @type {any} */ (document.getElementById(id));
+
+/**
+ * Make an element. Properties are set as properties (`onclick`, `className`, `hidden`), those with
+ * a dash as attributes; children are elements or text, and null is left out.
+ *
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, any>} [properties]
+ * @param {...any} children
+ * @returns {HTMLElementTagNameMap[K]}
+ */
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  const values = /** @type {any} */ (element);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null) continue;
+    if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
+    else if (name === "style")
+      for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
+    else values[name] = value;
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/**
+ * Make an element of a drawing, with attributes.
+ *
+ * @template {keyof SVGElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, any>} [attributes]
+ * @param {...(string | Node)} children
+ * @returns {SVGElementTagNameMap[K]}
+ */
+export function svg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/**
+ * Make one of the line icons; it is decoration, so its button needs a label of its own.
+ *
+ * @param {string} name
+ */
+export function icon(name) {
+  return svg(
+    "svg",
+    { viewBox: "0 0 20 20", "aria-hidden": "true" },
+    svg("path", { d: ICONS[name] }),
+  );
+}
+
+/**
+ * Make a small button that shows only an icon.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {() => unknown} onclick
+ */
+export function iconButton(name, label, onclick) {
+  return h(
+    "button",
+    { type: "button", className: "quiet icon", title: label, "aria-label": label, onclick },
+    icon(name),
+  );
+}
+
+/** @param {HTMLElement} list */
+const elementsIn = (list) => /** @type {HTMLElement[]} */ ([...list.children]);
+
+/**
+ * Make a list's children match `items`, reusing the element of an item that stays, so that focus
+ * and running transitions survive. `draw(item, element)` returns the element.
+ *
+ * @template T
+ * @param {HTMLElement} list
+ * @param {T[]} items
+ * @param {(item: T) => string | number} keyOf
+ * @param {(item: T, element: any) => HTMLElement} draw
+ */
+export function reconcile(list, items, keyOf, draw) {
+  const known = new Map(elementsIn(list).map((element) => [element.dataset.key, element]));
+  const wanted = items.map((item) => {
+    const key = String(keyOf(item));
+    const drawn = draw(item, known.get(key));
+    drawn.dataset.key = key;
+    return drawn;
+  });
+  const keep = new Set(wanted);
+  for (const element of elementsIn(list)) if (!keep.has(element)) element.remove();
+  wanted.forEach((element, index) => {
+    if (list.children[index] !== element) list.insertBefore(element, list.children[index] ?? null);
+  });
+}

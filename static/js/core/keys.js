@@ -1,0 +1,95 @@
+// The key bindings: one list, which `?` also shows.
+
+/** @import { Binding } from "./types.d.ts" */
+
+/** @type {Binding[]} */
+const bound = [];
+
+const TYPED_IN =
+  "input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]";
+
+/**
+ * Bind keys to a function. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,"; the first
+ * is the one shown; `when()` says whether the binding applies now, and of several the last one
+ * wins. Plain keys do nothing where text
+ * is typed. No key may override one of the browser.
+ *
+ * @param {{ keys: string[], text: string, group: string, run: (event: KeyboardEvent) => unknown, when?: () => boolean }} binding
+ */
+export function bind({ keys, text, group, run, when = () => true }) {
+  bound.push({ keys, text, group, run, when });
+}
+
+/**
+ * A key press in the notation of `bind`: the key's own letter or sign, also with Shift.
+ *
+ * @param {KeyboardEvent} event
+ * @returns {string}
+ */
+function written(event) {
+  const name =
+    event.key === " "
+      ? "Space"
+      : event.code.startsWith("Key")
+        ? event.code.slice(3)
+        : ({ Comma: ",", Period: ".", BracketLeft: "[", BracketRight: "]" }[event.code] ??
+          event.key);
+  const held = [
+    event.ctrlKey || event.metaKey ? "Ctrl" : "",
+    event.altKey ? "Alt" : "",
+    event.shiftKey && event.key !== "?" ? "Shift" : "",
+  ];
+  return [...held.filter(Boolean), name].join("+");
+}
+
+/** @type {Promise<unknown> | null} */
+let opening = null; // A view that is being loaded: its keys are not bound yet.
+
+/**
+ * Delay keys that are pressed until a promise is settled.
+ *
+ * @param {Promise<unknown>} promise
+ */
+export function holdKeys(promise) {
+  opening = promise;
+  promise.finally(() => {
+    if (opening === promise) opening = null;
+  });
+}
+
+/** @param {string} combination */
+const meant = (combination) =>
+  bound.findLast((each) => each.keys.includes(combination) && each.when());
+
+/** @param {KeyboardEvent} event */
+function pressed(event) {
+  if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
+  // An element of a frame is no Element of this window.
+  const at =
+    event.target && "closest" in event.target ? /** @type {Element} */ (event.target) : null;
+  if (at?.closest(TYPED_IN)) return;
+  // A button that has the focus is pressed with the space bar.
+  if (event.key === " " && at?.closest("button, summary, [role=tab], [role=button]")) return;
+  const combination = written(event);
+  if (opening) {
+    if (event.key === " ") event.preventDefault(); // It would scroll the page.
+    opening.then(() => meant(combination)?.run(event));
+    return;
+  }
+  const found = meant(combination);
+  if (!found) return;
+  event.preventDefault();
+  found.run(event);
+}
+
+/**
+ * Handle the keys that are pressed in a window: this one, or a frame in it.
+ *
+ * @param {Window} [target]
+ */
+export function listenToKeys(target = window) {
+  target.addEventListener("keydown", pressed);
+}
+
+/** The bindings made so far, in their order; read only. */
+export const bindings = () => bound;

@@ -1,0 +1,46 @@
+// Reloading one member of a list after the server reported a change of it.
+
+import { attempt } from "./toasts.js";
+
+/** @type {Map<string, symbol>} */
+const newest = new Map(); // per id the request that was sent last
+
+/**
+ * Load a member by `load(id)`. Resolves to `{ member }`, null in it where it is gone, or to null
+ * where a newer request for it has been sent since.
+ *
+ * @template T
+ * @param {string} id
+ * @param {(id: string) => Promise<T>} load
+ * @returns {Promise<{ member: T | null } | null>}
+ */
+async function loaded(id, load) {
+  const request = Symbol(id);
+  newest.set(id, request);
+  const answer = await attempt("Loading what changed", async () => {
+    try {
+      return { member: await load(id) };
+    } catch (error) {
+      if (error.status === 404) return { member: null };
+      throw error;
+    }
+  });
+  if (newest.get(id) !== request) return null;
+  newest.delete(id);
+  return answer;
+}
+
+/**
+ * Refresh a member of a list. `current()` returns the list and `order(one, other)` sorts it;
+ * `take(list, member)` gets the new one.
+ *
+ * @template {{ id: string }} T
+ * @param {string} id
+ * @param {{ load: (id: string) => Promise<any>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: any) => void }} source
+ */
+export async function refresh(id, { load, current, order, take }) {
+  const answer = await loaded(id, load);
+  if (!answer) return;
+  const others = current().filter((each) => each.id !== id);
+  take(answer.member ? [...others, answer.member].sort(order) : others, answer.member);
+}

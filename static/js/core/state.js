@@ -1,0 +1,185 @@
+// The state of the page, in one place; what a link should restore is in the URL.
+
+/** @import { Clip, Language, SelectedRange, State } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
+const IN_URL = {
+  view: "view",
+  source: "source",
+  clip: "clip",
+  take: "take",
+  start: "start",
+  end: "end",
+  frame: "frame",
+  language: "language",
+  gesture: "gesture",
+  recognition: "recognition",
+  joint: "joint",
+  panel: "panel",
+  older: "older",
+  newer: "newer",
+  pair: "pair",
+  cell: "cell",
+  phrase: "phrase",
+  shown: "shown",
+  paused: "paused",
+};
+const NUMBERS = new Set(["take", "start", "end", "frame", "older", "newer"]);
+
+/** @type {State} */
+const values = {
+  view: null,
+  source: null,
+  clips: [],
+  uploads: [],
+  jobs: new Map(),
+  takes: null,
+  samples: [],
+  timeline: null,
+  position: null,
+  frame: null,
+  languages: [],
+  gestures: null,
+  result: null,
+  why: null,
+  trial: null,
+  question: null,
+  connected: null,
+  returns: 0,
+  loaded: false,
+  health: null,
+  checking: null,
+  recognised: null,
+  tested: [],
+  pending: [],
+  clip: null,
+  take: null,
+  start: null,
+  end: null,
+  language: null,
+  gesture: null,
+  recognition: null,
+  joint: null,
+  panel: null,
+  older: null,
+  newer: null,
+  pair: null,
+  cell: null,
+  phrase: null,
+  shown: null,
+  paused: null,
+};
+
+/** @type {{ names: (keyof State)[], react: (state: State) => void }[]} */
+const listeners = [];
+
+let returning = false; // to another entry of the browser's history, whose URL is there already
+
+/** The present values; read only. */
+export const state = values;
+
+/** @type {(change: Partial<State>) => (keyof State)[]} */
+const keysOf = (change) => /** @type {any} */ (Object.keys(change));
+
+/**
+ * Change values, write them to the URL, and call the listeners of those that changed.
+ *
+ * @param {Partial<State>} change
+ */
+export function update(change) {
+  const changed = keysOf(change).filter((name) => values[name] !== change[name]);
+  if (!changed.length) return;
+  Object.assign(values, change);
+  // Only another view makes an entry in the browser's history.
+  if (!returning && changed.some((name) => name in IN_URL)) writeUrl(changed.includes("view"));
+  for (const { names, react } of listeners)
+    if (names.some((name) => changed.includes(name))) react(values);
+}
+
+/**
+ * Call `react` now, and whenever one of the named values changes.
+ *
+ * @param {(keyof State)[]} names
+ * @param {(state: State) => void} react
+ */
+export function follow(names, react) {
+  listeners.push({ names, react });
+  react(values);
+}
+
+/**
+ * Read the state that is in the URL.
+ *
+ * @returns {Partial<State>}
+ */
+export function readUrl() {
+  const query = new URLSearchParams(location.search);
+  /** @type {Record<string, string | number | null>} */
+  const change = {};
+  for (const [name, key] of Object.entries(IN_URL)) {
+    const text = query.get(key);
+    const number = Number.parseFloat(text ?? "");
+    if (!NUMBERS.has(name)) change[name] = text;
+    else change[name] = Number.isFinite(number) ? number : null;
+  }
+  return change;
+}
+
+/** Follow the browser's Back and Forward. */
+export function followHistory() {
+  addEventListener("popstate", () => {
+    returning = true;
+    update(readUrl());
+    returning = false;
+  });
+}
+
+/** @param {boolean} another */
+function writeUrl(another) {
+  const query = new URLSearchParams();
+  for (const [name, key] of Object.entries(IN_URL)) {
+    const value = /** @type {any} */ (values)[name];
+    if (value !== null && value !== undefined)
+      query.set(key, NUMBERS.has(name) ? String(Math.round(value * 1000) / 1000) : value);
+  }
+  const text = query.toString();
+  const url = text ? `?${text}` : location.pathname;
+  if (another) history.pushState(null, "", url);
+  else history.replaceState(null, "", url);
+}
+
+/** @returns {Clip | null} */
+export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
+
+/**
+ * Seconds the clip lasts, by its last frame; before its poses are found, by its container.
+ *
+ * @param {Clip} clip
+ */
+export const lengthOf = (clip) => values.timeline?.time.at(-1) ?? clip.duration ?? 0;
+
+/**
+ * The range in seconds on which buttons act, and whether it is a take's own.
+ *
+ * @returns {SelectedRange | null}
+ */
+export function selectedRange() {
+  const clip = selectedClip();
+  if (!clip) return null;
+  const take = values.takes?.[values.take ?? -1];
+  if (take)
+    return { start: take.start, end: take.end, shown: [take.stroke_start, take.stroke_end], take };
+  const start = values.start ?? 0;
+  const end = values.end ?? lengthOf(clip);
+  return { start, end, shown: [start, end], take: null };
+}
+
+/**
+ * The language on display, for code that runs only while there is one.
+ *
+ * @returns {Language}
+ */
+export function currentLanguage() {
+  if (!values.gestures) throw new Error("No language is on display.");
+  return values.gestures;
+}

@@ -1,0 +1,84 @@
+// Toasts: short messages with what happened, why, and what to do next.
+
+import { byId, h, iconButton } from "./dom.js";
+
+/** @type {Record<string, number>} */
+const SHOWN_FOR = { info: 6000, error: 15000 };
+
+/**
+ * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
+ * One with the same text replaces the older one. Returns its element.
+ *
+ * @param {string} title
+ * @param {string} [detail]
+ * @param {{ kind?: "info" | "error", action?: { label: string, run: () => void } | null }} [options]
+ * @returns {HTMLElement}
+ */
+export function toast(title, detail = "", { kind = "info", action = null } = {}) {
+  const box = byId("toasts");
+  for (const other of [...box.children]) if (other.dataset.text === title + detail) other.remove();
+  const close = () => element.remove();
+  /** @type {HTMLElement} */
+  const element = h(
+    "div",
+    { className: `toast ${kind}`, role: kind === "error" ? "alert" : "status" },
+    h("div", {}, h("b", {}, title), detail ? h("p", {}, detail) : null),
+    action
+      ? h(
+          "button",
+          {
+            type: "button",
+            onclick: () => {
+              close();
+              action.run();
+            },
+          },
+          action.label,
+        )
+      : null,
+    iconButton("close", "Dismiss", close),
+  );
+  element.dataset.text = title + detail;
+  box.append(element);
+  let timer = setTimeout(close, SHOWN_FOR[kind]);
+  // A message stays while the pointer or the focus is on it.
+  const hold = () => clearTimeout(timer);
+  const release = () => {
+    clearTimeout(timer);
+    timer = setTimeout(close, SHOWN_FOR[kind]);
+  };
+  for (const event of ["pointerenter", "focusin"]) element.addEventListener(event, hold);
+  for (const event of ["pointerleave", "focusout"]) element.addEventListener(event, release);
+  return element;
+}
+
+/**
+ * Show what went wrong.
+ *
+ * @param {any} error
+ * @param {string} [doing]
+ */
+export function complain(error, doing) {
+  if (error.code === "cancelled") return;
+  if (!("status" in error)) console.error(error);
+  toast(doing ? `${doing} failed` : (error.title ?? "Something went wrong"), error.message, {
+    kind: "error",
+  });
+}
+
+/**
+ * Run a task and show its error, if any, as a toast; the answer is null then.
+ *
+ * @template T
+ * @param {string} doing
+ * @param {() => T | Promise<T>} task
+ * @returns {Promise<T | null>}
+ */
+export async function attempt(doing, task) {
+  try {
+    return await task();
+  } catch (error) {
+    complain(error, doing);
+    return null;
+  }
+}

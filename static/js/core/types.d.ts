@@ -1,0 +1,330 @@
+// What the page keeps and what the API answers; the schemas come from its OpenAPI description.
+
+import type { components } from "./api-schema.d.ts";
+
+type Schemas = components["schemas"];
+
+export type Clip = Schemas["ClipView"];
+export type Job = Schemas["JobView"];
+export type Take = Schemas["TakeView"];
+export type Topic = Schemas["TopicSeen"];
+export type Timeline = Schemas["TimelineView"];
+export type Poses = Schemas["PosesView"];
+export type Sample = Schemas["SampleView"];
+export type SampleLanguage = Schemas["SampleLanguageView"];
+export type Language = Schemas["LanguageView"];
+export type LanguageSummary = Schemas["LanguageSummary"];
+export type Gesture = Schemas["GestureView"];
+export type Revision = Schemas["RevisionView"];
+export type RevisionDiff = Schemas["RevisionComparison"];
+export type GestureDiff = Schemas["GestureComparison"];
+export type ExportContents = Schemas["ExportView"];
+export type ExportedFile = Schemas["ExportedFile"];
+export type Grammar = Schemas["GrammarEntry"];
+export type Phrase = Schemas["PhraseEntry"];
+export type GesturesPart = Schemas["GesturesEntry"];
+export type SlotPart = Schemas["SlotEntry"];
+export type GroupPart = Schemas["GroupEntry"];
+export type SlotType = Schemas["SlotTypeEntry"];
+export type SlotValue = Schemas["SlotValueEntry"];
+export type PhrasesAnswer = Schemas["PhrasesView"];
+export type PhraseEvent = Schemas["PhraseEventView"];
+export type Preview = Schemas["PreviewView"];
+export type Keypoint = Schemas["KeypointView"];
+export type Descriptor = Schemas["DescriptorView"];
+export type Source = Schemas["SourceView"];
+export type Workspace = Schemas["OpenedWorkspace"];
+export type Tuning = Schemas["TuningEntry"];
+export type Problem = Partial<Schemas["Problem"]>;
+export type PhrasePart = GesturesPart | SlotPart | GroupPart;
+
+/** An estimated rate with its 95 % interval, each in [0, 1]. */
+export interface Rate {
+  rate: number;
+  low: number;
+  high: number;
+}
+
+/** The estimate of what an edited gesture does to its language. */
+export type Outlook = Omit<Schemas["OutlookView"], "pairs" | "missed" | "refused"> & {
+  pairs: { gestures: [string, string]; distance: number | null; confusion: Rate | null }[];
+  missed: Rate | null;
+  refused: Rate | null;
+};
+
+/** How dynamic time warping pairs the steps of a take with those of a gesture. */
+export interface Alignment {
+  label: string;
+  voter: string;
+  parts: string[];
+  time: number[];
+  gesture_time: number[];
+  pairs: [number, number][];
+  /** Per pair and part. */
+  costs: number[][];
+}
+
+/** One voter's score for the gesture that was expected and the one it is compared with. */
+export interface Verdict {
+  voter: string;
+  [name: string]: any;
+}
+
+/** What an intervention does to the other gestures of the language. */
+export interface SideEffect {
+  right_before: number;
+  right_after: number;
+  takes: number;
+  lost: string[];
+}
+
+/** A change under which the take is recognised as expected. */
+export interface Counterfactual {
+  change: { kind: string; words: string; [name: string]: any };
+  label: string;
+  confidence: number;
+  effect: SideEffect | null;
+}
+
+export type Explanation = Omit<
+  Schemas["ExplanationView"],
+  "alignments" | "counterfactuals" | "verdicts"
+> & { alignments: Alignment[]; counterfactuals: Counterfactual[]; verdicts: Verdict[] };
+
+/** The answer to a recognition; the fields that the page reads. */
+export interface Recognition {
+  id: string;
+  clip_id: string;
+  language_id: string;
+  revision: number;
+  start: number;
+  end: number;
+  profile: Language["profile"];
+  tuning: Tuning | null;
+  expected: string | null;
+  created: string;
+  label: string | null;
+  nearest: string | null;
+  confidence: number;
+  votes: Record<string, string | null>;
+  weights: Record<string, number>;
+  fault: string | null;
+}
+
+export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
+  alignment: Alignment | null;
+};
+
+/** An edit that would help against a confusion, and the rate with and without it. */
+export interface Remedy {
+  kind: string;
+  gesture: string;
+  text: string;
+  before: Rate;
+  after: Rate;
+}
+
+/** A finding of the health report; `below_bar` marks a warning, the others are notes. */
+export interface Finding {
+  code: string;
+  gestures: string[];
+  message: string;
+  below_bar: boolean;
+  remedies: Remedy[];
+}
+
+export interface GestureEstimate {
+  label: string;
+  seconds: number | null;
+  landmarks: { landmark: string; visible: number }[];
+  missed: Rate | null;
+  refused: Rate | null;
+  false_alarms: Rate | null;
+  set_off_by: string[];
+}
+
+export interface PairEstimate {
+  gestures: [string, string];
+  confusion: Rate | null;
+  reverse: Rate | null;
+  distance: number | null;
+  [name: string]: any;
+}
+
+export interface HealthReport {
+  ok: boolean;
+  warnings: Finding[];
+  gestures: GestureEstimate[];
+  pairs: PairEstimate[];
+  map: { label: string; x: number; y: number }[];
+  bar: { missed: number; confusion: number };
+  [name: string]: any;
+}
+
+/** The health report on display, or the progress towards it. */
+export interface HealthState {
+  key: string;
+  id: string;
+  revision: number;
+  status: "checking" | "done" | "cancelled" | "failed";
+  report: HealthReport | null;
+  shown: number | null;
+  error?: string;
+  away?: boolean;
+}
+
+/** A file on its way to the server. */
+export interface Upload {
+  key: string;
+  file: File;
+  first: boolean;
+  uploaded: ((clip: string) => void) | null;
+  fields: Record<string, string>;
+  status: "waiting" | "uploading" | "failed";
+  loaded: number;
+  total: number;
+  away: boolean;
+  began: { loaded: number; at: number } | null;
+  error: string | null;
+  refused?: Error & { code?: string };
+  cancel: (() => void) | null;
+}
+
+/** Where the clock of the workspace stands. */
+export interface Position {
+  playing: boolean;
+  frame: number;
+  frames: number;
+  time: number;
+  speed: number;
+  loop: boolean;
+  picture: number | null;
+}
+
+/** A counterfactual that is applied and not kept yet. */
+export interface Trial {
+  change: Counterfactual["change"];
+  base: Partial<State>;
+  edited: boolean;
+  result: string;
+}
+
+/** A clip of the test with known labels that is not recognised yet. */
+export interface PendingClip {
+  clip: string;
+  language: string | null;
+  expected: string | null;
+}
+
+export interface State {
+  view: string | null;
+  source: string | null;
+  clips: Clip[];
+  uploads: Upload[];
+  jobs: Map<string, Job>;
+  takes: Take[] | null;
+  samples: Sample[];
+  timeline: Timeline | null;
+  position: Position | null;
+  frame: number | null;
+  languages: LanguageSummary[];
+  /** The language on display, with its gestures. */
+  gestures: Language | null;
+  result: Recognition | null;
+  why: Explanation | null;
+  trial: Trial | null;
+  question: { clip: string; expected: string } | null;
+  connected: boolean | null;
+  /** How often the server came back: what could not be asked meanwhile is asked then. */
+  returns: number;
+  loaded: boolean;
+  health: HealthState | null;
+  checking: any;
+  recognised: string | null;
+  tested: Recognition[] | null;
+  pending: PendingClip[];
+  clip: string | null;
+  take: number | null;
+  start: number | null;
+  end: number | null;
+  language: string | null;
+  gesture: string | null;
+  recognition: string | null;
+  joint: string | null;
+  panel: string | null;
+  older: number | null;
+  newer: number | null;
+  pair: string | null;
+  cell: string | null;
+  phrase: string | null;
+  shown: string | null;
+  paused: string | null;
+}
+
+/** Something done that can be undone: plain data of a registered kind. */
+export interface Action {
+  title: string;
+  kind: string;
+  [name: string]: any;
+}
+
+/** How the actions of a kind are undone and redone. */
+export interface UndoHandlers {
+  undo: (action: any) => Promise<unknown>;
+  redo: (action: any) => Promise<unknown>;
+  record: (action: any) => void;
+}
+
+/** A field of a dialog. */
+export interface Field {
+  name: string;
+  label: string;
+  value?: string;
+  required?: boolean;
+  hint?: string;
+  multiline?: boolean;
+  /** Characters at most. */
+  most?: number;
+}
+
+/** A view of the page, loaded when it is first shown. */
+export interface View {
+  name: string;
+  title: string;
+  load?: () => Promise<{ open: (section: HTMLElement) => void }>;
+  passing?: boolean;
+}
+
+/** What a key does. */
+export interface Binding {
+  keys: string[];
+  text: string;
+  group: string;
+  run: (event: KeyboardEvent) => unknown;
+  when: () => boolean;
+}
+
+export interface KeyListActions {
+  loadAll: () => Promise<unknown>;
+  startTour: () => void;
+}
+
+/** A command of a menu, or a file to download. */
+export type MenuItem =
+  | { text: string; run: () => unknown; href?: undefined }
+  | { text: string; href: string; run?: undefined };
+
+/** The range in seconds on which buttons act, the part of it to show, and the take it is, if any. */
+export interface SelectedRange {
+  start: number;
+  end: number;
+  shown: [number, number];
+  take: Take | null;
+}
+
+/** How far an upload is: its address, the bytes received, and the clip's id once it is whole. */
+export interface Stand {
+  place: string;
+  offset: number;
+  clip: string | null;
+}

@@ -1,0 +1,318 @@
+// The panel of the demonstration: its clip, its take, its frames, and its two ends to move.
+
+import { filmstrip } from "../clips/filmstrip.js";
+import * as api from "../core/api.js";
+import { h, icon } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
+import { state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
+import { change, draft, saved } from "./gesture-draft.js";
+import { figure } from "./pose-picture.js";
+import { chosenIn } from "./salient-keypoints.js";
+
+const BY_HAND = "by hand";
+
+/**
+ * Build the panel. `gesture` is null for a new one, `drawn` says that only its drawing is known;
+ * `pick(landmark)` switches a keypoint.
+ */
+export function take({ language, gesture, drawn, pick }) {
+  let source = null; // { id, poses, takes, timeline } of what is on display
+  let opening; // the clip of what is on its way; null is what the language keeps
+  let frame = 0;
+  let chosen = [];
+  let clock = 0; // of the animation that plays
+  const picture = figure(pick);
+  const clips = h("select", { id: "editor-clip", onchange: () => choose(clips.value) });
+  const takes = h("select", {
+    id: "editor-take",
+    onchange: () => {
+      if (takes.value !== BY_HAND)
+        change({ clip: wholeOf(source.id, source.takes, source.poses.time, Number(takes.value)) });
+    },
+  });
+  const scrub = h("input", {
+    type: "range",
+    id: "editor-frame",
+    min: 0,
+    step: 1,
+    oninput: () => go(Number(scrub.value)),
+  });
+  const clockText = h("output", { className: "num", for: "editor-frame" });
+  const playing = h("button", { type: "button", className: "quiet icon", onclick: () => play() });
+  const ends = ["start", "end"].map((which) => edge(which));
+  const strip = h(
+    "div",
+    { className: "track" },
+    h("div", { className: "range" }),
+    ends.map((each) => each.handle),
+  );
+  const transit = h("input", {
+    type: "checkbox",
+    id: "editor-transit",
+    onchange: () => change({ clip: { ...draft().clip, keep_transit: !transit.checked } }),
+  });
+  const transitText = h("small", { className: "dim" });
+  const trim = h(
+    "div",
+    { className: "trim" },
+    strip,
+    h(
+      "div",
+      { className: "ends" },
+      ends.map((each) => each.row),
+    ),
+    h(
+      "label",
+      { className: "check" },
+      transit,
+      h("span", {}, "Leave out the hand\u2019s transit from and to the salute", transitText),
+    ),
+  );
+  const note = h("p", { className: "dim" });
+  const played = h(
+    "div",
+    { className: "scrub" },
+    playing,
+    h("label", { className: "visually-hidden", for: "editor-frame" }, "Frame"),
+    scrub,
+    clockText,
+  );
+
+  function edge(which) {
+    const title = which === "start" ? "Start" : "End";
+    const handle = h("input", {
+      type: "range",
+      className: `handle ${which}`,
+      min: 0,
+      step: 1,
+      "aria-label": `${title} of the demonstration`,
+      title: `${title}: drag, or use the arrow keys, frame by frame`,
+    });
+    const number = h("input", { type: "number", id: `editor-${which}`, min: 0, step: 1 });
+    const seconds = h("small", { className: "dim num" });
+    handle.oninput = () => move(which, Number(handle.value));
+    number.onchange = () => {
+      if (number.value !== "") move(which, Math.round(Number(number.value)));
+    };
+    return {
+      which,
+      handle,
+      number,
+      seconds,
+      row: h("div", {}, h("label", { for: number.id }, `${title} frame`), number, seconds),
+    };
+  }
+
+  function move(which, to) {
+    if (!source?.id) return;
+    change(
+      { clip: movedTo(draft().clip, source.takes, source.poses.time, which, to) },
+      `trim ${which}`,
+    );
+    const [first, last] = span();
+    go(which === "start" ? first : last);
+  }
+
+  /** @type {() => [number, number]} */
+  const span = () =>
+    source.id
+      ? framesOf(draft().clip, source.takes, source.poses.time)
+      : [0, source.poses.time.length - 1];
+
+  async function choose(id) {
+    if (!id) return change({ clip: null });
+    if (id === saved().clip?.clip_id) return change({ clip: saved().clip });
+    const loaded = await load(id);
+    if (loaded) change({ clip: wholeOf(id, loaded.takes, loaded.poses.time) });
+    return undefined;
+  }
+
+  function load(id) {
+    return attempt("Loading the demonstration", async () => {
+      if (!id)
+        return { id: null, takes: [], poses: await api.languages.demonstration(language, gesture) };
+      const [poses, found, timeline] = await Promise.all([
+        api.clips.poses(id),
+        api.clips.takes(id),
+        api.clips.timeline(id),
+      ]);
+      return { id, poses, takes: found, timeline };
+    });
+  }
+
+  function go(to) {
+    if (!source) return;
+    frame = Math.max(0, Math.min(source.poses.time.length - 1, to));
+    scrub.value = String(frame);
+    clockText.textContent = `frame ${frame}, ${moment(source.poses.time[frame])}`;
+    scrub.setAttribute("aria-valuetext", clockText.textContent);
+    picture.draw(frame, span(), chosen);
+  }
+
+  /** Play the demonstration over and over, as fast as the camera saw it. */
+  function play() {
+    if (clock) return pause();
+    const { time } = source.poses;
+    let [first, last] = span();
+    if (frame < first || frame >= last) go(first);
+    const began = performance.now() - 1000 * (time[frame] - time[first]);
+    const step = (now) => {
+      [first, last] = span();
+      const length = time[last] - time[first] || 1;
+      go(nearestFrame(time, time[first] + (((now - began) / 1000) % length)));
+      clock = requestAnimationFrame(step);
+    };
+    clock = requestAnimationFrame(step);
+    return drawPlaying();
+  }
+
+  function pause() {
+    cancelAnimationFrame(clock);
+    clock = 0;
+    drawPlaying();
+  }
+
+  function drawPlaying() {
+    playing.replaceChildren(icon(clock ? "pause" : "play"));
+    playing.setAttribute("aria-label", clock ? "Pause" : "Play the demonstration");
+    playing.title = `${clock ? "Pause" : "Play the demonstration"} (Space)`;
+  }
+
+  function drawChoices() {
+    const ready = state.clips.filter((clip) => clip.status === "done");
+    // The clip of the saved demonstration.
+    const own = gesture ? (saved().clip?.clip_id ?? "") : null;
+    const options = [
+      ...(own === "" ? [["", "As it is saved"]] : []),
+      ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name]),
+    ];
+    clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
+    clips.value = draft().clip?.clip_id ?? "";
+    const several = Boolean(source?.id);
+    /** @type {HTMLElement} */ (takes.parentElement).hidden = !several;
+    if (!several) return;
+    takes.replaceChildren(
+      ...source.takes.map((each, index) =>
+        h(
+          "option",
+          { value: index },
+          `Take ${index + 1}, ${moment(each.start)} to ${moment(each.end)}`,
+        ),
+      ),
+      h("option", { value: BY_HAND }, "Range by hand"),
+    );
+    const taken = takeOf(draft().clip, source.takes);
+    takes.value = taken ? source.takes.indexOf(taken) : BY_HAND;
+  }
+
+  function drawTrim() {
+    trim.hidden = !source?.id;
+    if (trim.hidden) return;
+    const { time } = source.poses;
+    const frames = span();
+    ends.forEach(({ which, handle, number, seconds }, index) => {
+      for (const input of [handle, number])
+        Object.assign(input, { max: time.length - 1, value: frames[index] });
+      handle.setAttribute(
+        "aria-valuetext",
+        `frame ${frames[index]}, ${moment(time[frames[index]])}`,
+      );
+      seconds.textContent = moment(time[frames[index]]);
+      seconds.dataset.end = which;
+    });
+    const share = (index) => (100 * index) / (time.length - 1);
+    const range = /** @type {HTMLElement} */ (strip.querySelector(".range"));
+    range.style.left = `${share(frames[0])}%`;
+    range.style.width = `${share(frames[1]) - share(frames[0])}%`;
+    const own = takeOf(draft().clip, source.takes);
+    transit.disabled = !own;
+    transit.checked = Boolean(own) && !draft().clip.keep_transit;
+    transitText.textContent = own
+      ? `${moment(own.stroke_start - own.start)} before and ${moment(own.end - own.stroke_end)} after the gesture`
+      : "A range chosen by hand is used as it is; choose a take to have the transit found.";
+  }
+
+  const wantedClip = () => draft().clip?.clip_id ?? null;
+
+  /** Show a demonstration: of a clip, or as the language keeps it. */
+  async function open() {
+    const id = wantedClip();
+    if ((source && source.id === id) || opening === id) return;
+    if (clock) pause();
+    opening = id;
+    const none = id === null && (gesture === null || drawn);
+    const loaded = none ? null : await load(id);
+    if (opening !== id) return; // Another one is on its way, or this one is shown already.
+    opening = undefined;
+    if (!loaded || wantedClip() !== id) {
+      element.classList.toggle("bare", !loaded);
+      return;
+    }
+    show(loaded);
+  }
+
+  function show(loaded) {
+    source = loaded;
+    const { id } = source;
+    element.classList.remove("bare");
+    picture.show(source.poses, id);
+    scrub.max = String(source.poses.time.length - 1);
+    strip.querySelector(".filmstrip")?.remove();
+    draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
+    go(span()[0]);
+    const clip = state.clips.find((each) => each.id === id);
+    if (clip && strip.clientWidth)
+      strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
+  }
+
+  function draw(preview) {
+    chosen = chosenIn(preview);
+    drawChoices();
+    note.textContent = draft().clip
+      ? ""
+      : drawn
+        ? "Imported without its demonstration: it cannot be played or trimmed, and its keypoints cannot be changed. Choose a clip that shows the gesture."
+        : "The demonstration as it is saved in the language; its clip is not in this studio. To trim or replace it, choose a clip.";
+    note.hidden = Boolean(draft().clip);
+    drawTrim();
+    if (source) go(frame);
+    return open();
+  }
+  drawPlaying();
+  const element = h(
+    "section",
+    { className: "panel take-panel", "aria-label": "Demonstration" },
+    h(
+      "div",
+      { className: "panel-head" },
+      h("h2", {}, "Demonstration"),
+      h(
+        "span",
+        { className: "choose" },
+        h("label", { className: "visually-hidden", for: "editor-clip" }, "Clip"),
+        clips,
+      ),
+      h(
+        "span",
+        { className: "choose" },
+        h("label", { className: "visually-hidden", for: "editor-take" }, "Take"),
+        takes,
+      ),
+    ),
+    picture.element,
+    played,
+    note,
+    trim,
+  );
+  return {
+    element,
+    draw,
+    play,
+    pause,
+    step: (by) => go(frame + by),
+    setHere: (which) => move(which, frame),
+  };
+}

@@ -1,0 +1,75 @@
+// Requests of a draft: its preview, and saving it as one revision.
+
+import * as api from "../core/api.js";
+import { edit } from "../languages/revision-edit.js";
+import { read } from "../languages/robot-command.js";
+
+const SWITCHES = ["direction", "tempo", "mirror"];
+
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+
+/** Whether a draft shows the gesture by another demonstration than the one that is saved. */
+const isAnew = (gesture, { clip }, saved) =>
+  Boolean(clip) && (gesture === null || !same(clip, saved.clip));
+
+/** What of a draft changes what is recognised. */
+function content({ clip, salient, ...values }, anew) {
+  return {
+    ...(anew ? { demonstration: clip } : {}),
+    ...(salient ? { salient } : {}),
+    ...Object.fromEntries(SWITCHES.map((name) => [name, values[name]])),
+  };
+}
+
+/** What is asked of the preview. A drawing without its demonstration keeps its keypoints. */
+export const requestOf = (gesture, values, saved, fixed = false) => ({
+  label: gesture,
+  change: content(fixed ? { ...values, salient: null } : values, isAnew(gesture, values, saved)),
+});
+
+/** Only what was changed: the rest may meanwhile be another's. */
+function changeOf(gesture, values, saved) {
+  const change = {};
+  const anew = isAnew(gesture, values, saved);
+  for (const name of ["label", "description"])
+    if (values[name].trim() !== saved[name]) change[name] = values[name].trim();
+  if (values.command !== saved.command) change.command = read(values.command).command;
+  for (const name of SWITCHES) if (values[name] !== saved[name]) change[name] = values[name];
+  if (anew) change.demonstration = values.clip;
+  if (values.salient && (anew || !same(values.salient, saved.salient)))
+    change.salient = values.salient;
+  return change;
+}
+
+/** Save a draft as one revision of the language, which can be taken back. */
+export function save(language, gesture, values, saved) {
+  if (gesture === null) {
+    const { clip, label, description, command, ...rest } = values;
+    const body = {
+      ...rest,
+      ...clip,
+      label: label.trim(),
+      description: description.trim(),
+      command: read(command).command,
+    };
+    return edit(
+      "Saving the gesture",
+      `New gesture ${body.label}`,
+      (base) => api.languages.addGesture(base, body),
+      { from: language },
+    );
+  }
+  const change = changeOf(gesture, values, saved);
+  const mine = {
+    ...language,
+    gestures: language.gestures.map((each) =>
+      each.label === gesture ? { ...each, ...change } : each,
+    ),
+  };
+  return edit(
+    "Changing the gesture",
+    `Change of ${gesture}`,
+    (base) => api.languages.changeGesture(base, gesture, change),
+    { from: language, mine },
+  );
+}

@@ -1,0 +1,365 @@
+// The editor of a gesture. Only "Save" changes the language; until then there is a draft.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { ago } from "../core/format.js";
+import { bind } from "../core/keys.js";
+import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { go, guard } from "../core/views.js";
+import { choose, reloadLanguages } from "../languages/language-store.js";
+import { written } from "../languages/robot-command.js";
+import { take } from "./demonstration-panel.js";
+import { requestOf, save } from "./draft-saving.js";
+import {
+  begin,
+  canRedo,
+  canUndo,
+  change,
+  discard,
+  draft,
+  forget,
+  isChanged,
+  isKept,
+  placeOf,
+  redo,
+  saved,
+  undo,
+} from "./gesture-draft.js";
+import { switches, textProblem, texts } from "./gesture-form.js";
+import { mayLeave } from "./leave-dialog.js";
+import { previewing } from "./preview-requests.js";
+import { health, image } from "./preview-results.js";
+import { keypoints, toggle } from "./salient-keypoints.js";
+
+/** @import { SelectedRange } from "../core/types.d.ts" */
+
+const GROUP = "Editing a gesture";
+
+let editor = null; // the one on display
+
+/** The gesture to edit: one of the language, or a new one from the selected range. */
+function subject() {
+  const { gestures, gesture, clip, clips, loaded } = state;
+  if (!gestures || gestures.id !== state.language || !loaded) return null;
+  if (gesture) return { language: gestures, gesture, key: `${gestures.id} ${gesture}` };
+  if (
+    !clip ||
+    !clips.some((each) => each.id === clip && each.status === "done") ||
+    !state.takes ||
+    !state.timeline
+  )
+    return null;
+  return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
+}
+
+/** Whether the clip of a demonstration can be shown. */
+const isThere = (where) =>
+  Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
+
+function valuesOf({ language, gesture }) {
+  if (gesture === null) {
+    const { start, end } = /** @type {SelectedRange} */ (selectedRange());
+    return {
+      label: "",
+      description: "",
+      command: "",
+      salient: null,
+      direction: "auto",
+      tempo: "auto",
+      mirror: "auto",
+      clip: { clip_id: state.clip, start, end, keep_transit: false },
+    };
+  }
+  const { label, description, command, salient, direction, tempo, mirror, source } =
+    language.gestures.find((each) => each.label === gesture);
+  return {
+    label,
+    description,
+    command: written(command),
+    salient: [...salient].sort(),
+    direction,
+    tempo,
+    mirror,
+    clip: isThere(source) ? source : null,
+  };
+}
+
+function build(section, about) {
+  const { language, gesture } = about;
+  const others = () =>
+    currentLanguage()
+      .gestures.map((each) => each.label)
+      .filter((label) => label !== gesture);
+  const drawn =
+    gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
+  let preview = null;
+  let estimate = null;
+  let before = null; // the estimate of what is saved
+  const pick = (landmark) => {
+    if (!toggle(landmark, preview))
+      toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
+  };
+  const parts = {
+    take: take({ language: language.id, gesture, drawn, pick }),
+    image: image(),
+    keypoints: keypoints(() => preview),
+    health: health(language.name),
+    texts: texts(others),
+    switches: switches(),
+  };
+  const button = (text, title, run, className = "") =>
+    h("button", { type: "button", className, title, onclick: run }, text);
+  const undoing = button("Undo", "Undo (Ctrl+Z)", undo);
+  const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
+  const saving = h(
+    "button",
+    { type: "submit", className: "primary" },
+    gesture === null ? "Save gesture" : "Save",
+  );
+  const status = h("span", { className: "draft-state dim", role: "status" });
+  const restored = h("p", { className: "restored", role: "status", hidden: true });
+  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
+
+  const ask = previewing({
+    shown: (found, estimated) => {
+      preview = found;
+      estimate = estimated;
+      if (estimated && !isChanged() && gesture !== null) before = estimated;
+      draw();
+    },
+    failed: (error) => complain(error, "The preview"),
+  });
+
+  function draw() {
+    parts.texts.draw();
+    parts.switches.draw(estimate);
+    parts.keypoints.draw(preview);
+    parts.take.draw(preview);
+    parts.image.draw(preview);
+    parts.health.draw(estimate, before, preview?.problem);
+    undoing.disabled = !canUndo();
+    redoing.disabled = !canRedo();
+    status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
+    restored.hidden = restored.hidden || !isChanged();
+    saving.disabled = gesture !== null && !isChanged();
+  }
+
+  function changed() {
+    problem.hidden = true;
+    draw();
+    ask(language.id, requestOf(gesture, draft(), saved(), drawn && !draft().clip));
+  }
+
+  function abandon() {
+    forget();
+    close();
+    go(null, { gesture: null });
+  }
+
+  async function submit(event) {
+    event.preventDefault();
+    const fault = textProblem(draft(), others());
+    if (fault) return showProblem(fault.text, document.getElementById(fault.id));
+    saving.disabled = true;
+    try {
+      const label = draft().label.trim();
+      const now = await save(about.language, gesture, draft(), saved());
+      abandon();
+      showDone("Gesture saved", `${label}, in ${now.name}`);
+    } catch (error) {
+      if (error.code !== "cancelled") showProblem(error.message);
+      else abandon(); // Somebody else's change was preferred to this one.
+    } finally {
+      saving.disabled = false;
+    }
+    return undefined;
+  }
+
+  function showProblem(text, input) {
+    problem.textContent = text;
+    problem.hidden = false;
+    input?.focus();
+  }
+
+  const form = h(
+    "form",
+    { className: "editor-page", noValidate: true, onsubmit: submit },
+    h(
+      "div",
+      { className: "page-head" },
+      h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`),
+      h("span", { className: "dim in-language" }, `in ${language.name}`),
+      status,
+      h("span", { className: "spacer" }),
+      h(
+        "div",
+        { className: "editor-actions" },
+        undoing,
+        redoing,
+        button("Cancel", "Back without saving", leave),
+        saving,
+      ),
+    ),
+    restored,
+    problem,
+    h(
+      "div",
+      { className: "editor-grid" },
+      h("div", { className: "column" }, parts.take.element, parts.keypoints.element),
+      h("div", { className: "column" }, parts.image.element, parts.health.element),
+      h("div", { className: "column" }, parts.texts.element, parts.switches.element),
+    ),
+  );
+  const kept = begin(
+    placeOf(language.id, gesture ?? `new ${state.clip}`),
+    valuesOf(about),
+    changed,
+  );
+  // The clip of a kept draft may have been deleted.
+  if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip });
+  if (kept !== null) {
+    restored.replaceChildren(
+      `A draft that was not saved, last changed ${ago(kept)}, is restored.`,
+      button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard),
+    );
+    restored.hidden = false;
+  }
+  section.replaceChildren(form);
+  editor = { about, take: parts.take, changed };
+  changed();
+  if (gesture === null) parts.texts.focus();
+}
+
+function close() {
+  editor?.take.pause();
+  editor = null;
+}
+
+/** After leaving by the browser's Back: show that the draft is kept. */
+function left() {
+  const { gesture, language } = editor?.about ?? {};
+  const kept = editor && isKept();
+  close();
+  if (!kept) return;
+  const away = state.view !== "gesture" || state.language !== language.id;
+  const goOn = async () => {
+    if (state.language !== language.id) await choose(language.id);
+    await go("gesture", { gesture });
+  };
+  toast("The draft is kept", `${gesture ?? "The new gesture"} is not saved yet.`, {
+    action: away ? { label: "Go on editing", run: goOn } : null,
+  });
+}
+
+/** Leave the editor after its language was deleted elsewhere. */
+function bereft() {
+  const {
+    gesture,
+    language: { id, name },
+  } = editor.about;
+  const kept = isKept();
+  close();
+  go(null, { gesture: null });
+  const restore = async () => {
+    await attempt("Bringing the language back", () => api.languages.restore(id));
+    await reloadLanguages();
+    await choose(id);
+    await go("gesture", { gesture });
+  };
+  toast(
+    `\u201c${name}\u201d was deleted elsewhere`,
+    kept ? "The draft is kept, and comes back with the language." : "",
+    { kind: "error", action: { label: "Bring it back", run: restore } },
+  );
+}
+
+const leave = () => go(null, { gesture: null });
+
+function explain(section) {
+  const { gestures, gesture } = state;
+  const missing = gestures && gesture && !gestures.gestures.some((each) => each.label === gesture);
+  section.replaceChildren(
+    h(
+      "div",
+      { className: "editor-empty" },
+      h("h1", {}, missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"),
+      h(
+        "p",
+        { className: "dim" },
+        missing
+          ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.`
+          : "Choose a gesture of the language, or a take of a clip to make one of.",
+      ),
+      h("button", { type: "button", className: "primary", onclick: leave }, "Back to the studio"),
+    ),
+  );
+}
+
+/** Whether the language has the gesture that is edited. */
+const isKnown = ({ language, gesture }) =>
+  gesture === null || language.gestures.some((each) => each.label === gesture);
+
+/** Whether all is loaded, and nothing of it can be edited. */
+const nothingComes = () =>
+  state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip);
+
+/** Build the view, and build it anew when something else is edited. */
+export function open(section) {
+  follow(
+    [
+      "view",
+      "gesture",
+      "gestures",
+      "languages",
+      "language",
+      "clip",
+      "clips",
+      "takes",
+      "timeline",
+      "loaded",
+    ],
+    () => {
+      if (state.view !== "gesture") return left();
+      if (editor && !state.languages.some(({ id }) => id === editor.about.language.id))
+        return bereft();
+      const about = subject();
+      if (!about || !isKnown(about)) {
+        left();
+        if (nothingComes()) explain(section);
+        return undefined;
+      }
+      if (editor?.about.key === about.key) return adopt(about);
+      left();
+      return build(section, about);
+    },
+  );
+  // What could not be asked while the server was away is asked now.
+  follow(["returns"], () => editor?.changed());
+  guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
+}
+
+const when = () => state.view === "gesture" && editor !== null;
+const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
+keys(["Ctrl+Z"], "Undo in the draft", undo);
+keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
+keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
+for (const [key, by, text] of [
+  [",", -1, "One frame back"],
+  [".", 1, "One frame on"],
+  ["Shift+,", -10, "Ten frames back"],
+  ["Shift+.", 10, "Ten frames on"],
+])
+  keys([key], text, () => editor.take.step(by));
+keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
+keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
+
+/** The language has another revision: where this gesture stayed as it was, that one is changed. */
+function adopt(about) {
+  const now = about.language.gestures.find((each) => each.label === about.gesture);
+  const then = editor.about.language.gestures.find((each) => each.label === about.gesture);
+  const content = (gesture) =>
+    gesture && JSON.stringify({ ...gesture, thumbnail: null, source: null });
+  if (content(now) === content(then)) editor.about.language = about.language;
+}

@@ -1,0 +1,169 @@
+// The form of a gesture: its texts, and the switches of its invariances.
+
+import { h } from "../core/dom.js";
+import { read } from "../languages/robot-command.js";
+import { change, draft, rest } from "./gesture-draft.js";
+
+const MOST = { label: 80, description: 2000, command: 4000 };
+
+const SWITCHES = [
+  {
+    name: "direction",
+    title: "Direction",
+    words: {
+      auto: "Used where the language needs it",
+      on: "Only in the demonstrated direction",
+      off: "In either direction",
+    },
+  },
+  {
+    name: "tempo",
+    title: "Tempo",
+    words: {
+      auto: "Used where the language needs it",
+      on: "Only at the demonstrated duration",
+      off: "At any speed",
+    },
+  },
+  {
+    name: "mirror",
+    title: "Mirror",
+    words: {
+      auto: "Only by the demonstrated hand",
+      on: "Also mirrored, by the other hand",
+      off: "Never mirrored, and sides are never exchanged",
+    },
+  },
+];
+
+function field(name, label, input, hint = "") {
+  const note = h("p", { className: "dim", id: `editor-${name}-note` }, hint);
+  input.id = `editor-${name}`;
+  input.maxLength = MOST[name];
+  input.setAttribute("aria-describedby", note.id);
+  input.oninput = () => change({ [name]: input.value }, name);
+  input.onblur = rest;
+  return {
+    input,
+    note,
+    row: h("div", { className: "field" }, h("label", { for: input.id }, label), input, note),
+  };
+}
+
+/** Build the text fields; `draw` writes the draft into them and shows what is invalid. */
+export function texts(taken) {
+  const label = field(
+    "label",
+    "Label",
+    h("input", { type: "text", autocomplete: "off", required: true }),
+  );
+  const description = field(
+    "description",
+    "Description",
+    h("textarea", { rows: 2 }),
+    "What it looks like or means, for people.",
+  );
+  const command = field("command", "Command", h("textarea", { rows: 3, spellcheck: false }));
+  const fields = { label, description, command };
+
+  function annotate({ input, note }, problem, text) {
+    note.textContent = problem ?? text;
+    note.className = problem ? "field-problem" : "dim";
+    input.setAttribute("aria-invalid", String(Boolean(problem)));
+  }
+
+  function draw() {
+    const values = draft();
+    for (const [name, { input }] of Object.entries(fields))
+      if (input.value !== values[name]) input.value = values[name];
+    annotate(
+      label,
+      labelProblem(values.label, taken()),
+      "The name that the recogniser returns: circle, ascend, follow me.",
+    );
+    const { problem, kind } = read(values.command);
+    annotate(command, problem, `${kind}. Words, or a JSON object for the robot.`);
+  }
+  return {
+    element: h(
+      "section",
+      { className: "panel words", "aria-label": "Texts" },
+      h("h2", {}, "Texts"),
+      label.row,
+      description.row,
+      command.row,
+    ),
+    draw,
+    focus: () => label.input.focus({ preventScroll: true }),
+  };
+}
+
+function labelProblem(label, taken) {
+  const trimmed = label.trim();
+  return taken.includes(trimmed)
+    ? `There is a gesture \u201c${trimmed}\u201d already; choose another label.`
+    : null;
+}
+
+/** The first invalid text and its field; null when all are valid. */
+export function textProblem(values, taken) {
+  if (!values.label.trim()) return { id: "editor-label", text: "Label is empty; type one." };
+  const label = labelProblem(values.label, taken);
+  if (label) return { id: "editor-label", text: label };
+  const { problem } = read(values.command);
+  return problem ? { id: "editor-command", text: problem } : null;
+}
+
+function choice({ name, title, words }) {
+  const id = `switch-${name}`;
+  const inputs = ["auto", "on", "off"].map((position) =>
+    h("input", {
+      type: "radio",
+      name: id,
+      value: position,
+      id: `${id}-${position}`,
+      onchange: () => change({ [name]: position }),
+    }),
+  );
+  const options = inputs.flatMap((input) => [
+    input,
+    h(
+      "label",
+      { for: input.id, title: words[input.value] },
+      input.value[0].toUpperCase() + input.value.slice(1),
+    ),
+  ]);
+  const meaning = h("p", { className: "dim" });
+  const outcome = h("p", { className: "comes-to" });
+  const element = h(
+    "fieldset",
+    { className: "switch" },
+    h("legend", {}, title),
+    h("div", { className: "segments" }, options),
+    meaning,
+    outcome,
+  );
+  function draw(found) {
+    const position = draft()[name];
+    for (const input of inputs) input.checked = input.value === position;
+    meaning.textContent = `${words[position]}.`;
+    const settled = found?.switches[name];
+    outcome.hidden = !settled || settled.position !== position || position !== "auto";
+    outcome.textContent = settled ? `Here: ${settled.words}.` : "";
+  }
+  return { element, draw };
+}
+
+/** Build the switches; `draw(estimate)` also shows what the automatic ones resolve to. */
+export function switches() {
+  const choices = SWITCHES.map(choice);
+  return {
+    element: h(
+      "section",
+      { className: "panel switches", "aria-label": "Invariances" },
+      h("h2", {}, "Invariances"),
+      choices.map((each) => each.element),
+    ),
+    draw: (found) => choices.forEach((each) => each.draw(found)),
+  };
+}

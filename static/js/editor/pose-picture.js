@@ -1,0 +1,138 @@
+// The picture of one frame: the video under the skeleton; a click on a landmark selects it.
+
+import * as api from "../core/api.js";
+import { h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { firstMoment, insideFrame } from "../core/frame-times.js";
+import { drawPose, skeleton } from "../core/skeleton.js";
+
+const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side; touchable at 390 px.
+
+/** Build the picture; `onPick(landmark)` is called when one is clicked. */
+export function figure(onPick) {
+  const video = h("video", { muted: true, playsInline: true, preload: "auto", tabIndex: -1 });
+  video.setAttribute("aria-hidden", "true");
+  const over = h("div", { className: "figure-over" });
+  const element = h("div", { className: "figure" }, video, over);
+  let poses = null;
+  let parts = null;
+  let wanted = null; // the moment of the clip to seek to as soon as the last seek is done
+  let start = null; // of the clip by the video's clock, as soon as that is known
+
+  const seek = () => {
+    if (wanted === null || start === null || video.seeking) return;
+    video.currentTime = start + wanted;
+    wanted = null;
+  };
+  video.onseeked = seek;
+
+  async function load(source) {
+    start = null;
+    video.src = source;
+    const found = await firstMoment(video);
+    if (video.getAttribute("src") !== source) return; // Another clip is shown by now.
+    start = found;
+    seek();
+  }
+
+  function show(next, clip) {
+    poses = next;
+    const [width, height] = poses.frame_size;
+    const radius = Math.max(width, height) * DOT;
+    const body = skeleton(width, height);
+    const trails = svg("g", { class: "trails" });
+    const dots = svg("g", { class: "dots" });
+    const circles = poses.landmarks.map((landmark) => {
+      const circle = svg("circle", { r: radius, "data-landmark": landmark }, svg("title"));
+      circle.onclick = () => onPick(landmark);
+      dots.append(circle);
+      return circle;
+    });
+    body.append(trails, dots);
+    element.style.setProperty("aspect-ratio", `${width} / ${height}`);
+    over.replaceChildren(body);
+    parts = { body, trails, circles };
+    video.hidden = !clip;
+    if (clip) load(api.clips.video(clip));
+    else video.removeAttribute("src");
+  }
+
+  /**
+   * Every landmark where `drawPose` of the page's skeleton expects it, as shares of the picture.
+   */
+  function poseAt(frame) {
+    const [width, height] = poses.frame_size;
+    const at = new Map(poses.landmarks.map((name, index) => [name, poses.xy[frame][index]]));
+    return LANDMARKS.map((name) => {
+      const [x, y] = at.get(name) ?? [null, null];
+      return x === null ? null : [x / width, y / height];
+    });
+  }
+
+  function draw(frame, [first, last], chosen) {
+    if (!poses) return;
+    drawPose(parts.body, poseAt(frame));
+    parts.circles.forEach((circle, index) => {
+      const [x, y] = poses.xy[frame][index];
+      const name = poses.landmarks[index];
+      circle.toggleAttribute("hidden", x === null);
+      if (x === null) return;
+      circle.setAttribute("cx", x);
+      circle.setAttribute("cy", y);
+      circle.classList.toggle("on", chosen.includes(name));
+      circle.firstChild.textContent = `${readable(name)}: ${chosen.includes(name) ? "followed; click to leave it out" : "click to follow it"}`;
+    });
+    parts.trails.replaceChildren(
+      ...chosen.map((name) =>
+        svg("path", { d: trail(poses.landmarks.indexOf(name), first, last) }),
+      ),
+    );
+    if (!video.hidden) {
+      wanted = insideFrame(poses.time, frame);
+      seek();
+    }
+  }
+
+  function trail(index, first, last) {
+    if (index < 0) return "";
+    let down = false;
+    return poses.xy
+      .slice(first, last + 1)
+      .map((points) => {
+        const [x, y] = points[index];
+        const command = x === null ? "" : `${down ? "L" : "M"}${x} ${y}`;
+        down = x !== null;
+        return command;
+      })
+      .join("");
+  }
+  return { element, show, draw };
+}
+
+/** The landmarks in the order of `BONES`: `POSE_LANDMARKS` in poses/landmarks.py of the core. */
+const LANDMARKS = [
+  "nose",
+  "left_eye_inner",
+  "left_eye",
+  "left_eye_outer",
+  "right_eye_inner",
+  "right_eye",
+  "right_eye_outer",
+  "left_ear",
+  "right_ear",
+  "mouth_left",
+  "mouth_right",
+  ...[
+    "shoulder",
+    "elbow",
+    "wrist",
+    "pinky",
+    "index",
+    "thumb",
+    "hip",
+    "knee",
+    "ankle",
+    "heel",
+    "foot_index",
+  ].flatMap((part) => [`left_${part}`, `right_${part}`]),
+];

@@ -1,0 +1,34 @@
+// Asking the server what the draft would be: shortly after the last change, the newest answer wins.
+
+import * as api from "../core/api.js";
+
+const SETTLED = 120; // ms without a change: dragging a slider makes many.
+
+/**
+ * Return `ask(request)`; `shown(preview, null)` is called with what the gesture would be, then
+ * `shown(preview, estimate)` with its estimated rates, `failed(error)` instead of them.
+ */
+export function previewing({ shown, failed }) {
+  let timer = 0;
+  let newest = "";
+  return (language, body) => {
+    const asked = JSON.stringify([language, body]);
+    if (asked === newest) return;
+    newest = asked;
+    clearTimeout(timer);
+    timer = setTimeout(async () => {
+      try {
+        const preview = await api.languages.preview(language, body);
+        if (asked !== newest) return;
+        shown(preview, null);
+        if (preview.problem) return;
+        const estimate = await api.languages.previewHealth(language, body);
+        if (asked === newest) shown(preview, estimate);
+      } catch (error) {
+        if (asked !== newest) return;
+        newest = ""; // The same again may succeed.
+        failed(error);
+      }
+    }, SETTLED);
+  };
+}

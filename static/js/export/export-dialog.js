@@ -1,0 +1,186 @@
+// The dialog that exports a language: its formats, its contents, and the command to use it.
+
+import * as api from "../core/api.js";
+import { copy } from "../core/clipboard.js";
+import { byId, h } from "../core/dom.js";
+import { bytes, plural, readable } from "../core/format.js";
+import { state } from "../core/state.js";
+import { attempt, toast } from "../core/toasts.js";
+import { tuningWords } from "../languages/language-tuning.js";
+
+/** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
+
+/** @type {Record<string, { title: string, text: string, suffix?: string, command: (file: string) => string }>} */
+const FORMATS = {
+  "osg-studio": {
+    title: "OSG Studio language",
+    text: "For osg-studio, here or on a robot. Importing it again gives the same language.",
+    command: (file) => `osg-studio robot --language ${file} --source 0`,
+  },
+  "osg-reference": {
+    title: "Published OSG format",
+    text: "For the published ROS node: images and salient keypoints only. Movement, thresholds, tuning and commands are left out.",
+    command: (file) => `osg-studio convert ${file} language.json`,
+  },
+  proteus: {
+    title: "PROTEUS language definition",
+    text: "The gestures as input symbols, for a robot that answers by PROTEUS: names and kinds only.",
+    suffix: ".ldf",
+    command: (file) => `osg-studio convert language.json ${file}`,
+  },
+};
+
+/** @param {string[]} names */
+const listed = (names) => names.map(readable).join(", ");
+
+/**
+ * A name that a shell takes without quotes.
+ *
+ * @param {string} name
+ * @param {{ suffix?: string }} format
+ */
+const fileName = (name, { suffix = ".json" }) =>
+  `${
+    name
+      .normalize("NFKD")
+      .replace(/\p{Mark}/gu, "")
+      .replace(/[^\w.-]+/g, "-")
+      .replace(/^-+|-+$/g, "") || "language"
+  }${suffix}`;
+
+/**
+ * @param {ExportedFile} file
+ * @param {boolean} chosen
+ * @param {(event: Event) => void} onchange
+ */
+function choice({ format, bytes: size }, chosen, onchange) {
+  const { title, text } = FORMATS[format];
+  return h(
+    "label",
+    { className: "export-choice" },
+    h("input", { type: "radio", name: "format", value: format, checked: chosen, onchange }),
+    h("span", {}, h("b", {}, title), h("span", { className: "dim" }, text)),
+    h("small", { className: "dim num" }, bytes(size)),
+  );
+}
+
+/**
+ * @param {string} term
+ * @param {string} value
+ * @param {string} [note]
+ */
+const row = (term, value, note) =>
+  value.length
+    ? [h("dt", {}, term), h("dd", {}, value, note ? h("small", { className: "dim" }, note) : null)]
+    : [];
+
+/**
+ * @param {ExportContents} contents
+ * @param {Language} language
+ */
+function facts(contents, language) {
+  return h(
+    "dl",
+    { className: "export-facts" },
+    row("Keypoints", listed(contents.salient), "keypoints that must be seen for recognition"),
+    row("Better with", listed(contents.limbs)),
+    row("Torso", listed(contents.torso), "takes out distance and drift"),
+    row(
+      "Models",
+      contents.models.join(", "),
+      "osg-studio models export DIR copies them for a robot without a network",
+    ),
+    row("Recognised", tuningWords(language), "as kept after a trial; the robot does the same"),
+    row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
+    row(
+      "Without command",
+      contents.without_command.join(", "),
+      "the robot receives the label only",
+    ),
+  );
+}
+
+/** @param {() => string} text */
+function commandLine(text) {
+  const button = h(
+    "button",
+    { type: "button", onclick: () => copy(text(), "Command copied") },
+    "Copy",
+  );
+  return { button, code: h("code", { id: "export-command" }, text()) };
+}
+
+/** Show the contents of the export. */
+export async function openExport() {
+  const language = state.gestures;
+  if (!language?.gestures.length) {
+    toast("Nothing to export", "The language has no gestures yet. Save one from a take first.", {
+      kind: "error",
+    });
+    return;
+  }
+  const contents = await attempt("Looking at the export", () =>
+    api.languages.exportContents(language.id),
+  );
+  if (!contents) return;
+  const dialog = byId("dialog");
+  let format = contents.files[0].format;
+  const name = () => fileName(contents.name, FORMATS[format]);
+  const command = () => FORMATS[format].command(name());
+  const { button, code } = commandLine(command);
+  const download = h("a", { className: "button primary" }, "Download");
+  const show = () => {
+    download.download = name();
+    download.href = api.languages.exportUrl(language.id, format);
+    code.textContent = command();
+  };
+  /** @param {any} event */
+  const choose = (event) => {
+    format = event.target.value;
+    show();
+  };
+  show();
+  download.onclick = () => dialog.close();
+  dialog.replaceChildren(
+    h(
+      "div",
+      { className: "export-dialog" },
+      h("h2", { id: "dialog-title" }, "Export"),
+      h(
+        "p",
+        { className: "dim" },
+        `${contents.name}, revision ${contents.revision}, ${plural(language.gestures.length, "gesture")}`,
+      ),
+      h(
+        "div",
+        { role: "radiogroup", "aria-label": "Format", className: "export-choices" },
+        contents.files.map((file, index) => choice(file, index === 0, choose)),
+      ),
+      facts(contents, language),
+      h("div", { className: "export-command" }, code, button),
+      h(
+        "div",
+        { className: "dialog-actions" },
+        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
+        download,
+      ),
+    ),
+  );
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+}
+
+/** Bind the button in the header. */
+export function bindExport() {
+  byId("export").onclick = openExport;
+}
+
+/**
+ * Enable the button for a language with gestures.
+ *
+ * @param {State} state
+ */
+export function drawExportButton({ gestures }) {
+  byId("export").disabled = !gestures?.gestures.length;
+}

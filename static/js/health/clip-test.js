@@ -1,0 +1,154 @@
+// The test with labelled clips; its results are the recognitions that the server stores.
+//
+// A take is in the test as long as its newest recognition has an expected label. So the test is the
+// same for everybody, survives reloads, and is repeated whenever the language has changed.
+
+import { labelInName } from "../clips/clip-label.js";
+import { BUSY } from "../clips/clip-store.js";
+import * as api from "../core/api.js";
+import { state, update } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { addFiles } from "../upload/upload-list.js";
+
+const KEY = "osg-studio.batch"; // sessionStorage: clips that wait for their poses.
+
+const stored = () => {
+  try {
+    return JSON.parse(sessionStorage.getItem(KEY) ?? "null") ?? [];
+  } catch {
+    return [];
+  }
+};
+
+update({ pending: stored() });
+
+function setPending(pending) {
+  update({ pending });
+  sessionStorage.setItem(KEY, JSON.stringify(pending));
+}
+
+/** Load what was recognised in the language on display. */
+export async function loadTested() {
+  const { language } = state;
+  const recognitions = language
+    ? await attempt("Loading the test", () => api.recognitions.list(language))
+    : [];
+  if (recognitions && state.language === language) update({ tested: recognitions });
+}
+
+/** Recognise every take of a clip as `expected`; `ranges` when not all of it. */
+/** @type {(clip: string, expected: string | null, ranges?: { start: number, end: number }[] | null) => Promise<void>} */
+async function recognise(clip, expected, ranges = null) {
+  const takes = ranges ?? (await api.clips.takes(clip));
+  const asked = takes.length > 1 || ranges ? takes.map(({ start, end }) => ({ start, end })) : [{}];
+  for (const range of asked)
+    await api.recognitions.create({
+      clip_id: clip,
+      language_id: state.language,
+      expected,
+      ...range,
+    });
+}
+
+/** Take clips into the test, each with the label that its name begins with. */
+export function addTestClips(files) {
+  addFiles(files, (id) =>
+    setPending([...state.pending, { clip: id, language: state.language, expected: null }]),
+  );
+}
+
+/** The expected label of a pending clip: as chosen, or as its name suggests. */
+export const meantBy = ({ clip, expected }) =>
+  expected ??
+  labelInName(state.clips.find(({ id }) => id === clip)?.name ?? "", state.gestures?.labels ?? []);
+
+/** Set the expected label of a pending clip. */
+export const means = (clip, expected) =>
+  setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
+
+/** A clip that was waiting is recognised, or is no part of the test any more. */
+const forget = (clip) => setPending(state.pending.filter((each) => each.clip !== clip));
+
+const leftOut = (name, run) =>
+  toast("Left out of the test", `${name} stays among the clips.`, {
+    action: { label: "Undo", run },
+  });
+
+/** Leave a clip out of the test that was not recognised yet. */
+export function leaveWaiting({ id, name }) {
+  const kept = state.pending.find(({ clip }) => clip === id);
+  forget(id);
+  leftOut(name, () => setPending([...state.pending, kept]));
+}
+
+/** Leave a take out of the test; `name` is what it is called. */
+export async function leaveOut(take, name) {
+  await correct(take, null);
+  leftOut(name, () => correct(take, take.expected));
+}
+
+let working = false;
+
+/** Recognise the clips whose poses are there and whose meaning is known, one after the other. */
+export async function workOff() {
+  if (working) return;
+  working = true;
+  for (let each = ready(); each; each = ready()) {
+    const { clip } = each;
+    const expected = meantBy(each);
+    try {
+      await recognise(clip, expected);
+    } catch (error) {
+      if (api.isAway(error)) break; // It is kept for when the server is back.
+      complain(error, `Recognising ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
+    }
+    forget(clip);
+    await loadTested();
+  }
+  working = false;
+}
+
+function ready() {
+  if (!state.gestures?.gestures.length) return null;
+  const done = new Set(state.clips.filter(({ status }) => status === "done").map(({ id }) => id));
+  return state.pending.find(
+    (each) => each.language === state.language && done.has(each.clip) && meantBy(each),
+  );
+}
+
+/**
+ * Clips of the test that are not recognised yet, as `{ clip, expected, busy }` with the clip
+ * itself.
+ */
+export function waitingClips() {
+  return state.pending
+    .filter(({ language }) => language === state.language)
+    .map((each) => {
+      const clip = state.clips.find(({ id }) => id === each.clip);
+      return clip && { clip, expected: meantBy(each), busy: BUSY.has(clip.status) };
+    })
+    .filter((each) => each !== undefined);
+}
+
+/** Set the expected label of a take; null removes it from the test. */
+export async function correct({ clip_id: clip, start, end }, expected) {
+  await attempt("Recognising", () => recognise(clip, expected, [{ start, end }]));
+  await loadTested();
+}
+
+/**
+ * Recognise all takes again, by the language as it is now; `advance(done)` is called before each.
+ */
+export async function repeat(takes, advance) {
+  for (const [done, { clip_id: clip, start, end, expected }] of takes.entries()) {
+    advance(done);
+    if (
+      !(await attempt("Recognising", async () => {
+        await recognise(clip, expected, [{ start, end }]);
+        return true;
+      }))
+    )
+      break;
+  }
+  await loadTested();
+}

@@ -1,0 +1,42 @@
+// Links of a finding: to the editor of a gesture, or to two gestures side by side.
+
+import { h } from "../core/dom.js";
+import { state, update } from "../core/state.js";
+import { address, go, here, knows } from "../core/views.js";
+
+/** Two labels as the address names them; a comma in a label is not the one between them. */
+export const pairName = (one, other) => [one, other].map(encodeURIComponent).join(",");
+
+/**
+ * The two labels that `name` names, if there are two.
+ *
+ * @param {string | null} name
+ * @returns {[string, string] | null}
+ */
+export function pairOf(name) {
+  const labels = (name ?? "").split(",");
+  if (labels.length !== 2) return null;
+  try {
+    return [decodeURIComponent(labels[0]), decodeURIComponent(labels[1])];
+  } catch {
+    return null;
+  }
+}
+
+/** Show two gestures side by side. */
+export const compare = (one, other) => update({ pair: pairName(one, other) });
+
+/** A link to the editor of a gesture; null where the language has no such gesture. */
+export function editLink(label, text = `Edit ${label}`) {
+  if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
+  return h(
+    "a",
+    {
+      className: "button",
+      title: text,
+      href: address("gesture", { gesture: label }),
+      onclick: here(() => go("gesture", { gesture: label })),
+    },
+    text,
+  );
+}

@@ -1,0 +1,126 @@
+// What was found, the worst first, each with what would help and where to do it.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { go } from "../core/views.js";
+import { edit } from "../languages/revision-edit.js";
+import { compare, editLink } from "./finding-links.js";
+import { rateText } from "./rates.js";
+
+/** @import { Finding } from "../core/types.d.ts" */
+
+const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
+const SWITCHES = new Set(["direction", "tempo"]); // Remedies that need no new demonstration.
+
+/** Let a switch of some gestures count; one undo takes it back. */
+async function switchOn(kind, gestures, text, button) {
+  const change = async (base) => {
+    let language = base;
+    for (const label of gestures)
+      language = await api.languages.changeGesture(language, label, { [kind]: "on" });
+    return language;
+  };
+  button.disabled = true;
+  try {
+    await edit("Applying the remedy", `Remedy: ${text}`, change);
+    showDone("Remedy applied", text);
+  } catch (error) {
+    complain(error, "Applying the remedy");
+    button.disabled = false;
+  }
+}
+
+function apply(kind, gestures, text) {
+  const button = h("button", { type: "button", "aria-label": `Apply: ${text}` }, "Apply");
+  button.onclick = () => switchOn(kind, gestures, text, button);
+  return button;
+}
+
+function remedy({ kind, gesture, text, before, after }, gestures) {
+  return h(
+    "li",
+    { className: "remedy" },
+    h("span", { className: "remedy-text" }, text),
+    h(
+      "span",
+      { className: "effect num", title: `${rateText(before)} without, ${rateText(after)} with it` },
+      h("span", { className: "visually-hidden" }, "confused in "),
+      h("span", {}, rateText(before)),
+      h("span", { "aria-label": "then" }, "\u2192"),
+      h("b", {}, rateText(after)),
+    ),
+    SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture),
+  );
+}
+
+function warning({ code, gestures, message, below_bar: below, remedies }) {
+  const mended = new Set(
+    remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture),
+  );
+  return h(
+    "li",
+    { className: `finding ${below ? "below" : "note"}` },
+    h("span", { className: "mark", "aria-hidden": "true" }, below ? "!" : "i"),
+    h(
+      "div",
+      { className: "finding-text" },
+      h("p", {}, h("b", {}, below ? "Warning: " : "Note: "), message),
+      remedies.length
+        ? h(
+            "p",
+            { className: "dim remedies-title" },
+            "What would help, and how often the two would then be confused",
+          )
+        : null,
+      remedies.length
+        ? h(
+            "ul",
+            { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` },
+            remedies.map((each) => remedy(each, gestures)),
+          )
+        : null,
+      h(
+        "div",
+        { className: "finding-links" },
+        code?.startsWith("phrases_")
+          ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
+          : null,
+        gestures.length === 2
+          ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two")
+          : null,
+        gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)),
+      ),
+    ),
+  );
+}
+
+/**
+ * Draw the findings of a report; `only` keeps those about the same gestures.
+ *
+ * @param {Finding[]} warnings
+ * @param {string[] | null} [only]
+ */
+export function warningsList(warnings, only = null) {
+  const shown = only
+    ? warnings.filter(
+        ({ gestures }) =>
+          gestures.length === only.length && gestures.every((label) => only.includes(label)),
+      )
+    : warnings;
+  if (!shown.length) return null;
+  const list = h(
+    "ul",
+    { className: "findings", "aria-label": "Findings" },
+    shown.slice(0, AT_FIRST).map(warning),
+  );
+  if (shown.length <= AT_FIRST) return list;
+  const rest = h("button", { type: "button" }, `Show all ${shown.length} findings`);
+  rest.onclick = () => {
+    list.append(...shown.slice(AT_FIRST).map(warning));
+    /** @type {HTMLElement | null} */ (list.children[AT_FIRST].querySelector("button, a"))?.focus();
+    rest.remove();
+  };
+  return h("div", {}, list, rest);
+}

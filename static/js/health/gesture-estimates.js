@@ -1,0 +1,124 @@
+// The table of each gesture's estimated rates.
+
+import { h } from "../core/dom.js";
+import { duration, readable } from "../core/format.js";
+import { editLink } from "./finding-links.js";
+import { percent, rateText } from "./rates.js";
+
+/** A rate with its bar and interval; above the threshold it is also marked by a sign. */
+function rate(estimate, bar) {
+  if (!estimate) return h("td", { className: "dim" }, "not known");
+  const over = bar !== null && estimate.rate > bar;
+  return h(
+    "td",
+    { className: `rate${over ? " over" : ""}`, title: rateText(estimate) },
+    h(
+      "span",
+      { className: "num" },
+      `${percent(estimate.rate)} %`,
+      over ? h("b", { title: `above the threshold of ${percent(bar)} %` }, " !") : null,
+    ),
+    h("span", {
+      className: "rate-bar",
+      "aria-hidden": "true",
+      style: { "--share": `${100 * estimate.rate}%` },
+    }),
+    h("small", { className: "dim num" }, `${percent(estimate.low)} to ${percent(estimate.high)}`),
+  );
+}
+
+function seen(landmarks) {
+  if (!landmarks.length) return h("td", { className: "dim" }, "not known");
+  return h(
+    "td",
+    {},
+    h(
+      "ul",
+      { className: "seen" },
+      landmarks.map(({ landmark, visible }) =>
+        h("li", {}, readable(landmark), " ", h("b", { className: "num" }, `${percent(visible)} %`)),
+      ),
+    ),
+  );
+}
+
+function row(gesture, image, bar) {
+  const {
+    label,
+    seconds,
+    landmarks,
+    missed,
+    refused,
+    false_alarms: alarms,
+    set_off_by: kinds,
+  } = gesture;
+  return h(
+    "tr",
+    {},
+    h(
+      "th",
+      { scope: "row" },
+      h(
+        "div",
+        {},
+        h("img", { src: image, alt: "", width: 40, height: 40, loading: "lazy" }),
+        h(
+          "span",
+          {},
+          label,
+          h(
+            "small",
+            { className: "dim" },
+            seconds === null ? "no demonstration" : duration(seconds),
+          ),
+        ),
+      ),
+    ),
+    rate(missed, bar.missed),
+    rate(refused, null),
+    rate(alarms, null),
+    h(
+      "td",
+      { className: "set-off" },
+      kinds.length ? kinds.join(", ") : h("span", { className: "dim" }, "no simulated motion"),
+    ),
+    seen(landmarks),
+    h("td", { className: "edit" }, editLink(label, "Edit")),
+  );
+}
+
+/** Draw the table of all gestures. */
+export function estimateTable({ gestures, bar }, imageOf) {
+  const heads = [
+    "Gesture",
+    "Missed",
+    "of it rejected",
+    "False alarms",
+    "False alarms from",
+    "Keypoints seen",
+    "",
+  ];
+  return h(
+    "div",
+    { className: "confusion-scroll" },
+    h(
+      "table",
+      { className: "estimates" },
+      h("caption", { className: "visually-hidden" }, "Estimated rates of each gesture"),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          heads.map((text) => h(text ? "th" : "td", text ? { scope: "col" } : {}, text)),
+        ),
+      ),
+      h(
+        "tbody",
+        {},
+        gestures.map((gesture) => row(gesture, imageOf(gesture.label), bar)),
+      ),
+    ),
+  );
+}

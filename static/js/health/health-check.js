@@ -1,0 +1,51 @@
+// The health check of the language on display: request, progress and cancelling.
+
+import * as api from "../core/api.js";
+import { currentLanguage, state, update } from "../core/state.js";
+
+const keyOf = ({ id, revision }) => `${id} ${revision}`;
+
+/** Whether a report is of the language and revision on display. */
+export const isCurrent = (health) =>
+  Boolean(health && state.gestures && health.key === keyOf(state.gestures));
+
+/**
+ * Check the revision on display, into `state.health`; the
+ * report of the revision before stays on display until the new one is there.
+ */
+export async function check() {
+  const language = currentLanguage();
+  const key = keyOf(language);
+  const known = state.health?.id === language.id ? state.health : null;
+  const base = {
+    key,
+    id: language.id,
+    revision: language.revision,
+    report: known?.report ?? null,
+    shown: known?.shown ?? null,
+  };
+  const settle = (change) => {
+    if (state.health?.key === key) update({ health: { ...base, ...change } });
+  };
+  update({ checking: null, health: { ...base, status: "checking" } });
+  try {
+    const report = await api.languages.check(language.id, language.revision);
+    settle({ status: "done", report, shown: language.revision });
+  } catch (error) {
+    settle(
+      error.code === "check_cancelled"
+        ? { status: "cancelled" }
+        : { status: "failed", error: error.message, away: api.isAway(error) },
+    );
+  }
+}
+
+/** Check again where what is on display is not what was checked, or the server was away. */
+export function keepChecked({ view, gestures, health }) {
+  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health.away))
+    check();
+}
+
+/** Cancel the check that runs. */
+export const cancel = () =>
+  state.health && api.languages.cancelCheck(state.health.id, state.health.revision);

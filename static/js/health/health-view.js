@@ -1,0 +1,291 @@
+// The health view: the estimates of the health check, and the test with clips.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { currentLanguage, follow, state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { go } from "../core/views.js";
+import { batchSection } from "./clip-test-section.js";
+import { confusionGrid } from "./confusion-grid.js";
+import { compare } from "./finding-links.js";
+import { warningsList } from "./findings-list.js";
+import { estimateTable } from "./gesture-estimates.js";
+import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
+import { languageMap } from "./language-map.js";
+import { predicted, showPair } from "./pair-page.js";
+import { percent, rateText } from "./rates.js";
+
+/** @import { State } from "../core/types.d.ts" */
+
+const STAGES = {
+  rehearsing: "Simulating trials of every gesture",
+  "accidental movements": "Simulating background motion",
+  remedies: "Testing edits that would help",
+};
+
+const imageOf = (label) =>
+  api.languages.image(
+    state.health?.id ?? currentLanguage().id,
+    label,
+    state.health?.shown ?? currentLanguage().revision,
+  );
+
+function verdict({ ok, warnings }) {
+  const below = warnings.filter((warning) => warning.below_bar).length;
+  const notes = warnings.length - below;
+  const text = ok ? "No warnings" : plural(below, "warning");
+  return h(
+    "p",
+    { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
+    h("span", { className: "mark", "aria-hidden": "true" }, ok ? "\u2713" : "!"),
+    h("b", {}, text),
+    notes ? h("span", { className: "dim" }, plural(notes, "note")) : null,
+  );
+}
+
+/** The bar above the report while a check runs, and after it was cancelled or failed. */
+function progress({ health }) {
+  if (!isCurrent(health) || health.status === "done") return null;
+  const again = h(
+    "button",
+    { type: "button", className: "primary", onclick: check },
+    "Check again",
+  );
+  if (health.status === "cancelled")
+    return h(
+      "div",
+      { className: "checking" },
+      h(
+        "p",
+        {},
+        h("b", {}, "The check was cancelled."),
+        " What is shown below, if anything, is of an older revision.",
+      ),
+      again,
+    );
+  if (health.status === "failed")
+    return h(
+      "div",
+      { className: "checking", role: "alert" },
+      h("p", {}, h("b", {}, "The check failed. "), health.error),
+      again,
+    );
+  return h(
+    "div",
+    { className: "checking" },
+    h(
+      "p",
+      {},
+      h("b", {}, `Checking revision ${health.revision}`),
+      h("span", { className: "dim num" }, "Beginning"),
+    ),
+    h("progress", { "aria-label": "Progress of the check" }),
+    h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"),
+  );
+}
+
+/** Show the progress of the check in place, so that its button stays under the pointer. */
+function advance(bar, { health, checking }) {
+  const running = bar.querySelector("progress");
+  if (!running || checking?.id !== health.id || checking.revision !== health.revision) return;
+  const { stage, done, total } = checking;
+  bar.querySelector(".num").textContent =
+    `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
+  if (total) Object.assign(running, { max: total, value: done });
+  else running.removeAttribute("value");
+}
+
+function matrix(report) {
+  const heads = report.gestures.map(({ label }) => ({ label, image: imageOf(label) }));
+  const cell = (row, column) => {
+    const [one, other] = [report.gestures[row], report.gestures[column]];
+    if (row === column) {
+      const right = one.missed ? 1 - one.missed.rate : null;
+      return {
+        text: right === null ? "" : `${percent(right)}`,
+        amount: 0,
+        className: "diagonal",
+        label:
+          right === null
+            ? `${one.label}: not known`
+            : `${one.label} is read as itself in ${percent(right)} %`,
+      };
+    }
+    const estimate = predicted(report, one.label, other.label)?.forth;
+    const over = estimate && estimate.rate > report.bar.confusion;
+    return {
+      text: estimate ? percent(estimate.rate) : "?",
+      amount: estimate?.rate ?? 0,
+      className: over ? "over" : "",
+      label: estimate
+        ? `${one.label} taken for ${other.label}: ${rateText(estimate)}${over ? ", above the threshold" : ""}`
+        : `${one.label} taken for ${other.label}: not known`,
+      open: () => compare(one.label, other.label),
+    };
+  };
+  return confusionGrid({
+    label: "Estimated confusions, per cent",
+    corner: "shown \u2193  taken for \u2192",
+    rows: heads,
+    columns: heads,
+    cell,
+  });
+}
+
+/**
+ * Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with
+ * most.
+ */
+function openNearest(report, label) {
+  const pair = report.pairs.find(({ gestures }) => gestures.includes(label));
+  compare(
+    label,
+    pair.gestures.find((each) => each !== label),
+  );
+}
+
+const section = (title, hint, ...content) =>
+  h(
+    "section",
+    { className: "health-section" },
+    h("div", { className: "section-head" }, h("h2", {}, title), h("p", { className: "dim" }, hint)),
+    ...content,
+  );
+
+function drawReport(report) {
+  const alone = report.gestures.length === 1;
+  const worst = report.pairs.filter(
+    ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
+  );
+  const bar = percent(report.bar.confusion);
+  return [
+    warningsList(report.warnings),
+    alone
+      ? h(
+          "div",
+          { className: "health-empty" },
+          h("p", {}, h("b", {}, "One gesture by itself is confused with nothing")),
+          h(
+            "p",
+            { className: "dim" },
+            "Add a second gesture to see here how often the two are confused.",
+          ),
+        )
+      : h(
+          "div",
+          { className: "health-columns" },
+          section(
+            "Estimated confusions",
+            `Of a hundred simulated trials of the gesture at the left, how many are nearer to the one above. Framed: above the threshold of ${bar} %. Choose a cell to see the two side by side.`,
+            matrix(report),
+          ),
+          section(
+            "Map",
+            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${bar} %.` : ""}`,
+            languageMap({
+              points: report.map,
+              worst,
+              imageOf,
+              open: (label) => openNearest(report, label),
+            }),
+          ),
+        ),
+    section(
+      "Each gesture",
+      `Missed: recognised as another gesture, or rejected. The threshold is ${percent(report.bar.missed)} %. False alarms: background motion, such as reaching or adjusting the mask, that is recognised as the gesture.`,
+      estimateTable(report, imageOf),
+    ),
+  ].filter((each) => each !== null);
+}
+
+function nothing() {
+  return h(
+    "div",
+    { className: "health-empty" },
+    h("p", {}, h("b", {}, state.gestures ? "No gestures to check yet" : "No language yet")),
+    h(
+      "p",
+      { className: "dim" },
+      "Save a gesture from a clip. From the second gesture on, this page estimates which are confused, before the dive.",
+    ),
+    h(
+      "button",
+      { type: "button", className: "primary", onclick: () => go("studio") },
+      "To the clips",
+    ),
+  );
+}
+
+/**
+ * The report of the language on display, possibly of an older revision.
+ *
+ * @param {State} state
+ */
+const reportOf = ({ gestures, health }) =>
+  health && health.id === gestures?.id ? health.report : null;
+
+function overview() {
+  const name = h("h1");
+  const about = h("small", { className: "dim" });
+  const says = h("div", { className: "verdict-place" });
+  const bar = h("div");
+  const body = h("div", { className: "report" });
+  const head = () => {
+    const { gestures, health } = state;
+    const report = reportOf(state);
+    name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
+    about.textContent = report
+      ? `Revision ${health?.shown}, estimated for another diver by ${report.takes} simulated trials of each gesture`
+      : "";
+    says.replaceChildren(
+      ...(report && isCurrent(health) && health?.status === "done" ? [verdict(report)] : []),
+    );
+    bar.replaceChildren(
+      ...[gestures?.gestures.length ? progress(state) : null].filter((each) => each !== null),
+    );
+    advance(bar, state);
+  };
+  let drawn = null;
+  const draw = () => {
+    const { gestures, health, loaded } = state;
+    const report = reportOf(state);
+    const now = gestures?.gestures.length ? report : "nothing";
+    body.classList.toggle("stale", Boolean(report) && health?.status !== "done");
+    if (now === drawn || (now === "nothing" && !loaded)) return;
+    drawn = now;
+    body.replaceChildren(...(now === "nothing" ? [nothing()] : report ? drawReport(report) : []));
+  };
+  follow(["gestures", "health"], head);
+  follow(["checking"], () => advance(bar, state));
+  follow(["gestures", "health", "loaded"], draw);
+  return h(
+    "div",
+    { className: "health-page" },
+    h("div", { className: "health-head" }, h("div", {}, name, about), says),
+    bar,
+    body,
+    batchSection(),
+  );
+}
+
+/** Build the view. */
+export function open(root) {
+  const all = overview();
+  const two = h("div", { className: "health-page pair-page", hidden: true });
+  root.append(all, two);
+  let shown = null;
+  follow(["view", "gestures", "returns"], keepChecked);
+  follow(["pair", "gestures"], ({ pair, gestures }) => {
+    const opens = pair !== null && gestures !== null;
+    all.hidden = opens;
+    two.hidden = !opens;
+    const now = opens ? `${pair} ${gestures.id} ${gestures.revision}` : null;
+    if (now === shown) return;
+    const before = shown;
+    shown = now;
+    if (opens) showPair(two, imageOf);
+    else if (before)
+      /** @type {HTMLElement | null} */ (all.querySelector("td[tabindex='0']"))?.focus();
+  });
+}

@@ -1,0 +1,107 @@
+// The map of the language: similar gestures are close; overlapping thumbnails are moved apart.
+
+import { h, svg } from "../core/dom.js";
+
+const WIDTH = 600;
+const HEIGHT = 420;
+const ROUNDS = 300; // Of moving apart; thirty thumbnails come to rest within a hundred.
+const LABEL = 18; // Height of the line under a thumbnail.
+const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
+
+/** A size of which all fit with room to spare. */
+const sizeOf = (count) =>
+  Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
+
+/** Bring coordinates into the drawing, one scale for both axes. */
+function scaled(places, margin) {
+  const spread = (key) =>
+    Math.max(...places.map((place) => place[key])) - Math.min(...places.map((place) => place[key]));
+  const middle = (key) =>
+    (Math.max(...places.map((place) => place[key])) +
+      Math.min(...places.map((place) => place[key]))) /
+    2;
+  const scale = Math.min(
+    (WIDTH - 2 * margin) / (spread("x") || 1),
+    (HEIGHT - 2 * margin) / (spread("y") || 1),
+  );
+  return places.map(({ x, y }) => ({
+    x: WIDTH / 2 + scale * (x - middle("x")),
+    y: HEIGHT / 2 + scale * (y - middle("y")),
+  }));
+}
+
+function pushApart(one, other, index, width, height) {
+  const dx = other.x - one.x || 0.01 * (index + 1);
+  const dy = other.y - one.y;
+  const overlap = { x: width - Math.abs(dx), y: height - Math.abs(dy) };
+  if (overlap.x <= 0 || overlap.y <= 0) return;
+  const axis = overlap.x < overlap.y ? "x" : "y";
+  const way = (Math.sign(axis === "x" ? dx : dy) || 1) * (overlap[axis] / 2);
+  one[axis] -= way;
+  other[axis] += way;
+}
+
+/** Move thumbnails of a size apart until none hides another, staying in the drawing. */
+export function apart(places, size) {
+  const moved = places.map((place) => ({ ...place }));
+  const [width, height] = [size + 8, size + LABEL + 6];
+  for (let round = 0; round < ROUNDS; round += 1) {
+    moved.forEach((one, index) =>
+      moved.slice(index + 1).forEach((other) => pushApart(one, other, index, width, height)),
+    );
+    for (const place of moved) {
+      const side = Math.max(width, WIDEST * size + 4) / 2;
+      place.x = Math.max(side, Math.min(WIDTH - side, place.x));
+      place.y = Math.max(height / 2, Math.min(HEIGHT - height / 2, place.y));
+    }
+  }
+  return moved;
+}
+
+/**
+ * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined
+ * by a line; `imageOf(label)` and `open(label)` are what a thumbnail shows and does.
+ */
+export function languageMap({ points, worst, imageOf, open }) {
+  const size = sizeOf(points.length);
+  const places = scaled(points, size / 2 + LABEL);
+  const moved = apart(places, size);
+  const at = new Map(points.map(({ label }, index) => [label, moved[index]]));
+  const lines = worst.map(({ gestures }) => {
+    const [one, other] = gestures.map((label) => at.get(label));
+    return svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+  });
+  const leaders = places.map((place, index) =>
+    svg("path", {
+      class: "leader",
+      d: `M${place.x} ${place.y}L${moved[index].x} ${moved[index].y}`,
+    }),
+  );
+  return h(
+    "div",
+    { className: "map" },
+    svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, "aria-hidden": "true" }, ...leaders, ...lines),
+    h(
+      "ul",
+      { "aria-label": "Map of the language" },
+      points.map(({ label }, index) =>
+        h(
+          "li",
+          {
+            style: {
+              left: `${(100 * moved[index].x) / WIDTH}%`,
+              top: `${(100 * moved[index].y) / HEIGHT}%`,
+              width: `${(100 * size) / WIDTH}%`,
+            },
+          },
+          h(
+            "button",
+            { type: "button", title: label, onclick: () => open(label) },
+            h("img", { src: imageOf(label), alt: "", loading: "lazy" }),
+            h("span", {}, label),
+          ),
+        ),
+      ),
+    ),
+  );
+}

@@ -1,0 +1,102 @@
+// A demonstration drawn as it moves: the diver's arms at one moment, and the way its hands went.
+
+import { svg } from "../core/dom.js";
+
+const MARGIN = 0.15; // Torso lengths around all that moves.
+
+const BONES = [
+  ["left_shoulder", "right_shoulder"],
+  ["left_shoulder", "left_elbow"],
+  ["left_elbow", "left_wrist"],
+  ["left_wrist", "left_index"],
+  ["right_shoulder", "right_elbow"],
+  ["right_elbow", "right_wrist"],
+  ["right_wrist", "right_index"],
+];
+
+/** The box that holds every place of some gestures, so that both are drawn in one scale. */
+export function boxOf(gestures) {
+  const places = gestures.flatMap(({ paths }) => Object.values(paths).flat()).filter(Boolean);
+  if (!places.length) return null;
+  const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
+  const [left, top] = [Math.min(...xs) - MARGIN, Math.min(...ys) - MARGIN];
+  return {
+    left,
+    top,
+    width: Math.max(...xs) + MARGIN - left,
+    height: Math.max(...ys) + MARGIN - top,
+  };
+}
+
+/** The place of a landmark at a moment; null where it was not seen. */
+function placeAt({ time }, path, seconds) {
+  const after = time.findIndex((each) => each >= seconds);
+  if (after < 0) return path.at(-1);
+  if (after === 0) return path[0];
+  const [from, to] = [path[after - 1], path[after]];
+  if (!from || !to) return null;
+  const share = (seconds - time[after - 1]) / (time[after] - time[after - 1]);
+  return [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
+}
+
+/** A line along places, interrupted where there is none. */
+function line(places) {
+  let down = false;
+  return places
+    .map((place) => {
+      if (!place) {
+        down = false;
+        return "";
+      }
+      const command = `${down ? "L" : "M"}${place[0].toFixed(3)} ${place[1].toFixed(3)}`;
+      down = true;
+      return command;
+    })
+    .join("");
+}
+
+/** Make a drawing of a gesture; `show(seconds)` moves it to a moment. */
+export function movingPaths(gesture, box) {
+  const { time, paths, salient, label } = gesture;
+  const followed = salient.filter((name) => paths[name]);
+  const path = (name, d = "") => svg("path", { class: name, d });
+  const [bones, trail, dots] = [path("bones"), path("trail"), path("dots")];
+  const whole = path("whole", followed.map((name) => line(paths[name])).join(""));
+  const drawing = svg(
+    "svg",
+    {
+      class: "paths",
+      viewBox: `${box.left} ${box.top} ${box.width} ${box.height}`,
+      role: "img",
+      "aria-label": `The movement of ${label}`,
+    },
+    bones,
+    whole,
+    trail,
+    dots,
+  );
+  const show = (seconds) => {
+    const at = (name) => paths[name] && placeAt(gesture, paths[name], seconds);
+    const passed = time.findLastIndex((each) => each <= seconds);
+    bones.setAttribute(
+      "d",
+      BONES.filter(([from, to]) => at(from) && at(to))
+        .map(([from, to]) => line([at(from), at(to)]))
+        .join(""),
+    );
+    trail.setAttribute(
+      "d",
+      followed.map((name) => line([...paths[name].slice(0, passed + 1), at(name)])).join(""),
+    );
+    // A line without length has round ends: a dot.
+    dots.setAttribute(
+      "d",
+      followed
+        .map(at)
+        .filter(Boolean)
+        .map(([x, y]) => `M${x} ${y}h0`)
+        .join(""),
+    );
+  };
+  return { drawing, show };
+}

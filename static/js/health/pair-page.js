@@ -1,0 +1,167 @@
+// Two gestures side by side: their images, their movements on one time cursor, and how they differ.
+
+import * as api from "../core/api.js";
+import { h, icon } from "../core/dom.js";
+import { bind } from "../core/keys.js";
+import { currentLanguage, follow, state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { editLink, pairOf } from "./finding-links.js";
+import { warningsList } from "./findings-list.js";
+import { boxOf, movingPaths } from "./movement-paths.js";
+import { stepsOf, timeCursor } from "./pair-cursor.js";
+import { rateText } from "./rates.js";
+
+const close = () => update({ pair: null });
+
+bind({
+  keys: ["Escape"],
+  text: "Back to all gestures",
+  group: "Two gestures side by side",
+  run: close,
+  when: () => state.view === "health" && state.pair !== null,
+});
+
+/** The estimated confusion of two gestures, from the first's side. */
+export function predicted(report, one, other) {
+  const pair = report?.pairs.find(
+    ({ gestures }) => gestures.includes(one) && gestures.includes(other),
+  );
+  if (!pair) return null;
+  return pair.gestures[0] === one
+    ? { forth: pair.first_as_second, back: pair.second_as_first }
+    : { forth: pair.second_as_first, back: pair.first_as_second };
+}
+
+/** The estimated rates of confusing the two; empty until the check is done. */
+function rateLines(report, one, other) {
+  const rates = predicted(report, one, other);
+  const rate = (estimate, from, to) =>
+    estimate
+      ? h(
+          "li",
+          {},
+          h("b", { className: "num" }, rateText(estimate)),
+          ` of all trials of ${from} would be nearer to ${to}.`,
+        )
+      : null;
+  return rates
+    ? [rate(rates.forth, one, other), rate(rates.back, other, one)].filter((each) => each !== null)
+    : [];
+}
+
+function sentences([one, other], { differs, alignment }) {
+  const difference = (words, from, to) =>
+    words ? h("li", {}, `${from} differs from ${to} in this: ${words}.`) : null;
+  return h(
+    "ul",
+    { className: "pair-words" },
+    differs[0] || differs[1]
+      ? [difference(differs[0], one, other), difference(differs[1], other, one)]
+      : h(
+          "li",
+          {},
+          "The difference is not known: one of them has no demonstration, or follows other keypoints.",
+        ),
+    alignment?.mirrored ? h("li", {}, `${other} is compared as its mirror image.`) : null,
+    alignment?.backward ? h("li", {}, `${other} is compared from its end to its start.`) : null,
+  );
+}
+
+function figure(gesture, image, drawing) {
+  return h(
+    "figure",
+    { className: "pair-gesture" },
+    h("figcaption", {}, h("b", {}, gesture.label), editLink(gesture.label)),
+    h(
+      "div",
+      { className: "pair-drawings" },
+      drawing ??
+        h(
+          "p",
+          { className: "dim no-paths" },
+          "Without a demonstration there is no movement to show.",
+        ),
+      h("img", { src: image, alt: `Trajectory image of ${gesture.label}`, width: 96, height: 96 }),
+    ),
+  );
+}
+
+function sideBySide(found, imageOf) {
+  const { gestures } = found;
+  const labels = gestures.map(({ label }) => label);
+  const box = boxOf(gestures);
+  const moving = gestures.map((gesture) =>
+    box && gesture.time.length ? movingPaths(gesture, box) : null,
+  );
+  const cursor = moving.every(Boolean)
+    ? timeCursor(stepsOf(found), labels, ({ seconds }) =>
+        moving.forEach(({ show }, index) => show(seconds[index])),
+      )
+    : null;
+  return [
+    h(
+      "div",
+      { className: "pair-gestures" },
+      gestures.map((gesture, index) =>
+        figure(gesture, imageOf(gesture.label), moving[index]?.drawing),
+      ),
+    ),
+    cursor?.element,
+  ];
+}
+
+let fill = null; // Draws the estimates; the report may come later than the gestures.
+
+follow(["health"], () => fill?.());
+
+/** Draw two gestures into a box, as soon as they are loaded. */
+export async function showPair(box, imageOf) {
+  const { pair } = state;
+  const language = currentLanguage();
+  fill = null;
+  const labels = pairOf(pair);
+  const known = labels !== null && labels.every((label) => language.labels.includes(label));
+  const title = h(
+    "h1",
+    { tabIndex: -1 },
+    known ? `${labels[0]} and ${labels[1]}` : "No such two gestures",
+  );
+  const head = h(
+    "div",
+    { className: "page-head" },
+    h(
+      "button",
+      { type: "button", className: "back", onclick: close },
+      icon("chevron"),
+      "All gestures",
+    ),
+    title,
+  );
+  box.replaceChildren(head);
+  title.focus();
+  if (!known)
+    return box.append(
+      h(
+        "p",
+        { className: "dim" },
+        "The link names gestures that this language does not have, or no longer has.",
+      ),
+    );
+  const found = await attempt("Comparing the gestures", () =>
+    api.languages.contrast(language.id, ...labels, language.revision),
+  );
+  if (!found || state.pair !== pair || !head.isConnected) return undefined;
+  const rates = h("ul", { className: "pair-words" });
+  const warnings = h("div", { className: "pair-warnings" });
+  box.append(
+    ...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings].filter(Boolean),
+  );
+  fill = () => {
+    const report = state.health?.id === language.id ? state.health.report : null;
+    rates.replaceChildren(...rateLines(report, ...labels));
+    warnings.replaceChildren(
+      ...[warningsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
+    );
+  };
+  return fill();
+}

@@ -1,0 +1,77 @@
+// The health line of the cards: requested when a card becomes visible, one after the other,
+// since the first answer about a revision takes the server seconds.
+
+import * as api from "../core/api.js";
+import { plural } from "../core/format.js";
+
+const reports = new Map(); // by language and revision; null while it is not known
+const waiting = [];
+let offered = true; // false once the server turned out to have no such report
+let asking = false;
+
+const keyOf = ({ id, revision }) => `${id} ${revision}`;
+
+/** Show that the report is pending. */
+function promise(line) {
+  line.hidden = false;
+  line.className = "health pending";
+  line.textContent = "Health is being checked";
+  line.removeAttribute("title");
+}
+
+/** The line under a card: what was found, in words and with a mark of its own. */
+function write(line, report) {
+  if (!report) return;
+  const warnings = report.warnings ?? [];
+  line.hidden = false;
+  line.className = `health ${report.ok ? "well" : "unwell"}`;
+  const below = warnings.filter((warning) => warning.below_bar);
+  if (below.length)
+    line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
+  else
+    line.textContent = warnings.length
+      ? `Healthy, with ${plural(warnings.length, "note")}`
+      : "Healthy";
+  line.title = warnings.map((warning) => warning.message).join("\n");
+}
+
+async function next() {
+  const { language, line } = waiting.shift() ?? {};
+  if (!language || !offered) return;
+  asking = true;
+  try {
+    if (line.isConnected && !reports.has(keyOf(language)))
+      reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
+    write(line, reports.get(keyOf(language)));
+  } catch (error) {
+    // A card without a report is no worse than before; one that is deleted is not shown any more.
+    line.hidden = true;
+    if (error.status === 404) offered = false;
+  }
+  asking = false;
+  next();
+}
+
+const seen = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    const line = target.querySelector(".health");
+    const at = waiting.findIndex((each) => each.card === target);
+    // Whoever scrolls past a hundred cards does not ask for a hundred reports.
+    if (at >= 0) waiting.splice(at, 1);
+    if (isIntersecting && line)
+      waiting.push({ card: target, language: /** @type {any} */ (target).language, line });
+  }
+  if (!asking) next();
+});
+
+/** Fill a card's line once the card is seen. */
+export function showHealth(card, language) {
+  const line = card.querySelector(".health");
+  line.hidden = true;
+  seen.unobserve(card);
+  if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
+  if (!language.labels.length || !offered) return undefined;
+  promise(line);
+  card.language = language;
+  return seen.observe(card);
+}

@@ -1,0 +1,155 @@
+// The dialog for an edit conflict: two edits of one revision side by side, for the user to choose.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { ago } from "../core/format.js";
+import { changedTexts, diffGestures } from "./draft-diff.js";
+
+/** @import { Gesture, Language } from "../core/types.d.ts" */
+
+const cancelled = () =>
+  Object.assign(new Error("The other change was kept; yours was dropped."), { code: "cancelled" });
+
+/** @param {string} doing */
+const undecided = (doing) =>
+  Object.assign(
+    new Error(
+      "Nothing was saved: the language was changed in another tab meanwhile. Save again to choose between the two.",
+    ),
+    { title: `${doing} failed`, status: 412 },
+  );
+
+/**
+ * One version: its changes, and its gestures with the kind of each.
+ *
+ * @param {string} title
+ * @param {string[]} lines
+ * @param {{ gesture: Gesture, kind: string }[]} gestures
+ * @param {HTMLElement} choice
+ */
+function version(title, lines, gestures, choice) {
+  return h(
+    "section",
+    { "aria-label": title },
+    h("h3", {}, title),
+    h(
+      "ul",
+      { className: "conflict-changes" },
+      lines.map((line) => h("li", {}, line)),
+    ),
+    h(
+      "ul",
+      { className: "conflict-gestures" },
+      gestures.map(({ gesture, kind }) =>
+        h(
+          "li",
+          { className: kind },
+          h("img", { src: gesture.thumbnail, alt: "", width: 56, height: 56 }),
+          h("span", {}, gesture.label),
+          kind === "same" ? null : h("small", {}, kind),
+        ),
+      ),
+    ),
+    choice,
+  );
+}
+
+/**
+ * The changes since `from`, one line each.
+ *
+ * @param {Language} from
+ */
+async function deedsSince(from) {
+  const revisions = await api.languages.revisions(from.id);
+  return revisions
+    .filter((each) => each.revision > from.revision)
+    .reverse()
+    .map((each) => `${each.change} (revision ${each.revision}, ${ago(each.created)})`);
+}
+
+/**
+ * Let the user pick. Resolves to `{ before, language }`: the revision that was changed, and the
+ * language as it is now. Throws `cancelled` when theirs is kept, and a 412 when nothing is chosen.
+ *
+ * @param {{ doing: string, title: string, from: Language, mine: Language, change: (base: Language) => Promise<Language> }} edit
+ */
+export async function settleConflict({ doing, title, from, mine, change }) {
+  const [theirs, deeds] = await Promise.all([api.languages.get(from.id), deedsSince(from)]);
+  const compared = await api.languages.compare(from.id, from.revision, theirs.revision);
+  const theirGestures = compared.gestures.map(({ kind, before, after }) => ({
+    gesture: /** @type {Gesture} */ (after ?? before),
+    kind,
+  }));
+  const theirWords = [
+    ...compared.words,
+    ...compared.gestures.flatMap(({ before, after, words }) =>
+      words.map((word) => `${(after ?? before)?.label}: ${word}`),
+    ),
+  ];
+  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
+  const dialog = h("dialog", { className: "conflict", "aria-labelledby": "conflict-title" });
+  /** @type {(text: string, run: () => void, className?: string) => HTMLElement} */
+  const button = (text, run, className = "") =>
+    h("button", { type: "button", className, onclick: run }, text);
+  /** @type {{ before: number, language: Language } | "theirs" | null} */
+  let outcome = null;
+  /** Apply the choice; show the error and keep the dialog open if that fails. */
+  const pick = (/** @type {() => Promise<Language>} */ made) => async () => {
+    try {
+      outcome = { before: theirs.revision, language: await made() };
+      dialog.close();
+    } catch (error) {
+      problem.textContent =
+        error.status === 412
+          ? "The language was changed once more. Close this, and save again."
+          : error.message;
+      problem.hidden = false;
+    }
+  };
+  const onTop = () => change(theirs);
+  const instead = async () => change(await api.languages.revert(theirs, from.revision));
+  const keepTheirs = () => {
+    outcome = "theirs";
+    dialog.close();
+  };
+  dialog.append(
+    h("h2", { id: "conflict-title" }, "Changed in two places"),
+    h(
+      "p",
+      { className: "dim" },
+      `Somebody else, or another tab of yours, saved a change of ${from.name} while you made one, both from revision ${from.revision}. Theirs stays in the history whatever you pick.`,
+    ),
+    h(
+      "div",
+      { className: "conflict-versions" },
+      version(
+        "Theirs, saved",
+        [...deeds, ...theirWords],
+        theirGestures,
+        button("Keep theirs", keepTheirs),
+      ),
+      version(
+        "Yours, not saved yet",
+        [title, ...changedTexts(mine, from)],
+        diffGestures(mine, from),
+        button("Keep yours", pick(instead)),
+      ),
+    ),
+    problem,
+    h(
+      "div",
+      { className: "dialog-actions" },
+      button("Decide later", () => dialog.close()),
+      button("Keep both: yours on top of theirs", pick(onTop), "primary"),
+    ),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+  await new Promise((resolve) => {
+    dialog.onclose = resolve;
+  });
+  dialog.remove();
+  if (outcome === "theirs") throw cancelled();
+  if (outcome === null) throw undecided(doing);
+  return outcome;
+}

@@ -1,0 +1,122 @@
+// The languages as the server has them: loading, selecting, creating and importing.
+
+import * as api from "../core/api.js";
+import { ask } from "../core/dialogs.js";
+import { plural } from "../core/format.js";
+import { refresh } from "../core/list-refresh.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { recordAction, registerUndo, showDone } from "../core/undo.js";
+
+/** @import { Language, LanguageSummary } from "../core/types.d.ts" */
+
+const LAST = "osg-studio.language"; // A new tab starts with the language used last.
+
+export async function reloadLanguages() {
+  const languages = await attempt("Loading the languages", api.languages.list);
+  if (!languages) return;
+  const wanted = [state.language, localStorage.getItem(LAST)].find((id) =>
+    languages.some((each) => each.id === id),
+  );
+  update({ languages, language: wanted ?? richest(languages)?.id ?? null });
+  await reloadLanguage();
+}
+
+/**
+ * Load one language that changed.
+ *
+ * @param {string} id
+ */
+export const reloadOneLanguage = (id) =>
+  refresh(id, {
+    load: api.languages.get,
+    current: () => state.languages,
+    order: (one, other) =>
+      one.created.localeCompare(other.created) || one.id.localeCompare(other.id),
+    take: (languages, language) => {
+      update({ languages });
+      if (id !== state.language) return;
+      if (language) update({ gestures: language });
+      else reloadLanguages();
+    },
+  });
+
+/**
+ * The language with most gestures: on a first visit it knows what every sample clip shows.
+ *
+ * @param {LanguageSummary[]} languages
+ * @returns {LanguageSummary | null}
+ */
+function richest(languages) {
+  const most = Math.max(...languages.map(({ labels }) => labels.length));
+  return languages.find(({ labels }) => labels.length === most) ?? null;
+}
+
+/** Load the gestures of the language on display. */
+export async function reloadLanguage() {
+  const id = state.language;
+  if (!id) return update({ gestures: null });
+  localStorage.setItem(LAST, id);
+  const language = await attempt("Loading the language", () => api.languages.get(id));
+  if (language && state.language === id) update({ gestures: language });
+  return undefined;
+}
+
+/**
+ * Work on another language.
+ *
+ * @param {string | null} id
+ */
+export function choose(id) {
+  if (id !== state.language) update({ language: id, recognition: null });
+  return reloadLanguage();
+}
+
+/**
+ * Work on a language that was just made; it can be taken back.
+ *
+ * @param {Language} language
+ * @param {string} title
+ * @param {string} words
+ */
+export async function begin(language, title, words) {
+  recordAction({ title, kind: "created", id: language.id });
+  update({ languages: await api.languages.list() });
+  await choose(language.id);
+  showDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
+}
+
+/** Ask for a name and make an empty language; resolves to it, or null. */
+export function newLanguage() {
+  return ask({
+    title: "New language",
+    text: "A language is a set of gestures that one robot understands.",
+    fields: [{ name: "name", label: "Name", required: true, most: 80, value: "My gestures" }],
+    action: "Create",
+    submit: async ({ name }) => {
+      const language = await api.languages.create(name);
+      await begin(language, `Creation of ${name}`, "Language made");
+      return language;
+    },
+  });
+}
+
+/**
+ * Import a language file, ours or the published format.
+ *
+ * @param {File} file
+ */
+export async function importLanguage(file) {
+  const language = await attempt(`Importing ${file.name}`, async () =>
+    api.languages.import(file.name.replace(/\.json$/i, ""), await file.text()),
+  );
+  if (language) await begin(language, `Import of ${file.name}`, "Language imported");
+}
+
+/** @param {string} id */
+const remove = (id) => api.languages.remove({ id }).then(reloadLanguages);
+/** @param {string} id */
+const restore = (id) => api.languages.restore(id).then(reloadLanguages);
+
+registerUndo("language", { undo: ({ id }) => restore(id), redo: ({ id }) => remove(id) });
+registerUndo("created", { undo: ({ id }) => remove(id), redo: ({ id }) => restore(id) });

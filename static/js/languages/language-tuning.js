@@ -1,0 +1,78 @@
+// The tuning of the language on display: where its recognition differs from the profile.
+
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { currentLanguage } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { edit } from "./revision-edit.js";
+
+/** @import { Language, Recognition, State } from "../core/types.d.ts" */
+
+const UNTUNED = { profile: "full", tuning: null };
+
+/**
+ * Whether a language has a tuning or another profile than the default.
+ *
+ * @param {Language | null} language
+ */
+const differs = (language) =>
+  language !== null && (language.profile !== UNTUNED.profile || language.tuning !== null);
+
+/**
+ * How a language is recognised, after "recognised"; nothing where that is as any other is.
+ *
+ *
+ * @param {Language} language
+ */
+export function tuningWords(language) {
+  if (!differs(language)) return "";
+  const { profile, tuning, tuning_words: words } = language;
+  const tuned = tuning === null ? "" : words;
+  return profile === UNTUNED.profile
+    ? tuned
+    : ["by the profile ", profile, tuned && `, ${tuned}`].join("");
+}
+
+/**
+ * Save a recognition's tuning in the language; it can be undone.
+ *
+ * @param {Recognition} recognition
+ * @param {string} words
+ */
+export const keepTuning = ({ profile, tuning }, words) =>
+  edit("Keeping the change", `Recognition ${words}`, (language) =>
+    api.languages.change(language, { profile, tuning }),
+  );
+
+async function reset() {
+  try {
+    await edit("Recognising as before", "Recognition as the profile does", (language) =>
+      api.languages.change(language, UNTUNED),
+    );
+    showDone("Recognised as any language", currentLanguage().name);
+  } catch (error) {
+    complain(error, "Recognising as before");
+  }
+}
+
+/**
+ * Show the tuning under the gestures, with a button that resets it.
+ *
+ * @param {State} state
+ */
+export function drawTuning({ gestures }) {
+  const box = byId("tuning");
+  box.hidden = !differs(gestures);
+  if (box.hidden) return box.replaceChildren();
+  return box.replaceChildren(
+    h(
+      "span",
+      {},
+      h("b", {}, "Recognised "),
+      tuningWords(currentLanguage()),
+      ", here and on the robot.",
+    ),
+    h("button", { type: "button", className: "link", onclick: reset }, "As the profile full does"),
+  );
+}

@@ -1,0 +1,85 @@
+// Edits of a language: each makes a new revision, can be undone, and settles edit conflicts.
+
+import * as api from "../core/api.js";
+import { currentLanguage, state, update } from "../core/state.js";
+import { recordAction, registerUndo } from "../core/undo.js";
+import { settleConflict } from "./edit-conflict.js";
+import { reloadLanguage, reloadLanguages } from "./language-store.js";
+
+/** @import { Language } from "../core/types.d.ts" */
+
+const KEY = "osg-studio.heads"; // sessionStorage, beside what can be undone
+
+const stored = () => {
+  try {
+    return JSON.parse(sessionStorage.getItem(KEY) ?? "null");
+  } catch {
+    return null;
+  }
+};
+
+// Per language its newest revision as this tab left it, and the one whose content that shows.
+/** @type {Record<string, { revision: number, shows: number }>} */
+const heads = stored() ?? {};
+
+/**
+ * @param {string} language
+ * @param {{ revision: number, shows: number }} head
+ */
+function setHead(language, head) {
+  heads[language] = head;
+  sessionStorage.setItem(KEY, JSON.stringify(heads));
+}
+
+/**
+ * Revert a language from one revision's content to another's, as a new revision. Refused where the
+ * language has changed since this tab left it: undo must not undo somebody else's edit.
+ *
+ * @param {string} language
+ * @param {number} from
+ * @param {number} to
+ */
+async function revert(language, from, to) {
+  const newest = await api.languages.get(language);
+  const left = heads[language];
+  if (left?.revision !== newest.revision || left.shows !== from) {
+    const error = new Error(
+      `The language was changed elsewhere as well; its newest revision is ${newest.revision}. Its history shows every revision, and can go back to any.`,
+    );
+    throw Object.assign(error, { status: 412 });
+  }
+  const now = await api.languages.revert(newest, to);
+  setHead(language, { revision: now.revision, shows: to });
+  await reloadLanguages();
+}
+
+registerUndo("edit", {
+  undo: ({ language, before, after }) => revert(language, after, before),
+  redo: ({ language, before, after }) => revert(language, before, after),
+  record: ({ language, after }) => setHead(language, { revision: after, shows: after }),
+});
+
+/**
+ * Edit the language by `change(base)`, which calls the API with the revision `base`; undo names it
+ * `title`. `from` is what the user saw when beginning, `mine` what the edit makes of it: on a
+ * conflict the user chooses between `mine` and the newer revision.
+ *
+ * @param {string} doing
+ * @param {string} title
+ * @param {(base: Language) => Promise<Language>} change
+ * @param {{ from?: Language, mine?: Language }} [versions]
+ */
+export async function edit(doing, title, change, { from = currentLanguage(), mine = from } = {}) {
+  let made;
+  try {
+    made = { before: from.revision, language: await change(from) };
+  } catch (error) {
+    if (error.status !== 412) throw error;
+    await reloadLanguage();
+    made = await settleConflict({ doing, title, from, mine, change });
+  }
+  const { before, language } = made;
+  if (state.language === language.id) update({ gestures: language });
+  recordAction({ title, kind: "edit", language: language.id, before, after: language.revision });
+  return language;
+}

@@ -1,0 +1,62 @@
+// A clip from the camera: a countdown, the recording, and the file that it becomes.
+
+// The first that the browser supports.
+const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+const BITS_PER_SECOND = 6_000_000; // as a dive camera's 1080p; the default blurs a hand that moves.
+const CHUNK = 1000; // ms: what is lost at most when the tab crashes.
+
+/**
+ * Count down from `from` to 1, a second each; `show(null)` at the end. Resolves false when
+ * `signal` aborts.
+ */
+export function countDown(from, show, signal) {
+  return new Promise((resolve) => {
+    let left = from;
+    const finish = (whole) => {
+      clearInterval(timer);
+      show(null);
+      resolve(whole);
+    };
+    const timer = setInterval(() => {
+      left -= 1;
+      if (left) show(left);
+      else finish(true);
+    }, 1000);
+    signal.addEventListener("abort", () => finish(false), { once: true });
+    show(left);
+  });
+}
+
+const two = (number) => String(number).padStart(2, "0");
+
+function nameAt(date, type) {
+  const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
+  const hour = [date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join("-");
+  return `camera ${day} ${hour}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`;
+}
+
+/** Record a stream; `stop()` resolves with the file, or null when nothing was recorded. */
+export function record(stream) {
+  const mimeType = TYPES.find((type) => MediaRecorder.isTypeSupported(type));
+  const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: BITS_PER_SECOND });
+  const began = new Date();
+  const parts = [];
+  recorder.ondataavailable = ({ data }) => {
+    if (data.size) parts.push(data);
+  };
+  const stopped = new Promise((resolve) => {
+    recorder.onstop = resolve;
+  });
+  recorder.start(CHUNK);
+  return {
+    began,
+    async stop() {
+      if (recorder.state !== "inactive") recorder.stop();
+      await stopped;
+      const type = recorder.mimeType || mimeType;
+      return parts.length
+        ? new File(parts, nameAt(began, type), { type: type?.split(";")[0] })
+        : null;
+    },
+  };
+}

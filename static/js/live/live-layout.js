@@ -1,0 +1,126 @@
+// The elements of the view, before anything is seen.
+
+import { h } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
+
+const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "false" }, text);
+const check = (id, text, title, checked) =>
+  h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
+
+const STEPS = [
+  ["salute", "Salute"],
+  ["gesture", "Gesture"],
+  ["closing", "Salute"],
+];
+
+function picture() {
+  return h(
+    "div",
+    { className: "live-picture", id: "live-picture" },
+    h("video", {
+      id: "live-video",
+      muted: true,
+      playsInline: true,
+      "aria-label": "What the camera sees",
+    }),
+    h("p", { className: "live-idle", id: "live-idle" }, "No source is running"),
+    h("p", {
+      className: "live-count",
+      id: "live-count",
+      role: "timer",
+      "aria-live": "assertive",
+      hidden: true,
+    }),
+    h("div", { className: "live-problem", id: "live-problem", role: "alert", hidden: true }),
+  );
+}
+
+function controls() {
+  return h(
+    "div",
+    { className: "live-controls" },
+    h(
+      "div",
+      { className: "segments", role: "group", "aria-label": "Source" },
+      choice("live-from-camera", "Camera"),
+      choice("live-from-clip", "Clip"),
+    ),
+    h("select", { id: "live-cameras", "aria-label": "Camera", hidden: true }),
+    h("select", { id: "live-clips", "aria-label": "Clip", hidden: true }),
+    check(
+      "live-every",
+      "Every frame",
+      "Processes every frame, also when this machine is slower than the clip",
+      false,
+    ),
+    check(
+      "live-autostop",
+      "Stop after the closing salute",
+      "Ends a recording after the closing salute, without a click",
+      true,
+    ),
+    h("span", { className: "spacer" }),
+    h("button", {
+      type: "button",
+      id: "live-record",
+      title: "Record a clip, after a countdown (R)",
+    }),
+    h("button", {
+      type: "button",
+      id: "live-start",
+      className: "primary",
+      title: "Start or stop watching (Space)",
+    }),
+  );
+}
+
+/** Make what the view holds. */
+export function panel() {
+  return [
+    h(
+      "section",
+      { className: "live-stage", "aria-label": "Live picture" },
+      picture(),
+      h(
+        "div",
+        { className: "live-state" },
+        h(
+          "ol",
+          { className: "live-steps", id: "live-steps" },
+          STEPS.map(([name, text]) => h("li", { id: `live-step-${name}` }, text)),
+        ),
+        h("p", { id: "live-instruction", role: "status" }),
+        h(
+          "label",
+          { className: "live-salute" },
+          "Salute",
+          h("meter", { id: "live-salute", min: 0, max: 1, low: SALUTE, value: 0 }),
+        ),
+      ),
+      controls(),
+    ),
+    h(
+      "aside",
+      { className: "live-side", "aria-label": "Recognised live" },
+      h("div", { id: "live-result", "aria-live": "polite" }),
+      h("p", { className: "dim", id: "live-language" }),
+      h(
+        "div",
+        { className: "live-head" },
+        h("h2", {}, "Recognised"),
+        h("button", { type: "button", className: "link", id: "live-clear", hidden: true }, "Clear"),
+      ),
+      h("ol", {
+        className: "live-recognised",
+        id: "live-recognised",
+        "aria-label": "Recognised, newest first",
+      }),
+      h(
+        "p",
+        { className: "live-slow", id: "live-slow", hidden: true },
+        "Too few frames per second to recognise gestures. Close other programs, or record a clip: all of its frames are used.",
+      ),
+      h("dl", { className: "live-speed", id: "live-speed" }),
+    ),
+  ];
+}

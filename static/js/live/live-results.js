@@ -1,0 +1,99 @@
+// The recognitions of the live view: the newest one large, the others in a list.
+
+import { byId, h } from "../core/dom.js";
+import { moment, plural } from "../core/format.js";
+import { go } from "../core/views.js";
+
+const MOST = 50; // in the list; a practice session has fewer.
+
+const percent = (share) => `${Math.round(100 * share)} %`;
+
+function verdict(result) {
+  if (result.label !== null)
+    return {
+      title: result.label,
+      text: `${percent(result.confidence)} sure, ${result.agreeing} of ${plural(result.voters, "voter")}`,
+    };
+  if (result.problem) return { title: "Not judged", text: result.problem };
+  return { title: "No gesture of this language", text: `nearest is ${result.nearest}` };
+}
+
+/** A recognition's entry; one of a clip leads to the place where to ask why. */
+function entry(result, clip, clock) {
+  const { title, text } = verdict(result);
+  const range = {
+    clip: clip?.id,
+    take: null,
+    start: result.start,
+    end: result.end,
+    frame: null,
+    recognition: null,
+  };
+  return h(
+    "li",
+    { className: result.label === null ? "unsure" : "" },
+    h("b", {}, title),
+    h(
+      "span",
+      {},
+      clip ? moment(result.start) : clock,
+      result.closed ? "" : ", no closing salute",
+      " \u00b7 ",
+      text,
+    ),
+    clip
+      ? h(
+          "button",
+          {
+            type: "button",
+            className: "link",
+            "aria-label": `Open ${title} at ${moment(result.start)} in the studio`,
+            onclick: () => go("studio", range),
+          },
+          "Open",
+        )
+      : null,
+  );
+}
+
+/** Show a recognition, of a clip or of the camera. */
+export function addResult(result, clip) {
+  const { title, text } = verdict(result);
+  const box = byId("live-result");
+  box.className = `live-result${result.label === null ? " unsure" : ""}`;
+  box.replaceChildren(
+    h("strong", {}, title),
+    result.label === null
+      ? ""
+      : h("meter", { min: 0, max: 1, value: result.confidence, "aria-label": "Confidence" }),
+    h("p", {}, text),
+  );
+  const list = byId("live-recognised");
+  list.prepend(entry(result, clip, new Date().toLocaleTimeString()));
+  while (list.children.length > MOST) list.lastChild.remove();
+  byId("live-clear").hidden = false;
+}
+
+/** Show that nothing was recognised in a clip; `rate` is the frames processed per second. */
+export function showNothingRecognised(clip, rate) {
+  const looked =
+    rate === null
+      ? "No frame of it could be looked at in time"
+      : `${rate.toFixed(1)} frames a second of it were looked at`;
+  byId("live-result").replaceChildren(
+    h(
+      "p",
+      {},
+      `Nothing was recognised in ${clip.name}. ${looked}; tick \u201cEvery frame\u201d and play it again to miss none.`,
+    ),
+  );
+}
+
+/** Forget what was recognised. */
+export function clearResults(text) {
+  byId("live-recognised").replaceChildren();
+  byId("live-clear").hidden = true;
+  const box = byId("live-result");
+  box.className = "live-result nothing";
+  box.replaceChildren(h("p", {}, text));
+}

@@ -1,0 +1,90 @@
+// The WebSocket of the live view: sends frames, receives poses and recognitions.
+
+const PER_LOOK = 3; // frames sent for each one processed: the server takes the newest.
+const MOST_UNSENT = 500_000; // bytes: on a slow network frames are left out before they are sent.
+
+const CLOSED = {
+  1006: "The server did not answer. Is it still running?",
+  1012: "The server was stopped or restarted.",
+  4408: "Nothing came from the camera for a minute.",
+};
+
+/**
+ * Open the live session. `handlers` has a function per kind of message: `seen(answer, seconds)`
+ * with the seconds since the frame was captured, `recognized`, `listening`, and `ended(reason)`.
+ */
+export function openLink(handlers) {
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  const socket = new WebSocket(`${scheme}://${location.host}/api/v1/live`);
+  const captured = new Map(); // Of the frames on their way: when, by the page's clock.
+  const waiting = []; // for an answer
+  let wanted = null;
+  let closing = false;
+  let sent = -Infinity; // s, by the page's clock
+  let rate = 0; // frames that the server looks at in a second
+
+  function seen(answer) {
+    const at = captured.get(answer.time);
+    rate = answer.frames_per_second;
+    for (const time of captured.keys()) if (time <= answer.time) captured.delete(time);
+    handlers.seen(answer, performance.now() / 1000 - (at ?? performance.now() / 1000));
+    for (const resolve of waiting.splice(0)) resolve();
+  }
+
+  const ask = () => {
+    if (socket.readyState === WebSocket.OPEN && wanted) socket.send(JSON.stringify(wanted));
+  };
+
+  socket.onopen = ask;
+  socket.onmessage = ({ data }) => {
+    const answer = JSON.parse(data);
+    if (answer.kind === "seen") seen(answer);
+    else handlers[answer.kind]?.(answer);
+  };
+  socket.onclose = ({ code, reason }) => {
+    for (const resolve of waiting.splice(0)) resolve();
+    if (!closing)
+      handlers.ended(
+        reason
+          ? `${reason[0].toUpperCase()}${reason.slice(1)}`
+          : (CLOSED[code] ?? `The connection was closed (${code}).`),
+      );
+  };
+
+  return {
+    /** Whether another frame may be sent now. */
+    ready() {
+      if (socket.readyState !== WebSocket.OPEN || socket.bufferedAmount > MOST_UNSENT) return false;
+      return !captured.size || performance.now() / 1000 - sent > 1 / (PER_LOOK * rate);
+    },
+    /** Ask this language from now on. */
+    listen(language) {
+      wanted = { do: "listen", language_id: language };
+      ask();
+    },
+    /** Send a frame of that time, captured at `at` in seconds of the page's clock. */
+    async send(time, at, picture) {
+      captured.set(time, at);
+      sent = performance.now() / 1000;
+      const bytes = new Uint8Array(8 + picture.size);
+      new DataView(bytes.buffer).setFloat64(0, time, true);
+      bytes.set(new Uint8Array(await picture.arrayBuffer()), 8);
+      if (socket.readyState === WebSocket.OPEN) socket.send(bytes);
+    },
+    /** Resolves with the next answer, or the end. */
+    answered: () =>
+      socket.readyState > WebSocket.OPEN
+        ? Promise.resolve()
+        : new Promise((resolve) => {
+            waiting.push(resolve);
+          }),
+    opened: new Promise((resolve) => {
+      socket.addEventListener("open", resolve);
+      socket.addEventListener("close", resolve);
+    }),
+    close() {
+      closing = true;
+      socket.close(1000);
+    },
+  };
+}

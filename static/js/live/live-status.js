@@ -1,0 +1,51 @@
+// The status of the live view in words: the salute, the take, the frame rate.
+
+import { byId, h } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
+import { state as page } from "../core/state.js";
+
+const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
+
+/** The diver's step and the next instruction, from a message of the server. */
+function situation({ pose, salute, held, state }) {
+  if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
+  if (state === "recording" && held)
+    return ["salute", "Salute held. Let it go and show the gesture."];
+  if (state === "recording")
+    return salute > SALUTE
+      ? ["closing", "Closing salute seen. Hold it."]
+      : ["gesture", "Show the gesture, then salute again."];
+  if (salute > SALUTE) return ["salute", "Salute seen. Hold it."];
+  return pose ? ["", "Waiting for a Vulcan salute."] : ["", "Nobody is in the picture."];
+}
+
+/** Show where the diver is between the salutes; null while nothing is watched. */
+export function drawState(answer) {
+  const [step, text] = answer
+    ? situation(answer)
+    : ["", "Hold a Vulcan salute, show the gesture, salute again."];
+  const words = byId("live-instruction");
+  if (words.textContent !== text) words.textContent = text;
+  for (const each of byId("live-steps").children) {
+    if (each.id === `live-step-${step}`) each.setAttribute("aria-current", "step");
+    else each.removeAttribute("aria-current");
+  }
+  byId("live-salute").value = answer?.salute ?? 0;
+}
+
+/** Show frames per second, and the seconds from the camera to the answer. */
+export function drawSpeed(answer, seconds) {
+  const rows =
+    answer === null
+      ? []
+      : [
+          ["Frames a second", answer.frames_per_second.toFixed(1)],
+          ["Latency", `${Math.round(1000 * seconds)} ms`],
+          ["of which the models", `${Math.round(1000 * answer.seconds)} ms`],
+        ];
+  const unhurried = page.source === "clip" && byId("live-every").checked;
+  byId("live-slow").hidden = !answer || unhurried || answer.frames_per_second >= FEW;
+  byId("live-speed").replaceChildren(
+    ...rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+  );
+}

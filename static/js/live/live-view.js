@@ -1,0 +1,326 @@
+// The live view: a camera, or a clip played as if live, and what is recognised in it.
+
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { bind } from "../core/keys.js";
+import { follow, state, update } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
+import { addFiles } from "../upload/upload-list.js";
+import { countDown, record } from "./camera-recording.js";
+import { panel } from "./live-layout.js";
+import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
+import { openLink } from "./live-socket.js";
+import { drawSpeed, drawState } from "./live-status.js";
+import { drawSeen, overlay } from "./pose-overlay.js";
+import {
+  CAMERA_LOST,
+  cameraPossible,
+  cameras,
+  grab,
+  release,
+  showCamera,
+  showClip,
+  stepFrames,
+  watchFrames,
+  whyNoCamera,
+} from "./video-source.js";
+
+const COUNT = 3; // s: from the button to where the diver stands.
+const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
+const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
+
+let link = null;
+let stopFrames = null;
+let grabbing = false;
+let drawing = null;
+let recording = null;
+let counting = null;
+let ending = 0; // timer of a recording's end
+let recognised = 0; // takes that were recognised since the source was started
+let rate = null; // frames a second that were looked at of late
+
+const video = () => byId("live-video");
+const fromClip = () => state.source === "clip";
+// In a drawn skeleton the models find nobody.
+const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
+const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
+
+function problem(trouble) {
+  const box = byId("live-problem");
+  box.hidden = !trouble;
+  if (trouble)
+    box.replaceChildren(
+      h("b", {}, trouble.title),
+      h("p", {}, trouble.text),
+      h("button", { type: "button", onclick: start }, "Try again"),
+    );
+}
+
+/** Bring the buttons in line with what goes on. */
+function drawControls() {
+  const watching = link !== null;
+  const begin = byId("live-start");
+  begin.replaceChildren(watching ? "Stop" : fromClip() ? "Play as if live" : "Start the camera");
+  begin.className = watching ? "" : "primary";
+  begin.disabled = !watching && fromClip() && !chosenClip();
+  const take = byId("live-record");
+  take.hidden = fromClip();
+  take.replaceChildren(
+    h("i", { className: "dot", "aria-hidden": "true" }),
+    recording ? "Stop recording" : counting ? "Cancel" : "Record a clip",
+  );
+  take.classList.toggle("recording", recording !== null);
+  byId("live-clips").hidden = byId("live-every").parentElement.hidden = !fromClip();
+  byId("live-autostop").parentElement.hidden = fromClip();
+  byId("live-idle").hidden = watching;
+  for (const name of ["camera", "clip"])
+    byId(`live-from-${name}`).setAttribute(
+      "aria-pressed",
+      String((name === "clip") === fromClip()),
+    );
+}
+
+function drawClipChoice() {
+  const choice = byId("live-clips");
+  const chosen = chosenClip();
+  choice.replaceChildren(
+    ...pictured().map((clip) =>
+      h("option", { value: clip.id, selected: clip === chosen }, clip.name),
+    ),
+  );
+  drawControls();
+}
+
+async function drawCameraChoice() {
+  const choice = byId("live-cameras");
+  const found = await cameras();
+  choice.hidden = fromClip() || found.length < 2;
+  const current = video().srcObject?.getVideoTracks()[0]?.getSettings().deviceId;
+  choice.replaceChildren(
+    ...found.map(({ deviceId, label }) =>
+      h("option", { value: deviceId, selected: deviceId === current }, label || "Camera"),
+    ),
+  );
+}
+
+function stop() {
+  stopFrames?.();
+  link?.close();
+  counting?.abort();
+  endRecording();
+  release(video());
+  stopFrames = link = null;
+  drawing?.remove();
+  drawState(null);
+  drawSpeed(null);
+  drawControls();
+}
+
+/** Look at a frame, unless enough are on their way. */
+async function look(time, at) {
+  const sending = link;
+  if (grabbing || !sending?.ready()) return;
+  grabbing = true;
+  const picture = await grab(video());
+  grabbing = false;
+  if (picture) await sending.send(time, at, picture);
+}
+
+/** Look at a frame, and wait for the answer. */
+async function lookAndWait(time) {
+  const answered = link.answered();
+  await look(time, performance.now() / 1000);
+  await answered;
+}
+
+function seen(answer, seconds) {
+  drawSeen(drawing, answer);
+  drawState(answer);
+  drawSpeed(answer, seconds);
+  rate = answer.frames_per_second;
+  if (recording && answer.state === "done" && byId("live-autostop").checked && !ending)
+    ending = setTimeout(endRecording, AFTER_SALUTE);
+}
+
+function lost(trouble) {
+  stop();
+  problem(trouble);
+}
+
+/** Stop at the end of a clip, and say how many frames were processed if nothing was recognised. */
+function clipEnded(clip) {
+  stop();
+  if (!recognised) showNothingRecognised(clip, rate);
+}
+
+const ended = (reason) => lost({ title: "The live view ended", text: reason });
+
+function listening({ language, gestures, problem: trouble }) {
+  const text = trouble
+    ? `Takes are found, but none is recognised: ${trouble}.`
+    : language
+      ? `Between two salutes: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
+      : "Takes are found, but no language is chosen to recognise them.";
+  byId("live-language").textContent = text;
+}
+
+async function showSource() {
+  if (fromClip()) await showClip(video(), api.clips.video(chosenClip().id));
+  else await showCamera(video(), byId("live-cameras").value, () => lost(CAMERA_LOST));
+  byId("live-picture").classList.toggle("mirrored", !fromClip());
+  drawing?.remove();
+  drawing = overlay(video().videoWidth, video().videoHeight);
+  video().after(drawing);
+}
+
+/** Show the camera or the clip, and begin to look at its frames. */
+async function start() {
+  stop();
+  [recognised, rate] = [0, null];
+  problem(null);
+  const clip = fromClip() ? chosenClip() : null;
+  const button = byId("live-start");
+  button.disabled = true;
+  try {
+    await showSource();
+  } catch (error) {
+    release(video());
+    problem(
+      clip ? { title: "The clip cannot be played", text: error.message } : whyNoCamera(error),
+    );
+    if (cameraPossible()) drawCameraChoice(); // The one that was chosen may be gone.
+    return false;
+  } finally {
+    button.disabled = false;
+  }
+  // The browser may ask for long whether the camera is allowed.
+  if (state.view !== "live") {
+    stop();
+    return false;
+  }
+  const opened = openLink({
+    seen,
+    listening,
+    ended,
+    recognized: (result) => {
+      recognised += 1;
+      addResult(result, clip);
+    },
+  });
+  link = opened;
+  link.listen(state.language);
+  drawControls();
+  if (!clip) drawCameraChoice();
+  await opened.opened;
+  if (link !== opened) return false;
+  const every = clip && byId("live-every").checked;
+  video().onended = () => {
+    if (clip) clipEnded(clip);
+  };
+  if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
+  stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
+  if (clip && !every) await video().play();
+  return true;
+}
+
+function showCount(left) {
+  const box = byId("live-count");
+  box.hidden = left === null;
+  box.textContent = left ?? "";
+}
+
+async function beginRecording() {
+  if (!link && !(await start())) return;
+  counting = new AbortController();
+  drawControls();
+  const whole = await countDown(COUNT, showCount, counting.signal);
+  counting = null;
+  if (whole && video().srcObject) {
+    recording = record(video().srcObject);
+    setTimeout(
+      (it) => {
+        if (recording === it) endRecording();
+      },
+      LONGEST,
+      recording,
+    );
+  }
+  byId("live-picture").classList.toggle("recording", recording !== null);
+  drawControls();
+}
+
+async function endRecording() {
+  clearTimeout(ending);
+  ending = 0;
+  const ended = recording;
+  if (!ended) return;
+  recording = null;
+  byId("live-picture").classList.remove("recording");
+  drawControls();
+  const file = await ended.stop();
+  if (!file) return;
+  addFiles([file]);
+  toast("Clip recorded", `${file.name} is read for poses now.`, {
+    action: { label: "Show it", run: () => go("studio") },
+  });
+}
+
+const toggle = () => (link ? stop() : start());
+const toggleRecording = () =>
+  recording ? endRecording() : counting ? counting.abort() : beginRecording();
+
+/** Choose between camera and clip. */
+function chooseSource(source) {
+  stop();
+  problem(null);
+  update({ source });
+}
+
+function wire() {
+  byId("live-start").onclick = toggle;
+  byId("live-record").onclick = toggleRecording;
+  byId("live-from-camera").onclick = () => chooseSource(null);
+  byId("live-from-clip").onclick = () => chooseSource("clip");
+  byId("live-cameras").onchange = start;
+  byId("live-clips").onchange = ({ target }) => {
+    stop();
+    update({
+      clip: target.value,
+      take: null,
+      start: null,
+      end: null,
+      frame: null,
+      recognition: null,
+    });
+  };
+  byId("live-clear").onclick = () => clearResults("Show a gesture between two salutes.");
+}
+
+const when = () => state.view === "live";
+bind({ keys: ["Space"], text: "Start or stop watching", group: "Live", run: toggle, when });
+bind({
+  keys: ["R"],
+  text: "Record a clip from the camera, or stop",
+  group: "Live",
+  run: () => {
+    if (!fromClip()) toggleRecording();
+  },
+  when,
+});
+
+/** Called once, when the view is first shown. */
+export function open(section) {
+  section.append(...panel());
+  clearResults("Show a gesture between two salutes.");
+  wire();
+  follow(["clips", "clip", "source"], drawClipChoice);
+  follow(["language"], ({ language }) => link?.listen(language));
+  follow(["view"], ({ view }) => {
+    if (view !== "live") stop();
+  });
+  addEventListener("pagehide", stop);
+  navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
+  drawState(null);
+  drawSpeed(null);
+}

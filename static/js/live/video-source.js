@@ -1,0 +1,158 @@
+// The source of live frames: a camera, or a clip played as if live.
+
+const LONGEST_SIDE = 960; // px. The models look at a hand in 224; a smaller picture would blur it.
+const QUALITY = 0.8; // of the JPEG: a fifth of the bytes of 0.95, and the same landmarks.
+const CLIP_STEP = 1 / 12; // s. A salute is held for 0.3 s: at least three frames of it are seen.
+
+/** Whether the browser may give this page a camera at all. */
+export const cameraPossible = () => Boolean(navigator.mediaDevices?.getUserMedia);
+
+const INSTEAD = "Without a camera, play a clip as if live.";
+
+const REASONS = {
+  NotAllowedError: [
+    "The camera was not allowed",
+    "Allow it for this page, beside its address, and for the browser in the system\u2019s privacy settings. Then try again.",
+  ],
+  NotFoundError: [
+    "No camera found",
+    "Plug one in, and see that it is switched on. Then try again.",
+  ],
+  NotReadableError: [
+    "The camera does not answer",
+    "Another program or tab may be using it. Close that one, then try again.",
+  ],
+  AbortError: [
+    "The camera does not answer",
+    "It failed while it was started. Unplug it and plug it in again, then try again.",
+  ],
+  OverconstrainedError: [
+    "That camera is gone",
+    "Choose another one, or plug it in again. Then try again.",
+  ],
+};
+
+/** Why a camera that was watched sends nothing any more. */
+export const CAMERA_LOST = {
+  title: "The camera was lost",
+  text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}`,
+};
+
+/** Explain why there is no camera: `{ title, text }`. */
+export function whyNoCamera(error) {
+  if (!cameraPossible()) {
+    return {
+      title: "No camera over an open connection",
+      text: `Browsers give cameras only to pages over HTTPS, or from the machine itself (127.0.0.1, localhost). This page comes from ${location.origin}. Open it on that machine or over HTTPS, or play a clip as if live.`,
+    };
+  }
+  const [title, text] = REASONS[error.name] ?? ["The camera cannot be used", error.message];
+  return { title, text: `${text} ${INSTEAD}` };
+}
+
+/** Show a camera in a video element; `lost()` is called when it sends nothing any more. */
+export async function showCamera(video, deviceId, lost) {
+  if (!cameraPossible()) throw new TypeError("no camera");
+  const wanted = { width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } };
+  const stream = await navigator.mediaDevices.getUserMedia({
+    video: deviceId ? { ...wanted, deviceId: { exact: deviceId } } : wanted,
+    audio: false,
+  });
+  for (const track of stream.getTracks()) track.onended = lost;
+  video.srcObject = stream;
+  await video.play();
+}
+
+/** The cameras that can be chosen from; the browser names them once one was allowed. */
+export async function cameras() {
+  const devices = await navigator.mediaDevices.enumerateDevices();
+  return devices.filter(({ kind, deviceId }) => kind === "videoinput" && deviceId);
+}
+
+/** Load a clip into a video element, at its beginning. */
+export async function showClip(video, url) {
+  const loaded = new Promise((resolve, reject) => {
+    video.onloadeddata = resolve;
+    video.onerror = () =>
+      reject(
+        new Error(
+          "This browser cannot play the clip\u2019s codec. Convert it to an MP4 with H.264, or recognise it in the studio.",
+        ),
+      );
+  });
+  video.src = url;
+  await loaded;
+}
+
+/** Let go of the camera or clip. */
+export function release(video) {
+  for (const track of video.srcObject?.getTracks() ?? []) track.stop();
+  video.onerror = video.onloadeddata = video.onended = null;
+  video.srcObject = null;
+  video.removeAttribute("src");
+  video.load();
+}
+
+const canvas = document.createElement("canvas");
+
+/** The picture on display as a JPEG; null while there is none. */
+export function grab(video) {
+  const { videoWidth: width, videoHeight: height } = video;
+  if (!width) return Promise.resolve(null);
+  const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
+  canvas.width = Math.round(width * scale);
+  canvas.height = Math.round(height * scale);
+  canvas.getContext("2d", { alpha: false })?.drawImage(video, 0, 0, canvas.width, canvas.height);
+  return new Promise((resolve) => {
+    canvas.toBlob(resolve, "image/jpeg", QUALITY);
+  });
+}
+
+/**
+ * Call `seen(time, captured)` for each new picture of a video that runs, in seconds of the camera's
+ * or the clip's clock and of the page's, until the function returned is called.
+ */
+export function watchFrames(video, seen) {
+  let running = true;
+  const live = video.srcObject !== null;
+  const next = () => {
+    if (!running) return;
+    // Firefox before 132 has no such callback; it then counts what the screen shows.
+    if (video.requestVideoFrameCallback) video.requestVideoFrameCallback(frame);
+    else requestAnimationFrame((now) => frame(now, {}));
+  };
+  /** @type {(now: number, times: { captureTime?: number, mediaTime?: number }) => void} */
+  const frame = (now, { captureTime, mediaTime }) => {
+    if (!running) return;
+    const captured = (captureTime ?? now) / 1000;
+    seen(live ? captured : (mediaTime ?? video.currentTime), captured);
+    next();
+  };
+  next();
+  return () => {
+    running = false;
+  };
+}
+
+/**
+ * Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next.
+ */
+export function stepFrames(video, seen) {
+  let running = true;
+  const shown = (time) =>
+    new Promise((resolve) => {
+      video.onseeked = resolve;
+      video.currentTime = time;
+    });
+  const run = async () => {
+    for (let time = 0; running && time < video.duration; time += CLIP_STEP) {
+      await shown(time);
+      if (running) await seen(time);
+    }
+    if (running) video.onended?.();
+  };
+  run();
+  return () => {
+    running = false;
+  };
+}

@@ -1,0 +1,56 @@
+// The grammar of the language on display, and saving edits of it.
+
+import * as api from "../core/api.js";
+import { state } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { edit } from "../languages/revision-edit.js";
+
+/** @import { Grammar } from "../core/types.d.ts" */
+
+const EMPTY = {
+  start: null,
+  end: null,
+  cancel: null,
+  timeout: 10,
+  most_phrases: 1,
+  slot_types: [],
+  phrases: [],
+};
+
+export const grammar = () => state.gestures?.grammar ?? EMPTY;
+export const labels = () => state.gestures?.gestures.map(({ label }) => label) ?? [];
+
+let drawAgain = () => {};
+
+/** Call `react` when a step was refused: the form then shows what is not. */
+export const followRefusals = (react) => {
+  drawAgain = react;
+};
+
+// One after the other: a field may be left by pressing the next button.
+/** @type {Promise<any>} */
+let working = Promise.resolve();
+
+/**
+ * Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to
+ * whether it was.
+ */
+/** @type {(title: string, step: (grammar: Grammar) => Grammar | null) => Promise<boolean>} */
+export function save(title, step) {
+  working = working.then(async () => {
+    try {
+      await edit("Changing the phrases", title, (base) =>
+        api.languages.change(base, { grammar: step(base.grammar ?? EMPTY) }),
+      );
+      return true;
+    } catch (error) {
+      complain(error, "Changing the phrases");
+      drawAgain();
+      return false;
+    }
+  });
+  return working;
+}
+
+/** Resolves when everything is saved, or refused. */
+export const saved = () => working;

@@ -1,0 +1,71 @@
+// The panel of a message's frame: gestures that open, close and cancel it, and the longest pause.
+
+import { h } from "../core/dom.js";
+import { choice, numberField } from "./form-fields.js";
+import { grammar, labels, save } from "./grammar-store.js";
+
+const TEXTS = {
+  start: ["Starts with", "none: any phrase may begin"],
+  end: ["Ends with", "none: a pause ends it"],
+  cancel: ["Cancelled by", "none"],
+};
+
+function role(name) {
+  const whole = grammar();
+  const [label, none] = TEXTS[name];
+  const others = name === "cancel" ? [whole.start, whole.end] : [whole.cancel];
+  const options = [
+    ["", none],
+    ...labels()
+      .filter((each) => !others.includes(each))
+      .map((each) => [each, each]),
+  ];
+  return choice({
+    id: `frame-${name}`,
+    label,
+    value: whole[name] ?? "",
+    options,
+    commit: (value) =>
+      save(`${label} ${value || "none"}`, (base) => ({ ...base, [name]: value || null })),
+  });
+}
+
+/** Draw the panel. */
+export function framePanel() {
+  const { timeout, most_phrases: most } = grammar();
+  return h(
+    "section",
+    { className: "panel", "aria-labelledby": "frame-title" },
+    h("h2", { id: "frame-title" }, "Around a message"),
+    h(
+      "p",
+      { className: "dim" },
+      "An opening and a closing gesture prevent false alarms: gestures outside a message are ignored. A message may hold several phrases, each with its own opening gesture.",
+    ),
+    h(
+      "div",
+      { className: "frame-fields" },
+      role("start"),
+      role("end"),
+      role("cancel"),
+      numberField({
+        id: "frame-timeout",
+        label: "Longest pause (s)",
+        value: String(timeout),
+        min: 1,
+        max: 600,
+        step: "any",
+        commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })),
+      }),
+      numberField({
+        id: "frame-most",
+        label: "Phrases, at most",
+        value: String(most),
+        min: 1,
+        max: 8,
+        commit: (text) =>
+          save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })),
+      }),
+    ),
+  );
+}

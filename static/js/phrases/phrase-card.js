@@ -1,0 +1,141 @@
+// The card of a phrase: closed as a sequence, open as a form.
+
+import { h, icon } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { state, update } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { read, written } from "../languages/robot-command.js";
+import { textField, tool } from "./form-fields.js";
+import { inPhrase, rememberName, slotsOf } from "./grammar-edits.js";
+import { save } from "./grammar-store.js";
+import { addButtons, partList } from "./phrase-parts.js";
+import { sequence } from "./phrase-sequence.js";
+import { found, showExample } from "./phrase-trial.js";
+
+const put = (phrase, title, change) =>
+  save(
+    title,
+    inPhrase(phrase.name, (whole) => ({ ...whole, ...change })),
+  );
+
+async function rename(phrase, text) {
+  const name = text.trim();
+  const kept = await put(phrase, `Rename to ${name}`, { name });
+  if (kept) {
+    rememberName(phrase.name, name);
+    update({ phrase: name });
+  }
+  return kept;
+}
+
+async function remove(phrase) {
+  const title = `Deletion of ${phrase.name}`;
+  if (
+    !(await save(title, (base) => ({
+      ...base,
+      phrases: base.phrases.filter(({ name }) => name !== phrase.name),
+    })))
+  )
+    return;
+  if (state.phrase === phrase.name) update({ phrase: null });
+  showDone("Phrase deleted", phrase.name);
+}
+
+function command(phrase, text) {
+  const { command: value, problem } = read(text);
+  if (!problem) return put(phrase, "Command", { command: value });
+  toast("The command is not saved", problem, { kind: "error" });
+  return false;
+}
+
+function form(phrase, place) {
+  const slots = slotsOf(phrase).map((slot) => `{${slot.slot}}`);
+  const hint = slots.length
+    ? `${slots.join(" and ")} ${slots.length > 1 ? "stand for the values" : "stands for the value"} shown. In the spoken text, put what is left out with a slot in [ ].`
+    : "Add a slot for a value of the command: how often, how deep or which way.";
+  const id = `phrase-${place}`;
+  return h(
+    "div",
+    { className: "phrase-form" },
+    textField({
+      id: `${id}-name`,
+      label: "Name",
+      value: phrase.name,
+      maxLength: 80,
+      commit: (text) => rename(phrase, text),
+    }),
+    h(
+      "div",
+      { className: "phrase-parts" },
+      h("h3", {}, "What is shown"),
+      partList(phrase, [], phrase.parts),
+      addButtons(phrase),
+    ),
+    textField({
+      id: `${id}-says`,
+      label: "Spoken back",
+      value: phrase.says,
+      placeholder: "the name and the values",
+      maxLength: 2000,
+      commit: (text) => put(phrase, "Spoken text", { says: text.trim() }),
+    }),
+    textField({
+      id: `${id}-command`,
+      label: "Command for the robot",
+      value: written(phrase.command),
+      placeholder: "words, or a JSON object",
+      multiline: true,
+      commit: (text) => command(phrase, text),
+    }),
+    h("p", { className: "dim" }, hint),
+  );
+}
+
+/** Draw a phrase. */
+export function phraseCard(phrase, place) {
+  const open = state.phrase === phrase.name;
+  const doubts = found()?.ambiguities.filter(({ phrases }) => phrases.includes(phrase.name)) ?? [];
+  const id = `phrase-${place}`;
+  return h(
+    "li",
+    { className: `phrase${open ? " open" : ""}` },
+    h(
+      "div",
+      { className: "phrase-head" },
+      h(
+        "button",
+        {
+          type: "button",
+          className: "phrase-open",
+          id: `${id}-open`,
+          "aria-expanded": String(open),
+          onclick: () => update({ phrase: open ? null : phrase.name }),
+        },
+        icon("chevron"),
+        h("b", {}, phrase.name),
+      ),
+      sequence(phrase),
+      doubts.length
+        ? h(
+            "span",
+            { className: "doubt" },
+            h("span", { className: "mark", "aria-hidden": "true" }, "!"),
+            plural(doubts.length, "ambiguity").replace("ambiguitys", "ambiguities"),
+          )
+        : null,
+      h(
+        "button",
+        {
+          type: "button",
+          id: `${id}-try`,
+          "aria-label": `Try ${phrase.name}`,
+          onclick: () => showExample(phrase.name),
+        },
+        "Try",
+      ),
+      tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase)),
+    ),
+    open ? form(phrase, place) : null,
+  );
+}

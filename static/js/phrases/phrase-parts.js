@@ -1,0 +1,243 @@
+// The form of a phrase's parts: gestures, slots, and groups of both.
+
+import { h, icon } from "../core/dom.js";
+import { checkbox, choice, numberField, textField, tool } from "./form-fields.js";
+import {
+  gesturePart,
+  inPart,
+  inParts,
+  inPhrase,
+  moved,
+  typed,
+  without,
+  withSlot,
+  withSlotRenamed,
+} from "./grammar-edits.js";
+import { grammar, labels, save } from "./grammar-store.js";
+
+/** @import { Phrase } from "../core/types.d.ts" */
+
+const idOf = (path) => `part-${path.join("-")}`;
+
+/** Change one part of a phrase. */
+const put = (phrase, path, title, change) =>
+  save(
+    title,
+    inPhrase(
+      phrase.name,
+      inPart(path, (part) => ({ ...part, ...change })),
+    ),
+  );
+
+function gestures(phrase, path, part) {
+  const { cancel } = grammar();
+  const several = part.gestures.length > 1;
+  const free = labels().filter((label) => label !== cancel && !part.gestures.includes(label));
+  const pick = (list, title) => put(phrase, path, title, { gestures: list });
+  const chosen = part.gestures.flatMap((label, index) => [
+    index ? h("span", { className: "dim" }, "or") : null,
+    choice({
+      id: `${idOf(path)}-gesture-${index}`,
+      label: index ? `Or gesture ${index + 1}` : "Gesture",
+      hidden: true,
+      value: label,
+      options: [
+        [label, label],
+        ...free.map((each) => [each, each]),
+        ...(several ? [["", "take out"]] : []),
+      ],
+      commit: (value) =>
+        pick(
+          value
+            ? part.gestures.map((each) => (each === label ? value : each))
+            : part.gestures.filter((each) => each !== label),
+          value || `Not ${label}`,
+        ),
+    }),
+  ]);
+  const more = free.length
+    ? choice({
+        id: `${idOf(path)}-or`,
+        label: "Or another gesture",
+        hidden: true,
+        value: "",
+        options: [["", "or\u2026"], ...free.map((each) => [each, each])],
+        commit: (value) => pick([...part.gestures, value], `Or ${value}`),
+      })
+    : null;
+  return h(
+    "div",
+    { className: "part-what" },
+    h("b", {}, "Gesture"),
+    chosen.filter(Boolean),
+    more && h("span", { className: "part-or" }, more),
+  );
+}
+
+function slot(phrase, path, part) {
+  const types = grammar().slot_types;
+  const readsAs = types.find(({ name }) => name === part.type)?.reads_as;
+  const id = idOf(path);
+  return h(
+    "div",
+    { className: "part-what" },
+    h("b", {}, "Slot"),
+    textField({
+      id: `${id}-slot`,
+      label: "Name of the slot",
+      hidden: true,
+      value: part.slot,
+      commit: (text) =>
+        save(
+          `Rename to ${text}`,
+          inPhrase(phrase.name, (whole) => withSlotRenamed(whole, part.slot, text.trim())),
+        ),
+    }),
+    choice({
+      id: `${id}-type`,
+      label: "filled by",
+      value: part.type,
+      options: types.map(({ name }) => [name, name]),
+      commit: (type) => put(phrase, path, `Filled by ${type}`, { type, default: null }),
+    }),
+    part.least === 0
+      ? textField({
+          id: `${id}-default`,
+          label: "otherwise",
+          value: part.default === null ? "" : String(part.default),
+          placeholder: "nothing",
+          commit: (text) =>
+            put(phrase, path, `Otherwise ${text || "nothing"}`, {
+              default: text.trim() ? typed(text, readsAs) : null,
+            }),
+        })
+      : null,
+  );
+}
+
+function group(phrase, path, part) {
+  return h(
+    "div",
+    { className: "part-group" },
+    h("b", {}, "Together"),
+    partList(phrase, path, part.parts),
+    addButtons(phrase, path),
+  );
+}
+
+/** @type {[string, (phrase: Phrase, path: number[], part: any) => HTMLElement, string][]} */
+const KINDS = [
+  ["gestures", gestures, "gesture"],
+  ["slot", slot, "slot"],
+  ["parts", group, "group"],
+];
+
+function partRow(phrase, path, part, count) {
+  const [, draw, noun] = KINDS.find(([key]) => part[key]) ?? KINDS[0];
+  const [list, index] = [path.slice(0, -1), path.at(-1)];
+  const id = idOf(path);
+  const what = `${noun} ${path.map((place) => place + 1).join(".")}`;
+  const rearrange = (title, change) => save(title, inPhrase(phrase.name, inParts(list, change)));
+  const times = (text) => {
+    const most = Number(text);
+    return put(phrase, path, `Up to ${text} times`, { most, least: Math.min(part.least, most) });
+  };
+  return h(
+    "li",
+    { className: `part${part.least === 0 ? " optional" : ""}` },
+    draw(phrase, path, part),
+    h(
+      "div",
+      { className: "part-often" },
+      checkbox({
+        id: `${id}-optional`,
+        label: "may be left out",
+        checked: part.least === 0,
+        commit: (on) =>
+          put(phrase, path, on ? "May be left out" : "Must be shown", {
+            least: on ? 0 : 1,
+            ...(part.slot ? { default: null } : {}),
+          }),
+      }),
+      numberField({
+        id: `${id}-most`,
+        label: "up to",
+        value: String(part.most),
+        min: 1,
+        max: 10,
+        commit: times,
+      }),
+      h(
+        "span",
+        { className: "dim" },
+        part.least > 1 ? `times, at least ${part.least}` : part.most > 1 ? "times" : "time",
+      ),
+    ),
+    h(
+      "div",
+      { className: "part-tools" },
+      tool(
+        `${id}-up`,
+        "up",
+        `Move ${what} up`,
+        () => rearrange("Move up", (parts) => moved(parts, index, -1)),
+        index === 0,
+      ),
+      tool(
+        `${id}-down`,
+        "down",
+        `Move ${what} down`,
+        () => rearrange("Move down", (parts) => moved(parts, index, 1)),
+        index === count - 1,
+      ),
+      tool(
+        `${id}-remove`,
+        "trash",
+        `Delete ${what}`,
+        () => rearrange(`Deletion of a ${noun}`, (parts) => without(parts, index)),
+        count === 1,
+      ),
+    ),
+  );
+}
+
+/** Draw the parts that `path` leads to. */
+export function partList(phrase, path, parts) {
+  return h(
+    "ol",
+    {
+      className: "parts",
+      "aria-label": path.length ? "Parts of the group" : `Parts of ${phrase.name}`,
+    },
+    parts.map((part, index) => partRow(phrase, [...path, index], part, parts.length)),
+  );
+}
+
+/** Draw the buttons that add a part there; a group holds no groups. */
+export function addButtons(phrase, path = []) {
+  const id = `add-${path.join("-")}`;
+  const add = (title, make) =>
+    save(title, (base) =>
+      inPhrase(
+        phrase.name,
+        inParts(path, (parts) => [...parts, make(base)]),
+      )(base),
+    );
+  const button = (kind, text, run) =>
+    h("button", { type: "button", id: `${id}-${kind}`, onclick: run }, icon("plus"), text);
+  return h(
+    "div",
+    { className: "part-add" },
+    button("gesture", "Gesture", () =>
+      add("New gesture in a phrase", (base) => gesturePart(base, labels())),
+    ),
+    button("slot", "Slot", () =>
+      save("New slot", (base) => withSlot(base, phrase.name, path, labels())),
+    ),
+    path.length
+      ? null
+      : button("group", "Group", () =>
+          add("New group", (base) => ({ parts: [gesturePart(base, labels())], least: 0, most: 1 })),
+        ),
+  );
+}

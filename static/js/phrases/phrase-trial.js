@@ -1,0 +1,202 @@
+// The trial of phrases: clicked gestures are parsed as on the robot.
+
+import * as api from "../core/api.js";
+import { h, reconcile } from "../core/dom.js";
+import { follow, state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { called, ROLES } from "./grammar-edits.js";
+import { grammar, saved } from "./grammar-store.js";
+
+/** After these a message is over, and the next gesture begins another one. */
+const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
+const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
+
+// `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
+let answer = null;
+const listeners = [];
+
+/** What is known of the phrases on display, or null. */
+export const found = () => answer?.view ?? null;
+
+/** Call `react` whenever something new is known. */
+export const followFound = (react) => listeners.push(react);
+
+/**
+ * The gestures shown, "" for one that was not recognised. In the URL a line each: no label has
+ * two.
+ */
+const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
+
+export const show = (gestures) =>
+  update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
+
+let loading = Promise.resolve(); // what is asked of the server now
+
+/** Show a phrase with all its parts, as it is once what was pressed before is saved. */
+export async function showExample(name) {
+  await saved();
+  await loading;
+  show(found()?.examples[called(grammar().phrases, name)] ?? []);
+}
+
+const last = () => found()?.events.at(-1) ?? null;
+
+function add(gesture) {
+  const over = state.paused || (answer.settled && OVER.has(last()?.kind));
+  show(over ? [gesture] : [...shown(), gesture]);
+}
+
+/** Ask what the gestures shown mean, whenever they or the phrases change. */
+async function load() {
+  const { gestures: language, view, shown: gestures, paused } = state;
+  if (view !== "phrases" || !language) return;
+  const key = JSON.stringify([language.id, language.revision, gestures, paused]);
+  if (answer?.key === key) return;
+  answer = { key, view: answer?.view ?? null, settled: false };
+  const loaded = await attempt("Trying the phrases", () =>
+    api.languages.phrases(language, shown(), paused !== null),
+  );
+  if (!loaded || answer.key !== key) return;
+  answer = { key, view: loaded, settled: true };
+  for (const react of listeners) react();
+}
+
+const canSpeak = () => "speechSynthesis" in window;
+
+function speak(text) {
+  speechSynthesis.cancel();
+  speechSynthesis.speak(Object.assign(new SpeechSynthesisUtterance(text), { lang: "en" }));
+}
+
+function drawAnswer(event) {
+  const over = event && OVER.has(event.kind);
+  const kind = event?.kind ?? "nothing";
+  const words = event ? event.text : "Show a gesture: click it below.";
+  return h(
+    "div",
+    { className: `said ${kind === "complete" ? "well" : over ? "unwell" : ""}` },
+    h(
+      "span",
+      { className: "mark", "aria-hidden": "true" },
+      MARKS[kind] ?? (event ? "!" : "\u2026"),
+    ),
+    h("p", { id: "said" }, words),
+    canSpeak() && event
+      ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak")
+      : null,
+  );
+}
+
+function commands(event) {
+  if (!event?.mission) return null;
+  return h(
+    "div",
+    { className: "obeyed" },
+    h("h3", {}, "Commands to the robot"),
+    h(
+      "ol",
+      {},
+      event.mission.map(({ phrase, command }) =>
+        h(
+          "li",
+          {},
+          h("b", {}, phrase),
+          command === null
+            ? h("span", { className: "dim" }, "no command")
+            : h("code", {}, typeof command === "string" ? command : JSON.stringify(command)),
+        ),
+      ),
+    ),
+  );
+}
+
+/**
+ * A gesture to click; one that is drawn stays the same button, so that no click on it gets lost.
+ */
+function gestureButton({ label, thumbnail }, next, item) {
+  if (!item) {
+    item = h(
+      "li",
+      {},
+      h(
+        "button",
+        { type: "button", className: "try-gesture", onclick: () => add(label) },
+        h("img", { alt: "", width: 56, height: 56 }),
+        h("span", {}, label),
+        h("small"),
+      ),
+    );
+  }
+  const [button, picture] = [item.firstChild, item.querySelector("img")];
+  button.classList.toggle("next", next);
+  button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
+  if (picture.getAttribute("src") !== thumbnail) picture.src = thumbnail;
+  item.querySelector("small").textContent = next
+    ? "next"
+    : ROLES.filter((role) => grammar()[role] === label).join(", ");
+  return item;
+}
+
+const chip = (label) =>
+  h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+
+function hint() {
+  const { timeout } = grammar();
+  return found()?.may_end
+    ? `The message may be over: after ${timeout} s without a gesture it is obeyed.`
+    : "Framed and marked \u201cnext\u201d: what may come next.";
+}
+
+/** Build the panel; it follows what is shown. */
+export function trialPanel() {
+  const sequence = h("ol", { className: "shown", "aria-label": "Gestures shown" });
+  const result = h("div", { className: "trial-result", role: "status" });
+  const gestures = h("ul", { className: "try-gestures", "aria-label": "Gestures to show" });
+  const pause = h(
+    "button",
+    { type: "button", onclick: () => update({ paused: "yes" }) },
+    "Pause too long",
+  );
+  const clear = h("button", { type: "button", onclick: () => show([]) }, "Clear");
+  const note = h("p", { className: "dim" });
+  const draw = () => {
+    if (state.view !== "phrases" || !state.gestures) return;
+    const event = state.shown === null ? null : last();
+    const expected = new Set(found()?.expected ?? []);
+    sequence.replaceChildren(
+      ...shown().map(chip),
+      ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]),
+    );
+    result.replaceChildren(...[drawAnswer(event), commands(event)].filter((each) => each !== null));
+    reconcile(
+      gestures,
+      state.gestures.gestures,
+      ({ label }) => label,
+      (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item),
+    );
+    pause.disabled = !event || OVER.has(event.kind) || state.paused !== null;
+    clear.disabled = state.shown === null;
+    note.textContent = hint();
+  };
+  followFound(draw);
+  follow(["view", "gestures", "shown", "paused"], () => {
+    loading = load();
+    draw();
+  });
+  return h(
+    "section",
+    { className: "panel trial", "aria-labelledby": "trial-title" },
+    h("h2", { id: "trial-title" }, "Try it"),
+    sequence,
+    result,
+    gestures,
+    h(
+      "div",
+      { className: "trial-actions" },
+      h("button", { type: "button", onclick: () => add("") }, "Not recognised"),
+      pause,
+      clear,
+    ),
+    note,
+  );
+}

@@ -1,0 +1,237 @@
+// The alignment of the take with two gestures: their paths, and which moments correspond.
+
+import { h, svg } from "../core/dom.js";
+import { moment, readable } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
+import { state, update } from "../core/state.js";
+import { seek } from "./playback.js";
+
+const MARGIN = 0.12; // of the longer side, around all that moves
+const LETTERS = 0.075; // height of a number in the drawing, as a share of it
+
+const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
+const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
+
+let follower = null; // Moves the cursor of the drawings on display.
+
+/** The alignments of the paths, that with the expected gesture first. */
+const pathsOf = (why) => why.alignments.filter(({ voter, query }) => voter === "path" && query);
+
+/** The joints that were compared, those that differ most from what was expected first. */
+function partsOf({ parts, costs }) {
+  const totals = parts.map((name, part) => ({
+    name,
+    part,
+    cost: sum(costs.map((step) => step[part])),
+  }));
+  const whole = sum(totals.map(({ cost }) => cost)) || 1;
+  return totals
+    .sort((one, other) => other.cost - one.cost)
+    .map((each) => ({ ...each, share: each.cost / whole }));
+}
+
+/** The box around a joint's paths in all the drawings, so that all have one scale. */
+function boxOf(alignments, part) {
+  const places = alignments
+    .flatMap(({ query, gesture }) => [...query, ...gesture].map((step) => step[part]))
+    .filter(Boolean);
+  if (!places.length) return null;
+  const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
+  const [width, height] = [Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)];
+  const margin = MARGIN * Math.max(width, height, 0.1);
+  return {
+    left: Math.min(...xs) - margin,
+    top: Math.min(...ys) - margin,
+    width: width + 2 * margin,
+    height: height + 2 * margin,
+  };
+}
+
+const at = ([x, y]) => `${x.toFixed(3)} ${y.toFixed(3)}`;
+const line = (steps, part) =>
+  steps
+    .map((step) => step[part])
+    .filter(Boolean)
+    .map((place, index) => `${index ? "L" : "M"}${at(place)}`)
+    .join("");
+const between = (from, to) => (from && to ? `M${at(from)}L${at(to)}` : "");
+// A line without length has round ends: a dot.
+const dot = (place) => (place ? `M${at(place)}h0` : "");
+
+/** What each pair of moments costs at one joint, as a share of the whole distance. */
+function sharesOf({ costs, distance }, part) {
+  return costs.map((step) => step[part] / (distance || 1));
+}
+
+function drawnLinks({ pairs, query, gesture }, part, shares) {
+  const most = Math.max(...shares) || 1;
+  return pairs.map(([one, other], index) => {
+    const amount = Math.sqrt(shares[index] / most);
+    return svg("path", {
+      class: "link",
+      d: between(query[one][part], gesture[other][part]),
+      "stroke-width": (0.5 + 3 * amount).toFixed(2),
+      "stroke-opacity": (0.25 + 0.75 * amount).toFixed(2),
+    });
+  });
+}
+
+/** The number at the pair that costs most. */
+function worst({ pairs, query, gesture }, part, shares, box) {
+  const index = shares.indexOf(Math.max(...shares));
+  const [one, other] = [query[pairs[index][0]][part], gesture[pairs[index][1]][part]];
+  if (!one || !other || !shares[index]) return [];
+  const [x, y] = [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2];
+  const onTheRight = x > box.left + 0.6 * box.width;
+  const size = LETTERS * Math.max(box.width, box.height);
+  return [
+    svg(
+      "text",
+      {
+        x: x + (onTheRight ? -size / 2 : size / 2),
+        y,
+        "font-size": size,
+        "text-anchor": onTheRight ? "end" : "start",
+      },
+      percent(shares[index]),
+    ),
+  ];
+}
+
+/** Go to the moment of the take that is nearest to where the drawing was pressed. */
+function seekByPress(drawing, { query, time }, part) {
+  drawing.onclick = (event) => {
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
+      drawing.getScreenCTM().inverse(),
+    );
+    const far = query.map((step) =>
+      step[part] ? Math.hypot(step[part][0] - point.x, step[part][1] - point.y) : Infinity,
+    );
+    if (state.timeline)
+      seek(nearestFrame(state.timeline.time, time[far.indexOf(Math.min(...far))]));
+  };
+}
+
+const asCompared = ({ mirrored, backward }) =>
+  [mirrored ? "as its mirror image" : "", backward ? "from its end" : ""]
+    .filter(Boolean)
+    .join(", ");
+
+/** Draw one alignment at one joint; `show(seconds)` moves its cursor. */
+function figure(alignment, part, box, why) {
+  const { label, pairs, time, gesture_time: theirs, query, gesture, parts } = alignment;
+  const shares = sharesOf(alignment, part);
+  const [kind, role] =
+    label === why.expected
+      ? ["expected", "expected"]
+      : ["chosen", why.right ? "runner-up" : "nearest"];
+  const most = shares.indexOf(Math.max(...shares));
+  const [link, mine, other] = ["now-link", "now-mine", `now-${kind}`].map((name) =>
+    svg("path", { class: name, d: "" }),
+  );
+  const drawing = svg(
+    "svg",
+    {
+      class: "alignment",
+      viewBox: `${box.left} ${box.top} ${box.width} ${box.height}`,
+      role: "img",
+      "aria-label": `The ${readable(parts[part])} in this take and in ${label}. They differ most at ${moment(time[pairs[most][0]])}: ${percent(shares[most])} of all that differs`,
+    },
+    ...drawnLinks(alignment, part, shares),
+    svg("path", { class: `theirs ${kind}`, d: line(gesture, part) }),
+    svg("path", { class: "mine", d: line(query, part) }),
+    svg("path", { class: `begin ${kind}`, d: dot(gesture[0][part]) }),
+    svg("path", { class: "begin", d: dot(query[0][part]) }),
+    link,
+    other,
+    mine,
+    ...worst(alignment, part, shares, box),
+  );
+  seekByPress(drawing, alignment, part);
+  const words = h("p", { className: "at dim" });
+  const show = (seconds) => {
+    const step = nearestFrame(time, seconds);
+    const here = pairs.flatMap(([one], index) => (one === step ? [index] : []));
+    const they = here.map((index) => gesture[pairs[index][1]][part]);
+    link.setAttribute("d", they.map((place) => between(query[step][part], place)).join(""));
+    mine.setAttribute("d", dot(query[step][part]));
+    other.setAttribute("d", they.map(dot).join(""));
+    words.textContent = `${moment(time[step])} with ${moment(theirs[pairs[here[0]][1]])} of ${label}: ${percent(sum(here.map((index) => shares[index])))}`;
+  };
+  const caption = h(
+    "figcaption",
+    {},
+    h("i", { className: kind }),
+    h("b", { className: kind, title: label }, label),
+    h("span", { className: "dim" }, [role, asCompared(alignment)].filter(Boolean).join(", ")),
+    h("span", { className: "num" }, `distance ${alignment.distance.toFixed(3)}`),
+  );
+  return { element: h("figure", {}, caption, drawing, words), show };
+}
+
+function joints(parts, chosen) {
+  const options = parts.map(({ name, share }) =>
+    h("option", { value: name }, `${readable(name)}, ${percent(share)}`),
+  );
+  const select = h(
+    "select",
+    {
+      "aria-label": "Joint whose paths are drawn",
+      onchange: () => update({ joint: select.value }),
+    },
+    options,
+  );
+  select.value = chosen.name;
+  return select;
+}
+
+/** Draw which moments correspond; null where the take and the gestures have no paths to compare. */
+export function alignmentsOf(why) {
+  follower = null;
+  const alignments = why ? pathsOf(why) : [];
+  if (!alignments.length) return null;
+  const box = h("section", { className: "alignments", "aria-label": "Which moments correspond" });
+  const draw = () => {
+    const parts = partsOf(alignments[0]);
+    const chosen = parts.find(({ name }) => name === state.joint) ?? parts[0];
+    const around = boxOf(alignments, chosen.part);
+    const figures = around ? alignments.map((each) => figure(each, chosen.part, around, why)) : [];
+    box.replaceChildren(
+      h(
+        "div",
+        { className: "alignments-head" },
+        h("h2", {}, "Which moments correspond"),
+        joints(parts, chosen),
+      ),
+      h(
+        "div",
+        { className: "figures" },
+        figures.map(({ element }) => element),
+      ),
+      h(
+        "p",
+        { className: "dim" },
+        h("i", { className: "mine" }),
+        "this take, from its dot on. The thicker the line between two moments, the more they differ; the number is their share of the distance.",
+      ),
+    );
+    follower = {
+      joint: chosen.name,
+      draw,
+      show: (seconds) => figures.forEach(({ show }) => show(seconds)),
+    };
+    showMoment();
+  };
+  draw();
+  return box;
+}
+
+/** Follow the clock. */
+export function showMoment() {
+  if (follower && state.position) follower.show(state.position.time);
+}
+
+/** Draw the joint that was chosen. */
+export function showJoint({ joint }) {
+  if (follower && joint && joint !== follower.joint) follower.draw();
+}

@@ -1,0 +1,103 @@
+// The gestures of the language, as cards with their trajectory images.
+
+import { labelInName } from "../clips/clip-label.js";
+import * as api from "../core/api.js";
+import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { currentLanguage, selectedClip, state } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { go } from "../core/views.js";
+import { edit } from "../languages/revision-edit.js";
+
+async function remove(gesture) {
+  const from = currentLanguage();
+  const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
+  try {
+    await edit(
+      "Deleting the gesture",
+      `Deletion of ${gesture.label}`,
+      (language) => api.languages.removeGesture(language, gesture.label),
+      { from, mine },
+    );
+    showDone("Gesture deleted", gesture.label);
+  } catch (error) {
+    complain(error, "Deleting the gesture");
+  }
+}
+
+function draw(gesture, element) {
+  const { revision } = currentLanguage();
+  const mark =
+    state.result &&
+    (gesture.label === state.result.label
+      ? "chosen"
+      : gesture.label === state.result.expected
+        ? "expected"
+        : null);
+  const signature = JSON.stringify([gesture, mark]);
+  if (element?.dataset.signature === signature) return element;
+  const image = `${gesture.thumbnail}${gesture.thumbnail.includes("revision=") ? "" : `?revision=${revision}`}`;
+  const card = h(
+    "li",
+    { className: `card${mark ? ` ${mark}` : ""}` },
+    h("img", {
+      src: image,
+      alt: `Trajectory of ${gesture.label}`,
+      loading: "lazy",
+      width: 112,
+      height: 112,
+    }),
+    h(
+      "div",
+      { className: "card-text" },
+      h("b", { title: gesture.label }, gesture.label),
+      h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
+      mark ? h("span", { className: `tag ${mark}` }, mark) : null,
+    ),
+    h(
+      "div",
+      { className: "card-buttons" },
+      iconButton("rename", `Change ${gesture.label}`, () =>
+        go("gesture", { gesture: gesture.label }),
+      ),
+      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture)),
+    ),
+  );
+  card.dataset.signature = signature;
+  return card;
+}
+
+export function drawGestures({ gestures, result }) {
+  const members = gestures?.gestures ?? [];
+  byId("gesture-count").textContent = members.length ? String(members.length) : "";
+  const empty = byId("gestures-empty");
+  empty.hidden = members.length > 0;
+  empty.textContent = gestures
+    ? "No gestures yet. Select a take of a clip and press \u201cSave as gesture\u201d: one demonstration is enough."
+    : "No language yet. Make one with +, or drop a language file (.json).";
+  reconcile(byId("gestures"), members, (gesture) => gesture.label, draw);
+  drawExpected(members, result);
+}
+
+/** @type {{ result: string | null, clip: string | null | undefined }} */
+let shown = { result: null, clip: null };
+
+/** Fill the choice of the expected label; a recognition that is opened brings its own. */
+function drawExpected(members, result) {
+  const expected = byId("expected");
+  const clip = selectedClip();
+  let expectedLabel = expected.value;
+  if (result && result.id !== shown.result) expectedLabel = result.expected ?? "";
+  else if (clip?.id !== shown.clip)
+    expectedLabel = labelInName(
+      clip?.name ?? "",
+      members.map(({ label }) => label),
+    );
+  shown = { result: result?.id ?? null, clip: clip?.id };
+  expected.replaceChildren(
+    h("option", { value: "" }, "not known"),
+    ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),
+  );
+  expected.value = members.some((gesture) => gesture.label === expectedLabel) ? expectedLabel : "";
+}

@@ -1,0 +1,111 @@
+// The trial of a counterfactual's intervention: applied, recognised again, then kept or discarded.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { currentLanguage, state, update } from "../core/state.js";
+import { complain, toast } from "../core/toasts.js";
+import { showDone, undo } from "../core/undo.js";
+import { keepTuning } from "../languages/language-tuning.js";
+import { edit } from "../languages/revision-edit.js";
+import { rangeOf, recogniseWith } from "./stage.js";
+
+/** @import { Recognition } from "../core/types.d.ts" */
+
+const currentResult = () => /** @type {Recognition} */ (state.result);
+
+/** What differs from the profile in the recognition on display. */
+/** @returns {any} */
+const tuning = () => currentResult().tuning ?? currentLanguage().tuning ?? { weights: {} };
+
+const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
+
+const APPLY = {
+  trim: (change) => {
+    update({ take: null, start: change.start, end: change.end });
+    return {};
+  },
+  voter_weight: ({ voter, factor }) => {
+    const { weights } = tuning();
+    return tuned({ weights: { ...weights, [voter]: (weights[voter] ?? 1) * factor } });
+  },
+  simplification: (change) => tuned({ simplification: change.tolerance }),
+  keypoint_repair: (change) => tuned({ keypoints_repaired: change.on }),
+  // Weights are for the voters of a profile.
+  profile: (change) => ({ profile: change.profile, ...tuned({ weights: {} }) }),
+  salient: (change) => changeGesture(change, { salient: change.salient }),
+  switch: (change) => changeGesture(change, { [change.switch]: change.position }),
+  demonstration: (change) => changeGesture(change, { demonstration: rangeOf() }),
+};
+
+/** Changes of how the whole language is recognised. */
+const TUNING = new Set(["voter_weight", "simplification", "keypoint_repair", "profile"]);
+
+async function changeGesture(change, body) {
+  await edit("Trying the change", `Change of ${change.label}`, (language) =>
+    api.languages.changeGesture(language, change.label, body),
+  );
+  return { edited: true };
+}
+
+/** Apply an intervention and recognise again; it can be discarded until it is kept. */
+export async function tryOut({ change }) {
+  const { recognition, take, start, end, trial } = state;
+  const { profile, tuning: before } = currentResult();
+  try {
+    const { edited = false, ...extra } = await APPLY[change.kind](change);
+    const result = await recogniseWith({ profile, tuning: before, ...extra });
+    if (result)
+      update({
+        trial: {
+          change,
+          base: { recognition, take, start, end, trial },
+          edited,
+          result: result.id,
+        },
+      });
+  } catch (error) {
+    complain(error, "Trying the change");
+  }
+}
+
+async function discard({ base, edited }) {
+  update({ trial: null });
+  // What is tried next starts from the language as it was.
+  if (edited) await undo();
+  update(base);
+}
+
+async function keep({ change, edited }) {
+  const result = currentResult();
+  const { words } = change;
+  const where = `${words}, in ${currentLanguage().name}`;
+  try {
+    if (result.tuning !== null || TUNING.has(change.kind)) await keepTuning(result, words);
+  } catch (error) {
+    complain(error, "Keeping the change");
+    return;
+  }
+  update({ trial: null });
+  if (TUNING.has(change.kind)) {
+    // By the saved language, so that the page shows the robot's result.
+    await recogniseWith();
+    showDone("Change kept", where);
+  } else if (edited) toast("Change kept", where);
+  else toast("Range kept", "It is selected now: save it as a gesture, or recognise it again.");
+}
+
+/** Show the trial and its result, with buttons to keep or discard it. */
+export function trialBar(trial, result) {
+  const read = result.label ?? `nothing; nearest is ${result.nearest}`;
+  return h(
+    "div",
+    { className: "trial", role: "status" },
+    h("p", {}, h("b", {}, "Trial: "), `${trial.change.words}. Recognised as ${read}.`),
+    h(
+      "span",
+      { className: "joined" },
+      h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep"),
+      h("button", { type: "button", onclick: () => discard(trial) }, "Discard"),
+    ),
+  );
+}

@@ -1,0 +1,70 @@
+// The playback clock of the workspace, shared by the 3D view, the timeline and the keys.
+
+import { state, update } from "../core/state.js";
+
+const RETRY = 1000; // ms
+
+let socket = null;
+let workspace = null;
+let unsent = []; // commands from before the connection opened
+let wantedFrame = null; // from the URL, until the clip is shown
+
+/** Follow the clock of a workspace, and of another one when that one is gone. */
+export function followClock(id) {
+  workspace = id;
+  unsent = [];
+  socket?.close();
+  connect(id);
+}
+
+function connect(id) {
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  const opened = new WebSocket(
+    `${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`,
+  );
+  socket = opened;
+  opened.onopen = () => {
+    for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish));
+  };
+  opened.onmessage = ({ data }) => received(JSON.parse(data));
+  // A workspace that is gone is opened anew by whoever shows something next.
+  opened.onclose = () => {
+    if (socket === opened && workspace === id)
+      setTimeout(() => {
+        if (socket === opened) connect(id);
+      }, RETRY);
+  };
+}
+
+function received(position) {
+  const rests = !position.playing && wantedFrame === null && state.takes !== null;
+  update(rests ? { position, frame: position.frame } : { position });
+}
+
+function ask(wish) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wish));
+  else unsent.push(wish);
+}
+
+/** Keep the frame that a link names, for `frameShown`. */
+export function rememberFrame(frame) {
+  wantedFrame = frame;
+}
+
+/** The clip is on display: go to the frame that the link named, once. */
+export function frameShown() {
+  if (wantedFrame !== null) seek(wantedFrame);
+  wantedFrame = null;
+}
+
+/** Show a frame of the clip, counted from 0. */
+export const seek = (frame) => ask({ do: "seek", frame: Math.max(0, Math.round(frame)) });
+
+/** Pause, and go some frames on or back. */
+export const step = (frames) => ask({ do: "step", frames });
+
+/** Play that many times as fast as the camera saw it; backwards if negative, 0 pauses. */
+export const play = (speed) => ask({ do: "play", speed });
+
+/** Repeat the range on display, or play on. */
+export const loop = (on) => ask({ do: "loop", on });

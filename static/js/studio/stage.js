@@ -1,0 +1,192 @@
+// The stage: the clip on display, its takes, and the outcome of its recognition.
+
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
+import { newLanguage } from "../languages/language-store.js";
+import { frameShown } from "./playback.js";
+import { drawTimeline } from "./timeline.js";
+import { buildTransport } from "./transport.js";
+import { show } from "./workspace.js";
+
+/** @import { SelectedRange } from "../core/types.d.ts" */
+
+const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
+
+let viewTimer = 0;
+let shownView = "";
+
+/** Load the takes of the clip on display as soon as it has any. */
+export async function loadTakes() {
+  const clip = selectedClip();
+  // Those of the clip before must not be taken for this one's while its own are on their way.
+  update({ takes: null, timeline: null });
+  if (!clip || clip.status !== "done") return undefined;
+  const loaded = await attempt("Loading the takes", () =>
+    Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]),
+  );
+  if (!loaded || state.clip !== clip.id) return undefined;
+  const [takes, timeline] = loaded;
+  const kept = state.take !== null && state.take < takes.length ? state.take : null;
+  const byHand = state.start !== null || state.end !== null;
+  return update({ takes, timeline, take: kept ?? (takes.length && !byHand ? 0 : null) });
+}
+
+/** Let the workspace show what is selected, once the selection rests. */
+export function showSelection() {
+  clearTimeout(viewTimer);
+  const clip = selectedClip();
+  if (!clip || clip.status !== "done" || !state.takes) return;
+  const { shown } = /** @type {SelectedRange} */ (selectedRange());
+  /** @type {{ clip_id: string, start?: number, end?: number, recognition_id?: string }} */
+  const view = { clip_id: clip.id, start: shown[0], end: shown[1] };
+  // Without a take or a choice the whole clip is meant, to its very last frame.
+  if (state.take === null && state.start === null) delete view.start;
+  if (state.take === null && state.end === null) delete view.end;
+  if (state.recognition) view.recognition_id = state.recognition;
+  const text = JSON.stringify(view);
+  if (text === shownView) return;
+  viewTimer = setTimeout(
+    () => {
+      shownView = text;
+      show(view).then(frameShown);
+    },
+    state.take === null && state.start !== null ? SETTLED : 0,
+  );
+}
+
+function query() {
+  const { start, end } = /** @type {SelectedRange} */ (selectedRange());
+  const whole = state.take === null && state.start === null && state.end === null;
+  return whole && !state.takes?.length
+    ? { clip_id: state.clip }
+    : { clip_id: state.clip, start, end };
+}
+
+/** Make a gesture of what is selected, in its own view. */
+async function saveGesture() {
+  if (!state.language && !(await newLanguage())) return;
+  await go("gesture", { gesture: null });
+}
+
+/** The range on which the buttons act, as the API takes it. */
+export const rangeOf = () => query();
+
+/** Recognise what is selected; `extra` overrides parts of the request. */
+export async function recogniseWith(extra = {}) {
+  const body = {
+    ...query(),
+    language_id: state.language,
+    expected: byId("expected").value || null,
+    ...extra,
+  };
+  const result = await attempt("Recognition", () => api.recognitions.create(body));
+  if (!result || result.clip_id !== state.clip) return null; // Another clip is on display by now.
+  update({ result, recognition: result.id });
+  return result;
+}
+
+async function recognise() {
+  if (!state.gestures?.gestures.length) {
+    toast(
+      "Nothing to compare with",
+      "The language has no gestures yet. Save one from a take, or choose another language above.",
+      { kind: "error" },
+    );
+    return;
+  }
+  const button = byId("recognise");
+  button.disabled = true;
+  update({ trial: null });
+  await recogniseWith();
+  button.disabled = false;
+}
+
+/** Recognise a clip that was asked about, as soon as its takes are there. */
+export async function answerQuestion({ question, takes, clip }) {
+  if (!question || question.clip !== clip || !takes) return;
+  update({ question: null });
+  await recogniseWith({ expected: question.expected });
+}
+
+/** Load the recognition that the URL names. */
+export async function loadResult() {
+  const wanted = state.recognition;
+  if (!wanted) return update({ result: null });
+  if (state.result?.id === wanted) return undefined;
+  try {
+    const result = await api.recognitions.get(wanted);
+    return state.recognition === wanted ? update({ result }) : undefined;
+  } catch (error) {
+    if (state.recognition !== wanted) return undefined;
+    complain(error, "Loading the recognition");
+    return update(api.isAway(error) ? { result: null } : { result: null, recognition: null });
+  }
+}
+
+/** Show what was recognised; the votes are in the workspace. */
+export function drawOutcome({ result }) {
+  const box = byId("outcome");
+  if (!result) return box.replaceChildren();
+  const { label, nearest, expected, votes, weights, fault } = result;
+  const voters = Object.keys(votes)
+    .filter((voter) => weights[voter] !== 0)
+    .map((voter) => votes[voter]);
+  const count = voters.filter((vote) => vote === nearest).length;
+  const wrong = label === null || (expected !== null && expected !== label);
+  const parts =
+    label === null
+      ? [
+          fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
+          h("b", {}, nearest),
+        ]
+      : expected === null || expected === label
+        ? [
+            "Recognised as ",
+            h("b", { className: "chosen" }, label),
+            expected === label ? ", as expected" : "",
+          ]
+        : [
+            "Recognised as ",
+            h("b", { className: "chosen" }, label),
+            ", expected ",
+            h("b", { className: "expected" }, expected),
+          ];
+  box.className = `outcome ${wrong ? "wrong" : "right"}`;
+  return box.replaceChildren(
+    h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
+    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)),
+  );
+}
+
+/** Draw the bar above the frame. */
+export function drawStage() {
+  const clip = selectedClip();
+  byId("clip-bar").hidden = !clip;
+  document.title = clip ? `${clip.name} \u2013 OSG Studio` : "OSG Studio";
+  if (!clip) return;
+  const ready = clip.status === "done";
+  byId("clip-name").textContent = clip.name;
+  byId("clip-meta").textContent = ready
+    ? ""
+    : clip.status === "failed"
+      ? (clip.error ?? "")
+      : "Its takes appear as soon as the poses are found.";
+  for (const id of ["save-gesture", "recognise", "expected"])
+    byId(id).disabled = !ready || !state.takes;
+  byId("clip-warnings").replaceChildren(
+    ...(clip.warnings ?? []).map((warning) => h("li", {}, warning)),
+  );
+  byId("range-text").replaceChildren();
+  drawTimeline();
+}
+
+/** Wire the buttons. */
+export function stageButtons() {
+  byId("save-gesture").onclick = () =>
+    saveGesture().catch((error) => complain(error, "Saving the gesture"));
+  byId("recognise").onclick = recognise;
+  buildTransport();
+}

@@ -1,0 +1,78 @@
+// The curves under the timeline: the salute's confidence and the wrists' speed.
+
+import { h, svg } from "../core/dom.js";
+import { SALUTE } from "../core/salute-threshold.js";
+
+const HEIGHT = 30; // of the drawing, in its own units
+
+const CURVES = [
+  { name: "right_wrist", className: "right", text: "right wrist\u2019s speed" },
+  { name: "left_wrist", className: "left", text: "left wrist\u2019s speed" },
+];
+
+/** The path of a line through `values`, interrupted where there is none. */
+export function linePath(values, top, share) {
+  let down = false;
+  return values
+    .map((value, index) => {
+      if (value === null) {
+        down = false;
+        return "";
+      }
+      const y = (HEIGHT * (1 - Math.min(1, value / top))).toFixed(2);
+      const command = `${down ? "L" : "M"}${share(index)} ${y}`;
+      down = true;
+      return command;
+    })
+    .join("");
+}
+
+/** The largest of what ordinary frames show: a landmark that jumps must not flatten the rest. */
+export function topSpeed(timeline) {
+  const values = CURVES.flatMap(({ name }) => timeline.speed[name])
+    .filter((value) => value !== null)
+    .sort((one, other) => one - other);
+  return Math.max(0.5, values[Math.floor(0.98 * (values.length - 1))] ?? 0);
+}
+
+/** The curves, over the same width as the takes. */
+export function curves(timeline) {
+  const { time, salute, speed, unit } = timeline;
+  const last = time.at(-1) || 1;
+  const share = (index) => ((1000 * time[index]) / last).toFixed(1);
+  const top = topSpeed(timeline);
+  const tops = salute.map(
+    (value, index) => `L${share(index)} ${(HEIGHT * (1 - value)).toFixed(2)}`,
+  );
+  const area = `M0 ${HEIGHT}${tops.join("")}L1000 ${HEIGHT}Z`;
+  const drawing = svg(
+    "svg",
+    {
+      viewBox: `0 0 1000 ${HEIGHT}`,
+      preserveAspectRatio: "none",
+      role: "img",
+      "aria-label": "Salute\u2019s confidence and the wrists\u2019 speed along the clip",
+    },
+    svg("path", { class: "salute-area", d: area }),
+    svg("path", { class: "salute-bar", d: `M0 ${HEIGHT * (1 - SALUTE)}H1000` }),
+    ...CURVES.map(({ name, className }) =>
+      svg("path", { class: className, d: linePath(speed[name], top, share) }),
+    ),
+  );
+  const length = unit === "torso_length" ? "torso lengths" : "extents";
+  return h(
+    "div",
+    { className: "curves", title: `Speed up to ${top.toFixed(1)} ${length} a second` },
+    drawing,
+  );
+}
+
+/** What the curves are, in words. */
+export function legend() {
+  return h(
+    "ul",
+    { className: "curve-legend", "aria-label": "Curves" },
+    h("li", {}, h("i", { className: "salute-area" }), "salute"),
+    CURVES.map(({ className, text }) => h("li", {}, h("i", { className }), text)),
+  );
+}

@@ -1,0 +1,180 @@
+// The tour of a first visit: a card that points at parts of the page, which stays usable.
+
+import { byId, h } from "../core/dom.js";
+import { go } from "../core/views.js";
+
+const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
+const GAP = 12; // px between the card and what it points at.
+
+/**
+ * Each step points at the first of its places that is visible; without one, the card stands alone.
+ */
+const STEPS = [
+  {
+    title: "One demonstration makes a gesture",
+    text: "One clip of a gesture is enough for the robot to recognise it. The four steps:",
+    places: [],
+  },
+  {
+    title: "1. Give it a clip",
+    text: "Drop clips anywhere in the window: Vulcan salute, the gesture, Vulcan salute. Sample clips are below the list.",
+    places: [".drop label", "#clips"],
+  },
+  {
+    title: "2. Save the take as a gesture",
+    text: "The take between two salutes appears on the timeline. Save it as a gesture, or recognise it.",
+    places: ["#clip-bar", "#stage"],
+  },
+  {
+    title: "3. Ask why",
+    text: "Every voter has a distance to every gesture: see which voters were wrong, and which change would help.",
+    places: ["#why", ".lab"],
+  },
+  {
+    title: "4. Keep it in a language",
+    text: "Gestures make a language. Every change is kept and can be undone; Export writes the file for the robot.",
+    places: ["#views a:nth-child(2)", ".picker"],
+  },
+];
+
+let card = null;
+let pointed = null; // what the card points at
+let came = null; // where the focus was
+
+const seen = () => {
+  try {
+    return localStorage.getItem(KEY) !== null;
+  } catch {
+    return true;
+  }
+};
+
+function remember() {
+  try {
+    localStorage.setItem(KEY, "seen");
+  } catch {
+    /* a browser that keeps nothing shows it again */
+  }
+}
+
+const visible = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
+
+const placeOf = (step) =>
+  step.places.flatMap((place) => [...document.querySelectorAll(place)]).find(visible) ?? null;
+
+/** Put the card where it hides nothing of what it points at, as far as the window has room. */
+function position() {
+  const [ring, place] = [byId("tour-ring"), pointed];
+  const { width, height } = card.getBoundingClientRect();
+  const { innerWidth: w, innerHeight: t } = window;
+  const clamp = (value, most) => Math.max(GAP, Math.min(value, most - GAP));
+  if (!place) {
+    Object.assign(card.style, {
+      left: `${clamp(w - width - GAP, w - width)}px`,
+      top: `${clamp(t - height - GAP, t - height)}px`,
+    });
+    return;
+  }
+  const box = place.getBoundingClientRect();
+  Object.assign(ring.style, {
+    left: `${box.left - 4}px`,
+    top: `${box.top - 4}px`,
+    width: `${box.width + 8}px`,
+    height: `${box.height + 8}px`,
+  });
+  const beside = box.right + GAP + width <= w;
+  const below = box.bottom + GAP + height <= t;
+  const above = box.top - GAP - height >= 0;
+  const left = beside && !below ? box.right + GAP : box.left;
+  const top = below
+    ? box.bottom + GAP
+    : beside
+      ? box.top
+      : above
+        ? box.top - GAP - height
+        : box.bottom - height - GAP;
+  Object.assign(card.style, {
+    left: `${clamp(left, w - width)}px`,
+    top: `${clamp(top, t - height)}px`,
+  });
+}
+
+function escape(event) {
+  if (event.key === "Escape" && !document.querySelector("dialog[open]")) end();
+}
+
+function end() {
+  if (!card) return;
+  removeEventListener("resize", position);
+  removeEventListener("scroll", position, true);
+  removeEventListener("keydown", escape);
+  byId("tour-ring")?.remove();
+  card.remove();
+  card = null;
+  came?.focus?.();
+  remember();
+}
+
+function show(number, focus) {
+  const step = STEPS[number];
+  const last = number === STEPS.length - 1;
+  const place = placeOf(step);
+  place?.scrollIntoView({ block: "center" });
+  const ring = byId("tour-ring");
+  ring.hidden = !place;
+  const onward = h(
+    "button",
+    {
+      type: "button",
+      className: "primary",
+      onclick: () => (last ? end() : show(number + 1, true)),
+    },
+    last ? "Done" : number ? "Next" : "Show me",
+  );
+  card.replaceChildren(
+    h("h2", { id: "tour-title" }, step.title),
+    h("p", { id: "tour-text" }, step.text),
+    h(
+      "div",
+      { className: "tour-actions" },
+      h("span", { className: "dim" }, `${number + 1} of ${STEPS.length}`),
+      h("span", { className: "spacer" }),
+      number
+        ? h("button", { type: "button", onclick: () => show(number - 1, true) }, "Back")
+        : null,
+      last ? null : h("button", { type: "button", className: "quiet", onclick: end }, "Skip"),
+      onward,
+    ),
+  );
+  pointed = place;
+  position();
+  if (focus) onward.focus();
+}
+
+function begin(focus) {
+  came = document.activeElement;
+  card = h("section", {
+    className: "tour",
+    role: "dialog",
+    "aria-labelledby": "tour-title",
+    "aria-describedby": "tour-text",
+  });
+  // Early in the order of Tab, so that a keyboard finds it.
+  document.body.prepend(h("div", { id: "tour-ring", className: "tour-ring", hidden: true }), card);
+  show(0, focus);
+  addEventListener("resize", position);
+  addEventListener("scroll", position, true);
+  addEventListener("keydown", escape);
+}
+
+/** Show around, on request. */
+export function startTour() {
+  end();
+  go("studio");
+  begin(true);
+}
+
+/** Offer it on a first visit, without taking the focus away. */
+export function offerTour() {
+  if (!seen()) begin(false);
+}

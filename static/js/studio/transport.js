@@ -1,0 +1,141 @@
+// The playback controls under the timeline, and their keys.
+
+import { byId, h, icon } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { bind } from "../core/keys.js";
+import { selectedClip, state, update } from "../core/state.js";
+import { loop, play, step } from "./playback.js";
+import { setEnd, setStart } from "./timeline.js";
+
+const SPEEDS = [0.25, 0.5, 1, 2];
+const FASTEST = 16;
+const GROUP = "Playback";
+
+const speed = () => Number(byId("speed").value);
+
+const toggle = () => play(state.position?.playing ? 0 : speed());
+
+/** J and L: the other way at normal speed, or twice as fast the same way. */
+function shuttle(direction) {
+  const { playing, speed: now } = state.position ?? { playing: false, speed: 1 };
+  const same = playing && Math.sign(now) === direction;
+  play(direction * (same ? Math.min(FASTEST, 2 * Math.abs(now)) : 1));
+}
+
+/** Choose the take after the one on display, or before it. */
+function neighbour(by) {
+  const { takes, take } = state;
+  if (!takes?.length) return;
+  const next = take === null ? (by > 0 ? 0 : takes.length - 1) : take + by;
+  if (takes[next]) update({ take: next, start: null, end: null, recognition: null });
+}
+
+const button = (name, label, keys, onclick) =>
+  h(
+    "button",
+    {
+      type: "button",
+      className: "quiet icon",
+      id: `do-${name}`,
+      "aria-label": label,
+      title: `${label} (${keys})`,
+      onclick,
+    },
+    icon(name),
+  );
+
+/** Build the bar, and let the keys do what it does. */
+export function buildTransport() {
+  byId("transport").replaceChildren(
+    h(
+      "div",
+      { className: "transport-buttons" },
+      button("back", "One frame back", ",", () => step(-1)),
+      button("play", "Play", "Space", toggle),
+      button("forth", "One frame on", ".", () => step(1)),
+    ),
+    h("p", { className: "clock", id: "clock" }),
+    h("small", {
+      className: "dim num",
+      id: "picture-of",
+      title:
+        "Not every picture of a clip this long is kept. Choose a take or a shorter range to see all of them.",
+    }),
+    h("label", { className: "visually-hidden", for: "speed" }, "Speed"),
+    h(
+      "select",
+      {
+        id: "speed",
+        title: "Speed",
+        onchange: () => {
+          if (state.position?.playing) play(speed());
+        },
+      },
+      SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`)),
+    ),
+    h(
+      "button",
+      {
+        type: "button",
+        className: "quiet icon",
+        id: "do-loop",
+        "aria-label": "Repeat the range",
+        title: "Repeat the range",
+        onclick: () => loop(!state.position?.loop),
+      },
+      icon("loop"),
+    ),
+    h(
+      "span",
+      { className: "joined edges" },
+      h(
+        "button",
+        { type: "button", title: "Let the range start here ([)", onclick: setStart },
+        "Start here",
+      ),
+      h(
+        "button",
+        { type: "button", title: "Let the range end here (])", onclick: setEnd },
+        "End here",
+      ),
+    ),
+  );
+  const when = () =>
+    selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
+  const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
+  keys(["Space"], "Play or pause", toggle);
+  keys([","], "One frame back", () => step(-1));
+  keys(["."], "One frame on", () => step(1));
+  keys(["Shift+,"], "Ten frames back", () => step(-10));
+  keys(["Shift+."], "Ten frames on", () => step(10));
+  keys(["J"], "Play backwards; again: twice as fast", () => shuttle(-1));
+  keys(["K"], "Pause", () => play(0));
+  keys(["L"], "Play; again: twice as fast", () => shuttle(1));
+  keys(["T"], "Next take", () => neighbour(1));
+  keys(["Shift+T"], "Take before", () => neighbour(-1));
+  keys(["["], "Let the range start here", setStart);
+  keys(["]"], "Let the range end here", setEnd);
+}
+
+/** Show where the clock stands. */
+export function drawTransport({ position }) {
+  const bar = byId("transport");
+  bar.hidden = !position || selectedClip()?.status !== "done";
+  if (bar.hidden) return;
+  const { playing, frame, frames, time } = position;
+  const toggles = byId("do-play");
+  const label = playing ? "Pause" : "Play";
+  if (toggles.getAttribute("aria-label") !== label) {
+    toggles.replaceChildren(icon(playing ? "pause" : "play"));
+    toggles.setAttribute("aria-label", label);
+    toggles.title = `${label} (Space)`;
+  }
+  // The number is never taken for that of a picture which is another frame's.
+  const other = !playing && position.picture !== null && position.picture !== frame;
+  byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
+  byId("do-loop").setAttribute("aria-pressed", String(position.loop));
+  byId("clock").replaceChildren(
+    h("b", {}, moment(time)),
+    ` frame ${frame} of ${frames}${playing && Math.abs(position.speed) !== 1 ? `, ${position.speed}\u00d7` : ""}`,
+  );
+}

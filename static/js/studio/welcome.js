@@ -1,0 +1,178 @@
+// The panel in the middle while there is nothing to show: how to begin, or the progress.
+
+import { BUSY, needsTopic, statusText } from "../clips/clip-store.js";
+import { addSampleClip, samplesList } from "../clips/sample-clips.js";
+import { topicsPanel } from "../clips/topic-dialog.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { firstMoment } from "../core/frame-times.js";
+import { drawPose, skeleton } from "../core/skeleton.js";
+import { selectedClip, state, update } from "../core/state.js";
+import { choose } from "../languages/language-store.js";
+
+const STEPS = [
+  ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
+  ["Save", "Save the take between the salutes as a gesture. One demonstration is enough."],
+  ["Ask why", "Recognise another clip, and see every voter\u2019s distance to every gesture."],
+  ["Export", "Export the language for the robot as one JSON file."],
+];
+
+/**
+ * A few clips to begin with, one of each kind; all of them are in the library. Those to recognise
+ * come first, since the sample languages hold the demonstrations already.
+ */
+function offered(samples) {
+  const demonstrates = (sample) => sample.name.includes("demonstration");
+  const sorted = [...samples].sort((one, other) => demonstrates(one) - demonstrates(other));
+  const kinds = new Map();
+  for (const sample of sorted) {
+    const kind = sample.name.split("-")[0];
+    if (!kinds.has(kind)) kinds.set(kind, sample);
+  }
+  return [...kinds.values()];
+}
+
+/** The sample that is recognised wrongly, with its expected label. */
+const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
+
+/**
+ * A button that shows why the misread sample is misread; null where it, or its language, is gone.
+ */
+function question(samples, languages) {
+  const sample = samples.find(({ name }) => name === MISREAD.name);
+  const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
+  const language =
+    languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
+  if (!sample || !language) return null;
+  const button = h(
+    "button",
+    { type: "button", className: "question" },
+    h("b", {}, `Why was a ${MISREAD.expected} read as a ${MISREAD.read}?`),
+    h(
+      "span",
+      {},
+      "This sample clip is recognised wrongly. See which voters were wrong, where, and which change would have helped.",
+    ),
+  );
+  button.onclick = async () => {
+    await choose(language.id);
+    const clip = await addSampleClip(sample, button);
+    if (clip) update({ question: { clip, expected: MISREAD.expected } });
+  };
+  return button;
+}
+
+function welcome(samples, languages) {
+  return [
+    h("h1", {}, "One demonstration makes a gesture"),
+    h(
+      "ol",
+      { className: "steps" },
+      STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
+    ),
+    question(samples, languages),
+    h(
+      "div",
+      { className: "welcome-actions" },
+      h(
+        "button",
+        { type: "button", className: "primary", onclick: () => byId("file").click() },
+        "Choose clips",
+      ),
+      samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null,
+    ),
+    samples.length ? samplesList(offered(samples)) : null,
+  ];
+}
+
+/** For when the clip on display was deleted elsewhere. */
+const noClip = () =>
+  h(
+    "div",
+    { className: "welcome-none" },
+    h("h1", {}, "No clip is shown"),
+    h("p", { className: "dim" }, "Choose one from the list, or drop another one."),
+  );
+
+/** The clip's own picture under the skeleton; `showProgress` moves both on. */
+function progressPanel(clip) {
+  // The video of a dive recording is made while its poses are found.
+  const video = clip.topics.length
+    ? null
+    : h("video", {
+        src: api.clips.video(clip.id),
+        muted: true,
+        playsInline: true,
+        preload: "auto",
+        "aria-hidden": "true",
+      });
+  if (video)
+    firstMoment(video).then((start) => {
+      video.dataset.start = String(start);
+    });
+  return h(
+    "div",
+    { className: "welcome-progress" },
+    h(
+      "div",
+      { className: "live-pose", style: { "aspect-ratio": `${clip.width} / ${clip.height}` } },
+      video,
+      skeleton(clip.width, clip.height),
+    ),
+    h("h1"),
+    h("progress", { "aria-label": "Progress" }),
+    h("p", { className: "dim", role: "status" }),
+  );
+}
+
+/** Show the frame in which the newest pose was found, and the pose. */
+function showPose(panel, clip, { time, pose }) {
+  const video = panel.querySelector("video");
+  const playable =
+    video &&
+    !video.error &&
+    (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
+  if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
+  // A seek that is cut short by the next shows nothing, so the next waits.
+  if (playable && !video.seeking && video.dataset.start)
+    video.currentTime = Number(video.dataset.start) + time;
+  drawPose(panel.querySelector(".skeleton"), pose);
+}
+
+/** Change what moves in the panel, and keep the rest: the video would be loaded anew. */
+function showProgress(panel, clip, job) {
+  const bar = panel.querySelector("progress");
+  panel.querySelector("h1").textContent =
+    clip.status === "queued" ? "Waiting in the queue" : "Finding the diver\u2019s poses";
+  panel.querySelector("[role=status]").textContent = statusText(clip, job);
+  if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
+  else bar.removeAttribute("value");
+  if (Number.isFinite(job?.time)) showPose(panel, clip, job);
+}
+
+/** What there is to show: `{ key, panel }`, or null when the workspace has something to show. */
+function contentOf({ clips, uploads, samples, languages, loaded }, clip) {
+  if (clip && BUSY.has(clip.status)) return { key: clip.job_id, panel: () => progressPanel(clip) };
+  if (clip && needsTopic(clip)) return { key: `topics ${clip.id}`, panel: () => topicsPanel(clip) };
+  if (clip || !loaded || uploads.length) return null;
+  if (clips.length) return { key: "unchosen", panel: noClip };
+  const revisions = languages.map(({ id, revision }) => id + revision);
+  return {
+    key: `welcome ${samples.length} ${revisions}`,
+    panel: () => h("div", {}, welcome(samples, languages)),
+  };
+}
+
+/** Draw it, or hide it when the workspace has something to show. */
+export function drawWelcome(values) {
+  const box = byId("welcome");
+  const clip = selectedClip();
+  const content = contentOf(values, clip);
+  const key = content?.key ?? "";
+  box.hidden = !key;
+  if (box.dataset.shows !== key) {
+    box.dataset.shows = key;
+    box.replaceChildren(...(content ? [content.panel()] : []));
+  }
+  if (clip && BUSY.has(clip.status)) showProgress(box, clip, values.jobs.get(clip.job_id));
+}

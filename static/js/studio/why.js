@@ -1,0 +1,189 @@
+// The explanation of a recognition: its sentence, the differences in time, and counterfactuals.
+
+import * as api from "../core/api.js";
+import { byId, h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { alignmentsOf } from "./alignment.js";
+import { trialBar, tryOut } from "./intervention-trial.js";
+
+const MOST_PARTS = 3; // Joints shown over time: those that cost most.
+const LANE = 14; // Height of a joint's lane, in the drawing's own units.
+
+/** Load the explanation, once there is an expected label. */
+export async function loadWhy({ result }) {
+  if (!result || result.expected === null) return update({ why: null });
+  if (state.why?.id === result.id) return undefined;
+  const why = await attempt("Explaining", () => api.recognitions.explain(result.id));
+  // Another recognition may be on display by now, whose own reasons must stay.
+  return state.result?.id === result.id ? update({ why }) : undefined;
+}
+
+/** The DTW cost of each step of the take and joint, against the expected gesture. */
+function costs({ alignments, expected }) {
+  const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
+  if (!alignment) return null;
+  const steps = alignment.time.map(() => alignment.parts.map(() => 0));
+  alignment.pairs.forEach(([step], index) =>
+    alignment.costs[index].forEach((cost, part) => {
+      steps[step][part] += cost;
+    }),
+  );
+  const totals = alignment.parts.map((_, part) => steps.reduce((sum, step) => sum + step[part], 0));
+  const shown = totals
+    .map((total, part) => ({ total, part }))
+    .sort((one, other) => other.total - one.total)
+    .filter(({ total }) => total > 0)
+    .slice(0, MOST_PARTS);
+  return {
+    time: alignment.time,
+    steps,
+    lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })),
+    label: expected,
+  };
+}
+
+/** Draw the costs along the clip's time, as height and shade. */
+function lane({ time, steps }, { part, name }, most, last) {
+  const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
+  const bars = steps.map((step, index) => {
+    const from = index ? (time[index - 1] + time[index]) / 2 : time[index];
+    const to = index + 1 < time.length ? (time[index] + time[index + 1]) / 2 : time[index];
+    const amount = Math.sqrt(step[part] / most);
+    return svg("rect", {
+      x: share(from),
+      width: Math.max(0.5, Number(share(to)) - Number(share(from))),
+      y: LANE * (1 - amount),
+      height: LANE * amount,
+      "fill-opacity": (0.35 + 0.65 * amount).toFixed(2),
+    });
+  });
+  return h(
+    "div",
+    { className: "cost-lane" },
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 1000 ${LANE}`,
+        preserveAspectRatio: "none",
+        role: "img",
+        "aria-label": `Difference of the ${readable(name)} along the clip`,
+      },
+      ...bars,
+    ),
+    h("span", {}, readable(name)),
+  );
+}
+
+/** Under the curves: where along the take it differs from what was expected, and in which joint. */
+export function drawCosts({ why, timeline }) {
+  const box = byId("costs");
+  const found = why && timeline && !why.right ? costs(why) : null;
+  if (!found?.lanes.length) return box.replaceChildren();
+  const most =
+    Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
+  return box.replaceChildren(
+    h(
+      "p",
+      { className: "cost-title" },
+      "Where it differs from ",
+      h("b", { className: "expected" }, found.label),
+    ),
+    ...found.lanes.map((each) => lane(found, each, most, timeline.time.at(-1) || 1)),
+  );
+}
+
+/** The side effect of an intervention on the other gestures, in words. */
+function effectOf(effect) {
+  if (!effect) return null;
+  if (effect.right_after < effect.right_before) {
+    const [shown, are] =
+      effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
+    return h(
+      "small",
+      { className: "expected" },
+      `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`,
+    );
+  }
+  return h(
+    "small",
+    { className: "dim" },
+    `the others stay right (${effect.right_after} of ${effect.takes})`,
+  );
+}
+
+function remedy(found) {
+  return h(
+    "li",
+    {},
+    h(
+      "button",
+      { type: "button", onclick: () => tryOut(found) },
+      h("span", {}, found.change.words),
+    ),
+    h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
+    effectOf(found.effect),
+  );
+}
+
+const shared = (href, title, note) =>
+  h(
+    "span",
+    {},
+    h("a", { href, download: "" }, title),
+    h("small", { className: "dim" }, ` ${note}`),
+  );
+
+/** The take for people without a studio, and the whole clip for the tools of a robot's team. */
+const shares = (result, why) =>
+  h(
+    "p",
+    { className: "share" },
+    why
+      ? shared(
+          api.recognitions.analysisUrl(result.id),
+          "Share as one file",
+          "plays without a server",
+        )
+      : null,
+    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"),
+  );
+
+const note = (text) => h("p", { className: "dim" }, text);
+
+/** What would have helped, as buttons that try it out; a note where nothing would. */
+function remediesOf(why) {
+  if (why.right) return null;
+  if (!why.counterfactuals.length)
+    return note(
+      `None of the ${why.tried} changes that were tried would help: the gesture has to be demonstrated again.`,
+    );
+  return h(
+    "div",
+    { className: "remedies" },
+    h("h2", {}, `It would have been recognised as ${why.expected}`),
+    h("ul", {}, why.counterfactuals.map(remedy)),
+  );
+}
+
+const reasons = (why) => [h("p", { className: "why-sentence" }, why.sentence), remediesOf(why)];
+
+const ASK_EXPECTED =
+  "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";
+
+/** Draw the explanation under the take. */
+export function drawWhy({ why, result, trial }) {
+  const box = byId("why");
+  const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
+  const asks = result !== null && result.expected === null && !trying;
+  box.hidden = !result || !(why || asks || trying);
+  if (box.hidden) return box.replaceChildren();
+  const words = asks
+    ? [note(ASK_EXPECTED), shares(result, null)]
+    : [trying, ...(why ? reasons(why) : []), shares(result, why)];
+  const alignments = asks ? null : alignmentsOf(why);
+  return box.replaceChildren(
+    ...[h("div", { className: "why-words" }, words), alignments].filter(Boolean),
+  );
+}

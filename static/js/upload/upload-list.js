@@ -1,0 +1,266 @@
+// Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
+
+import { needsTopic, select } from "../clips/clip-store.js";
+import { openTopics } from "../clips/topic-dialog.js";
+import * as api from "../core/api.js";
+import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
+import { bytes, timeLeft } from "../core/format.js";
+import { state, update } from "../core/state.js";
+import { complain, toast } from "../core/toasts.js";
+import { importLanguage } from "../languages/language-store.js";
+import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
+import { upload as send } from "./tus-upload.js";
+
+/** @import { State, Upload } from "../core/types.d.ts" */
+
+const AT_ONCE = 2; // More only share the same line, and each would finish later.
+
+let counter = 0;
+
+/** An upload that has not begun. */
+/** @type {(file: File, first: boolean, uploaded: Upload["uploaded"]) => Upload} */
+const waiting = (file, first, uploaded) => ({
+  key: String(counter++),
+  file,
+  first,
+  uploaded,
+  fields: {},
+  status: "waiting",
+  loaded: 0,
+  total: file.size,
+  away: false,
+  began: null,
+  error: null,
+  cancel: null,
+});
+
+/**
+ * Import a .json file if it is a language; resolves to whether it is a clip instead.
+ *
+ * @param {File} file
+ */
+async function isClip(file) {
+  const kind = await kindOfJson(file);
+  if (kind === "language") importLanguage(file);
+  else if (kind === "frame")
+    toast(
+      "One frame of OpenPose is not a clip",
+      "Pack the folder that --write_json wrote as a .zip file, and drop the .zip.",
+      { kind: "error" },
+    );
+  return kind === "keypoints";
+}
+
+/**
+ * Upload or import files. `uploaded(id)` is called for each clip; without it the first clip
+ * is shown.
+ *
+ * @param {Iterable<File>} files
+ * @param {Upload["uploaded"]} [uploaded]
+ */
+export async function addFiles(files, uploaded = null) {
+  const added = [];
+  // A list of its own: the browser empties the one of a drop, or of the field, meanwhile.
+  for (const file of [...files]) {
+    if (!/\.json$/i.test(file.name) || (await isClip(file)))
+      added.push(waiting(file, !added.length, uploaded));
+  }
+  if (added.length) update({ uploads: [...state.uploads, ...added] });
+  startNext();
+}
+
+/**
+ * @param {string} key
+ * @param {Partial<Upload>} patch
+ */
+function change(key, patch) {
+  update({
+    uploads: state.uploads.map((upload) => (upload.key === key ? { ...upload, ...patch } : upload)),
+  });
+}
+
+/** @param {string} key */
+function forget(key) {
+  update({ uploads: state.uploads.filter((upload) => upload.key !== key) });
+}
+
+function startNext() {
+  const running = state.uploads.filter((upload) => upload.status === "uploading").length;
+  for (const upload of state.uploads
+    .filter((each) => each.status === "waiting")
+    .slice(0, AT_ONCE - running))
+    start(upload);
+}
+
+/** @param {Upload} upload */
+async function start(upload) {
+  // The rate counts from where this attempt found the file, which may be its middle.
+  /** @type {Upload["began"]} */
+  let began = null;
+  /** @type {(loaded: number, away: boolean) => void} */
+  const advanced = (loaded, away) => {
+    began = away ? null : (began ?? { loaded, at: performance.now() });
+    change(upload.key, { loaded, away, began });
+  };
+  const call = send(upload.file, upload.fields, advanced);
+  change(upload.key, {
+    status: "uploading",
+    cancel: call.cancel,
+    loaded: 0,
+    away: false,
+    began: null,
+    error: null,
+  });
+  try {
+    const id = await call.done;
+    forget(upload.key);
+    update({ clips: await api.clips.list() });
+    // Of several files the first is shown; the others must not take its place one after the other.
+    if (upload.uploaded) upload.uploaded(id);
+    else if (upload.first) select(id);
+    const clip = state.clips.find((each) => each.id === id);
+    if (clip && needsTopic(clip)) openTopics(clip);
+  } catch (error) {
+    if (error.code === "cancelled") forget(upload.key);
+    else change(upload.key, { status: "failed", error: error.message, refused: error });
+    if (needsVideo(error)) askAboutVideo(upload.key);
+  }
+  startNext();
+}
+
+/**
+ * Ask for what a keypoint file lacks, and upload it again with the answer.
+ *
+ * @param {string} key
+ */
+async function askAboutVideo(key) {
+  const { file, refused, fields } = state.uploads.find((each) => each.key === key) ?? {};
+  if (!file || !refused || byId("dialog").open) return; // Retry asks again.
+  const given = await askForVideo(file.name, refused, fields);
+  if (!given) return;
+  change(key, { status: "waiting", fields: { ...fields, ...given } });
+  startNext();
+}
+
+/** @param {Upload} upload */
+function retry({ key, refused }) {
+  if (refused && needsVideo(refused)) return askAboutVideo(key);
+  change(key, { status: "waiting" });
+  return startNext();
+}
+
+/**
+ * What is wrong; which file it is stands above already.
+ *
+ * @param {string} error
+ * @param {string} name
+ */
+function withoutName(error, name) {
+  if (error.startsWith(`${name}: `)) return error.slice(name.length + 2);
+  return error.startsWith(name) ? `It${error.slice(name.length)}` : error;
+}
+
+/** @param {Upload} upload */
+function stage(upload) {
+  if (upload.status === "waiting") return "Waiting for the other uploads";
+  if (upload.status === "failed") return withoutName(upload.error ?? "", upload.file.name);
+  if (upload.away)
+    return `Connection lost at ${bytes(upload.loaded)} of ${bytes(upload.total)}; the upload continues by itself`;
+  if (upload.loaded >= upload.total) return "Checking the file";
+  const { began } = upload;
+  // bytes a ms
+  const rate = began && (upload.loaded - began.loaded) / (performance.now() - began.at);
+  const left = rate ? (upload.total - upload.loaded) / rate / 1000 : null;
+  return `Uploading ${bytes(upload.loaded)} of ${bytes(upload.total)}${left === null ? "" : `, ${timeLeft(left)}`}`;
+}
+
+/**
+ * Draw an upload. Its bar moves on in place: a button must not be replaced under the pointer.
+ *
+ * @param {Upload} upload
+ * @param {HTMLElement} [element]
+ */
+function draw(upload, element) {
+  const failed = upload.status === "failed";
+  const { key } = upload;
+  if (!failed && element?.dataset.status === upload.status) {
+    /** @type {any} */ (element.querySelector(".stage-text")).textContent = stage(upload);
+    /** @type {any} */ (element.querySelector("progress")).value = upload.loaded;
+    return element;
+  }
+  const stop = () => (upload.status === "uploading" ? upload.cancel?.() : forget(key));
+  return h(
+    "li",
+    { className: `clip${failed ? " failed" : ""}`, "data-status": upload.status },
+    h("div", { className: "poster blank" }, icon("plus")),
+    h(
+      "div",
+      { className: "clip-text" },
+      h("b", {}, upload.file.name),
+      h("span", { className: "stage-text" }, stage(upload)),
+      failed
+        ? null
+        : h("progress", {
+            max: Math.max(1, upload.total),
+            value: upload.loaded,
+            "aria-label": `Upload of ${upload.file.name}`,
+          }),
+    ),
+    h(
+      "div",
+      { className: "clip-buttons" },
+      failed ? iconButton("retry", `Retry ${upload.file.name}`, () => retry(upload)) : null,
+      iconButton("close", `${failed ? "Dismiss" : "Cancel"} ${upload.file.name}`, stop),
+    ),
+  );
+}
+
+/**
+ * Draw the uploads.
+ *
+ * @param {State} state
+ */
+export function drawUploads({ uploads }) {
+  reconcile(byId("uploads"), uploads, (upload) => upload.key, draw);
+}
+
+/** @type {Map<string | null, (files: Iterable<File>) => unknown>} */
+const takers = new Map();
+
+/**
+ * Pass files that are dropped on a view to `take(files)`.
+ *
+ * @param {string} view
+ * @param {(files: Iterable<File>) => unknown} take
+ */
+export const takeFilesIn = (view, take) => takers.set(view, take);
+
+/** Make the whole window a place to drop files. */
+export function acceptFiles() {
+  const veil = byId("veil");
+  let depth = 0; // dragenter and dragleave fire for every element on the way.
+  /** @param {DragEvent} event */
+  const carriesFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+  addEventListener("dragenter", (event) => {
+    if (carriesFiles(event)) veil.hidden = ++depth === 0;
+  });
+  addEventListener("dragleave", (event) => {
+    if (carriesFiles(event)) veil.hidden = --depth <= 0;
+  });
+  addEventListener("dragover", (event) => carriesFiles(event) && event.preventDefault());
+  addEventListener("drop", (event) => {
+    if (!carriesFiles(event)) return;
+    event.preventDefault();
+    depth = 0;
+    veil.hidden = true;
+    const take = takers.get(state.view) ?? addFiles;
+    Promise.resolve(take(event.dataTransfer?.files ?? [])).catch((error) =>
+      complain(error, "Adding the files"),
+    );
+  });
+  const input = byId("file");
+  input.onchange = () => {
+    addFiles(input.files).catch((error) => complain(error, "Adding the files"));
+    input.value = "";
+  };
+}

@@ -1,0 +1,36 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { insideFrame, nearestFrame } from "../../../static/js/core/frame-times.js";
+
+const TIME = [0, 0.04, 0.08, 0.2, 0.24]; // a pause of the camera between the third and the fourth
+
+test("the nearest frame of every frame's own moment is that frame", () => {
+  assert.deepEqual(
+    TIME.map((seconds) => nearestFrame(TIME, seconds)),
+    [0, 1, 2, 3, 4],
+  );
+});
+
+test("moments outside a clip belong to its first and last frame", () => {
+  assert.deepEqual([nearestFrame(TIME, -1), nearestFrame(TIME, 99)], [0, 4]);
+});
+
+test("a moment between two frames belongs to the nearer one", () => {
+  assert.deepEqual(
+    [0.11, 0.15].map((seconds) => nearestFrame(TIME, seconds)),
+    [2, 3],
+  );
+});
+
+test("a moment inside a frame lies between it and the next", () => {
+  TIME.slice(0, -1).forEach((seconds, frame) => {
+    const inside = insideFrame(TIME, frame);
+    assert.ok(seconds < inside && inside < TIME[frame + 1]);
+  });
+});
+
+test("the last frame lasts as long as the one before it", () => {
+  assert.equal(insideFrame(TIME, 4).toFixed(3), "0.260");
+  assert.equal(insideFrame([0], 0), 0);
+});

@@ -1,0 +1,36 @@
+import assert from "node:assert/strict";
+import { readdir, readFile } from "node:fs/promises";
+import { test } from "node:test";
+
+const STATIC = new URL("../../static/", import.meta.url);
+const COLOUR = /#(?:[0-9a-f]{8}|[0-9a-f]{6}|[0-9a-f]{3,4})\b(?=[\s;,)"'`])|\b(?:rgba?|hsla?)\(/gi;
+
+const read = (path) => readFile(new URL(path, STATIC), "utf8");
+
+async function filesIn(folder, suffix) {
+  const files = await readdir(new URL(folder, STATIC), { recursive: true });
+  return files.filter((file) => file.endsWith(suffix)).map((file) => `${folder}${file}`);
+}
+
+const sheets = await filesIn("styles/", ".css");
+
+test("only tokens.css has colours", async () => {
+  const others = [...sheets, ...(await filesIn("js/", ".js"))];
+  for (const file of others.filter((each) => each !== "styles/tokens.css")) {
+    assert.deepEqual((await read(file)).match(COLOUR), null, file);
+  }
+  assert.ok((await read("styles/tokens.css")).match(COLOUR).length > 20);
+});
+
+test("every custom property that is used is defined, and the page loads every sheet", async () => {
+  const sources = [...sheets, ...(await filesIn("js/", ".js"))];
+  const text = (await Promise.all(sources.map(read))).join("\n");
+  const defined = new Set([...text.matchAll(/["\s{](--[\w-]+)"?:/g)].map(([, name]) => name));
+  const used = new Set([...text.matchAll(/var\((--[\w-]+)/g)].map(([, name]) => name));
+  assert.deepEqual(
+    [...used].filter((name) => !defined.has(name)),
+    [],
+  );
+  const index = await read("index.html");
+  for (const sheet of sheets) assert.ok(index.includes(`/static/${sheet}`), sheet);
+});

@@ -1,0 +1,128 @@
+"""Motion voters: laws that hold for each, and what each of them alone can tell."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.recognition.features.motion import Movement, build_movement
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.voters.motion.cloud import Cloud
+from app.recognition.voters.motion.direction import Direction
+from app.recognition.voters.motion.hand_attitude import HandAttitude
+from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.posture import Posture
+from app.recognition.voters.motion.stroke_direction import StrokeDirection
+from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.motion.which_hand import WhichHand
+from app.recognition.voters.registry import MOTION_VOTERS
+from tests.recognition.strategies import Shape, circle, line, recording, recordings, wedge
+
+HANDS = ("left_wrist", "right_wrist")
+
+
+def moved(poses: PoseSequence) -> Movement:
+    return build_movement(Trajectory.from_poses(poses), HANDS)
+
+
+def distance(voter: MotionVoter, one: Movement, other: Movement) -> float:
+    return float(voter.distances(voter.describe(one), voter.describe(other)[None])[0])
+
+
+def backwards(shape: Shape) -> Shape:
+    return lambda share: shape(1 - share)
+
+
+@pytest.mark.parametrize("voter", MOTION_VOTERS, ids=lambda voter: voter.name)
+@given(one=recordings(), other=recordings())
+def test_a_distance_is_zero_to_itself_and_the_same_either_way(
+    voter: MotionVoter, one: PoseSequence, other: PoseSequence
+) -> None:
+    first, second = moved(one), moved(other)
+    assert distance(voter, first, first) == 0.0
+    there, back = distance(voter, first, second), distance(voter, second, first)
+    assert there >= 0.0
+    # Step costs are in single precision: right to a millionth.
+    assert there == pytest.approx(back, abs=1e-6)
+
+
+@pytest.mark.parametrize("voter", MOTION_VOTERS, ids=lambda voter: voter.name)
+@given(poses=recordings(), scale=st.floats(0.3, 3.0), shift=st.floats(-200, 200))
+def test_the_camera_does_not_matter(
+    voter: MotionVoter, poses: PoseSequence, scale: float, shift: float
+) -> None:
+    elsewhere = replace(poses, xy=poses.xy * scale + shift, time=poses.time + 7.0)
+    assert distance(voter, moved(poses), moved(elsewhere)) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("voter", [Path(), Direction(), StrokeDirection()], ids=lambda v: v.name)
+@pytest.mark.parametrize("shape", [circle, line])
+def test_the_way_round_is_seen(voter: MotionVoter, shape: Shape) -> None:
+    shown, turned = moved(recording(shape)), moved(recording(backwards(shape)))
+    again = moved(recording(shape, frames=41, jitter=0.005))
+    assert distance(voter, shown, again) < 0.2 * distance(voter, shown, turned)
+
+
+def test_the_cloud_has_no_order() -> None:
+    shown, turned = moved(recording(wedge)), moved(recording(backwards(wedge)))
+    assert distance(Cloud(), shown, turned) == pytest.approx(0.0, abs=0.03)
+    assert distance(Cloud(), shown, moved(recording(line))) > 0.1
+
+
+def test_tempo_counts_doublings() -> None:
+    slow, quick = moved(recording(circle, rate=15.0)), moved(recording(circle, rate=30.0))
+    assert distance(Tempo(), slow, quick) == pytest.approx(1.0, abs=0.01)
+
+
+def test_the_hand_that_moves_is_seen() -> None:
+    right, left = (moved(recording(circle, hand=hand)) for hand in reversed(HANDS))
+    assert distance(WhichHand(), right, left) == pytest.approx(np.sqrt(2))
+
+
+def raised(forearm: Callable[[FloatArray], FloatArray]) -> PoseSequence:
+    """Record a wrist that goes up and down while the elbow keeps the forearm at some angle."""
+    poses = recording(line)
+    xy = poses.xy.copy()
+    share = np.linspace(0, 1, len(xy))
+    wrist, elbow = (poses.landmarks.index(f"right_{part}") for part in ("wrist", "elbow"))
+    xy[:, elbow] = xy[:, wrist] + 60 * forearm(share)
+    return replace(poses, xy=xy)
+
+
+def test_the_posture_of_the_arm_is_seen_where_the_paths_agree() -> None:
+    below = moved(raised(lambda share: np.stack([0 * share, np.ones_like(share)], axis=1)))
+    beside = moved(raised(lambda share: np.stack([-np.ones_like(share), 0 * share], axis=1)))
+    assert distance(Path(), below, beside) == 0.0
+    assert distance(Posture(), below, beside) > 0.1
+
+
+def test_without_limbs_there_is_no_posture() -> None:
+    wrists = recording(circle).select(HANDS)
+    for voter in (Posture(), HandAttitude()):
+        assert distance(voter, moved(wrists), moved(wrists)) == np.inf
+
+
+def thumb(height: float) -> PoseSequence:
+    """Record a raised right hand whose thumb points up (negative height) or down."""
+    poses = recording(line)
+    xy = poses.xy.copy()
+    wrist, index, pinky, tip = (
+        poses.landmarks.index(f"right_{part}") for part in ("wrist", "index", "pinky", "thumb")
+    )
+    xy[:, index] = xy[:, pinky] = xy[:, wrist] + (20, 0)
+    xy[:, tip] = xy[:, wrist] + (0, height)
+    return replace(poses, xy=xy)
+
+
+def test_a_thumb_up_is_no_thumb_down() -> None:
+    up, down = (
+        build_movement(Trajectory.from_poses(thumb(height)), ("right_wrist",))
+        for height in (-12, 12)
+    )
+    assert distance(Path(), up, down) == 0.0
+    assert distance(HandAttitude(), up, down) > 3 * distance(Posture(), up, down)
