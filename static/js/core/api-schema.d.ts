@@ -249,7 +249,7 @@ export interface components {
             models: string[];
             /**
              * Without Command
-             * @description Gestures that tell a robot nothing to do
+             * @description Gestures without a command for the robot
              */
             without_command: string[];
         };
@@ -715,7 +715,7 @@ export interface components {
             updated: string;
             /** Gestures */
             gestures: components["schemas"]["GestureView"][];
-            /** @description Null: gestures stand for themselves */
+            /** @description Null: every gesture is a message of its own */
             grammar: components["schemas"]["GrammarEntry"] | null;
             /**
              * Profile
@@ -1107,7 +1107,7 @@ export interface components {
             };
             /**
              * Weights
-             * @description Each voter's share in the decision; 0: has no say
+             * @description Each voter's normalised weight; 0: not counted
              */
             weights?: {
                 [key: string]: number;
