@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Self
+
+from filelock import FileLock, Timeout
 
 from app.store.errors import StoreUnavailable
 
 
 class FolderLock:
-    """Holds a folder while the context is open; the system lets go when the process ends.
-
-    Does nothing where POSIX file locks are absent.
+    """Lock of a folder while the context is open; the system releases it when the process ends.
 
     Parameters
     ----------
@@ -27,41 +26,25 @@ class FolderLock:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._path = folder / "lock"
-        self._descriptor = -1
+        self._folder = folder
+        self._lock = FileLock(folder / "lock", mode=0o600)
 
     def __enter__(self) -> Self:
         try:
             # Recordings of people: nobody else on this machine needs to see them.
-            self._path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            self._descriptor = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o600)
+            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            self._lock.acquire(blocking=False)
+        except Timeout as error:
+            raise StoreUnavailable(
+                f"the data folder {self._folder} is in use by another OSG Studio; "
+                "end that one, or choose another folder with --data-dir"
+            ) from error
         except OSError as error:
             raise StoreUnavailable(
-                f"the data folder {self._path.parent} cannot be written to ({error.strerror}); "
+                f"the data folder {self._folder} cannot be written to ({error.strerror}); "
                 "choose another one with --data-dir"
             ) from error
-        if not self._acquire():
-            self._close()
-            raise StoreUnavailable(
-                f"the data folder {self._path.parent} is in use by another OSG Studio; "
-                "end that one, or choose another folder with --data-dir"
-            )
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._close()
-
-    def _acquire(self) -> bool:
-        if os.name != "posix":
-            return True
-        import fcntl
-
-        try:
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return True
-
-    def _close(self) -> None:
-        os.close(self._descriptor)
-        self._descriptor = -1
+        self._lock.release()

@@ -35,6 +35,7 @@ MEANINGS = {
     "request_invalid": "a parameter or the body is not valid; `errors` lists each fault",
     "revision_conflict": "the language has a newer revision than `If-Match`",
     "server_stopping": "the server is shutting down",
+    "service_unavailable": "no further viser workspace can be opened now",
     "storage_unavailable": "the server's storage cannot be read or written",
     "store_unavailable": "the database cannot answer now",
     "take_ambiguous": "the range holds several takes",

@@ -1,6 +1,5 @@
 """One server per data folder."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,8 +7,6 @@ from pathlib import Path
 import pytest
 
 from app.store import FolderLock, StoreUnavailable
-
-posix = pytest.mark.skipif(os.name != "posix", reason="POSIX file locks")
 
 HOLD = """
 import sys
@@ -21,7 +18,6 @@ with FolderLock(Path(sys.argv[1])):
 """
 
 
-@posix
 def test_a_second_process_is_refused_until_the_first_one_ends(tmp_path: Path) -> None:
     command = [sys.executable, "-c", HOLD, str(tmp_path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as holder:
@@ -34,7 +30,6 @@ def test_a_second_process_is_refused_until_the_first_one_ends(tmp_path: Path) ->
         pass
 
 
-@posix
 def test_the_folder_is_free_again_when_the_lock_is_let_go(tmp_path: Path) -> None:
     for _ in range(2):
         with FolderLock(tmp_path / "made" / "on demand"):
