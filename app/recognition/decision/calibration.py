@@ -171,7 +171,7 @@ def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
 
 
 def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
-    return demonstration.once("takes to calibrate by", lambda: draw_variants(demonstration, TAKES))
+    return demonstration.compute_once("variants", lambda: draw_variants(demonstration, TAKES))
 
 
 def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArray:

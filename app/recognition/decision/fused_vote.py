@@ -62,7 +62,7 @@ def add_mirror_images(
         for index, gesture in enumerate(gestures)
         if gesture.switches.mirror == "on" and gesture.trajectory is not None
     ]
-    images = [gestures[index].mirrored() for index in mirrored]
+    images = [gestures[index].mirror() for index in mirrored]
     return (*gestures, *images), np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
 
 
@@ -213,7 +213,7 @@ class FusedVote:
     def may_win(
         self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
-        """Tell whether a gesture comes close to the smallest score when a voter is reweighted."""
+        """Return whether a gesture comes close to the smallest score when a voter is reweighted."""
         comparable = np.isfinite(table.scores)
         scores = table.scores
         added = table.contributions[table.voters.index(voter)]

@@ -72,7 +72,7 @@ class MajorityVote:
     def may_win(
         self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
-        """Tell whether no gesture has more votes when a voter's vote is reweighted."""
+        """Return whether no gesture has more votes when a voter's vote is reweighted."""
         count: dict[str, float] = defaultdict(float)
         for name, vote in result.counted.items():
             weight = result.weights[name]

@@ -156,7 +156,7 @@ class MotionReferences:
         """Rows of the gestures as they were demonstrated."""
         return np.flatnonzero(self._shown)
 
-    def kept(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
+    def take(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
         """Keep some of the rows."""
         return MotionReferences(
             self.landmarks,
@@ -262,7 +262,7 @@ class MotionReferences:
         rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
-            block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
+            block = self.take(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
             for index, row in enumerate(rows):
                 query = {name: values[row] for name, values in self.descriptors.items()}
                 own[:, index, start : start + len(block)] = block._measured(query)
@@ -354,7 +354,7 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
         seen = build_movement(trajectory, landmarks)
         return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
 
-    return trajectory.once(("movement", tuple(landmarks)), work_out)
+    return trajectory.compute_once(("movement", tuple(landmarks)), work_out)
 
 
 def drop_ambiguous_traversals(
@@ -398,4 +398,4 @@ def drop_ambiguous_traversals(
             alike = np.maximum(SAME_FIGURE, TURNED * plain)
             if matters and ((turned < alike) & (turned < CLEARANCE * plain)).any():
                 keep[rows & otherwise] = False
-    return references.kept(np.flatnonzero(keep))
+    return references.take(np.flatnonzero(keep))

@@ -114,7 +114,7 @@ def measure_group_novelties(
 
 
 def is_rejected(novelty: float) -> bool:
-    """Tell whether a gesture is rejected; one without thresholds (NaN) never is."""
+    """Return whether a gesture is rejected; one without thresholds (NaN) never is."""
     return novelty > 1.0
 
 

@@ -52,7 +52,7 @@ class ShapeReferences:
         self._count = len(gestures)
         self._simplification = simplification
         if simplification != SIMPLIFICATION:
-            gestures = [gesture.redrawn(simplification) for gesture in gestures]
+            gestures = [gesture.redraw(simplification) for gesture in gestures]
         self._ballots = _ballots(gestures, PAPER_VOTERS)
 
     @property
@@ -100,7 +100,7 @@ def _judge(
     """Fill in the distances ``(V, G)`` to the gestures of one ballot."""
     if not set(ballot.salient) <= set(trajectory.landmarks):
         return
-    descriptors = trajectory.once(
+    descriptors = trajectory.compute_once(
         ("drawing", ballot.salient, simplification),
         lambda: _described(trajectory.select(ballot.salient), simplification),
     )

@@ -73,6 +73,6 @@ class ShownGesture:
                 },
             )
 
-        return trajectory.once(
+        return trajectory.compute_once(
             ("traversals", landmarks, hands, both_ways, either_side, every), work_out
         )

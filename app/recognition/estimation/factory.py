@@ -108,7 +108,7 @@ def list_landmarks(estimator: PoseEstimator) -> tuple[str, ...]:
 
 
 def finds_hands(estimator: PoseEstimator) -> bool:
-    """Tell whether an estimator looks for hands: without them there is no salute."""
+    """Return whether an estimator looks for hands: without them there is no salute."""
     return estimator.finds_hands if isinstance(estimator, _Limited) else True
 
 

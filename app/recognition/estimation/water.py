@@ -77,7 +77,7 @@ def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
 
 
 def is_murky(image: Image) -> bool:
-    """Tell whether so little of the range of brightness is left that correcting helps."""
+    """Return whether so little of the range of brightness is left that correcting helps."""
     darkest, lightest = np.percentile(_sampled(image) @ LUMA, [TAIL, 100 - TAIL])
     return bool(lightest - darkest < MURKY_RANGE)
 

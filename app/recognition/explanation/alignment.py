@@ -63,7 +63,7 @@ class Example:
         mirrored: bool = False,
     ) -> Example | None:
         """Return a gesture's example; None where the gesture has no demonstration."""
-        trajectory = (gesture.mirrored() if mirrored else gesture).trajectory
+        trajectory = (gesture.mirror() if mirrored else gesture).trajectory
         if trajectory is None or len(trajectory) < 2:
             return None
         shown = build_movement(trajectory, landmarks)
@@ -71,7 +71,7 @@ class Example:
             label=gesture.label,
             traversal=traversal,
             mirrored=mirrored,
-            movement=shown.reordered(traversal.order),
+            movement=shown.reorder(traversal.order),
             time=shown.reached[traversal.order],
         )
 
@@ -220,7 +220,7 @@ def find_nearest_example(
         return None
     open_to = list_traversals(shown.movement, hands=find_hands(gesture.salient), both_ways=True)
     voter, moved = Path(), build_movement(query, landmarks)
-    read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
+    read = np.stack([voter.describe(shown.movement.reorder(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
 

@@ -334,7 +334,7 @@ def _otherwise_sized(pairing: Pairing) -> Iterator[Difference]:
 
 
 def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
-    """Tell which wrist is bent otherwise, and by how many degrees."""
+    """Return which wrist is bent otherwise, and by how many degrees."""
     voter = WristBend()
     shown, expected = (
         voter.describe(each).reshape(-1, 1, 3) for each in (pairing.query, pairing.example.movement)

@@ -63,7 +63,7 @@ class Pairing:
         start: float = 0.0,
     ) -> Pairing | None:
         """Bring a condensed query and a gesture together; None where one has no movement."""
-        side = gesture.mirrored() if mirrored and gesture.trajectory is not None else gesture
+        side = gesture.mirror() if mirrored and gesture.trajectory is not None else gesture
         if side.trajectory is None or len(side.trajectory) < 2 or len(trajectory) < 2:
             return None
         both = {*side.salient, *(other_side(name) for name in side.salient)}

@@ -86,7 +86,7 @@ def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
 
 
 def _may_run_together(grammar: Grammar) -> bool:
-    """Tell whether several phrases can be more ambiguous than one.
+    """Return whether several phrases can be more ambiguous than one.
 
     They cannot where the start gesture divides them and neither it nor the end gesture occurs in a
     phrase: then a message falls into its phrases in one way only.
@@ -176,7 +176,7 @@ def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead |
 
 
 def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
-    """Tell whether every sequence of a phrase has a second parse.
+    """Return whether every sequence of a phrase has a second parse.
 
     Walks through the sequences of the phrase with all that could be read otherwise beside it.
     """

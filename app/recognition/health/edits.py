@@ -126,7 +126,7 @@ def swap_hands(gesture: Gesture) -> Gesture | None:
     one_hand = find_hands(gesture.salient) == 1
     if not one_hand or tuple(map(other_side, gesture.salient)) == gesture.salient:
         return None
-    return gesture.mirrored()
+    return gesture.mirror()
 
 
 def use_both_hands(gesture: Gesture) -> Gesture | None:
@@ -136,14 +136,14 @@ def use_both_hands(gesture: Gesture) -> Gesture | None:
     if shown is None or swap_hands(gesture) is None or not set(others) <= set(shown.landmarks):
         return None
     side = next(side for side in SIDES if parse_body_part(others[0]).startswith(side))
-    mirrored = shown.mirrored()
+    mirrored = shown.mirror()
     xy = shown.xy.copy()
     for index, name in enumerate(shown.landmarks):
         if parse_body_part(name).startswith(side) and name in mirrored.landmarks:
             xy[:, index] = mirrored.xy[:, mirrored.landmarks.index(name)]
     return replace(
         gesture, salient=(*gesture.salient, *others), trajectory=replace(shown, xy=xy)
-    ).redrawn()
+    ).redraw()
 
 
 def widen(gesture: Gesture) -> Gesture | None:
@@ -202,7 +202,7 @@ def _reshown(gesture: Gesture, change: Callable[[Trajectory], Trajectory]) -> Ge
     """Apply a change to the demonstration, and draw it anew; None without a demonstration."""
     if gesture.trajectory is None or not gesture.salient:
         return None
-    return replace(gesture, trajectory=change(gesture.trajectory)).redrawn()
+    return replace(gesture, trajectory=change(gesture.trajectory)).redraw()
 
 
 def _stretched(shown: Trajectory, factors: tuple[float, float]) -> Trajectory:

@@ -239,7 +239,7 @@ class Language:
         gestures = []
         for index, entry in enumerate(document.gestures):
             gesture = entry_to_gesture(entry, build_pointer("gestures", index))
-            gestures.append(gesture if current else gesture.redrawn())
+            gestures.append(gesture if current else gesture.redraw())
         return cls(
             name=document.name,
             gestures=gestures,

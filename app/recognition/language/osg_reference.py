@@ -98,7 +98,7 @@ def _gesture(label: str, entry: Any) -> Gesture:
     salient = _salient(entry["salient_keypoints"], pointer + "/salient_keypoints")
     image = _image(entry["image"], pointer + "/image")
     try:
-        return Gesture(label=label, salient=salient, image=image).redrawn()
+        return Gesture(label=label, salient=salient, image=image).redraw()
     except GestureError as error:
         raise LanguageError(str(error), pointer) from error
 

@@ -126,7 +126,7 @@ def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
 
 
 def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool:
-    """Tell whether a value is one of the kind; `together`: as a whole, not digit by digit."""
+    """Return whether a value is one of the kind; `together`: as a whole, not digit by digit."""
     if reads_as == "text":
         return isinstance(value, str) and bool(value.strip()) and value.isprintable()
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):

@@ -1,4 +1,4 @@
-"""A recording of body landmarks over time, as a pose estimator gives it: pixels and seconds."""
+"""Pose sequences: body landmarks over time as an estimator finds them, in pixels and seconds."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class PoseSequence:
         return len(self.time)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether two recordings hold the same values; NaN equals NaN."""
+        """Return whether two pose sequences hold the same values; NaN equals NaN."""
         if not isinstance(other, PoseSequence):
             return NotImplemented
         return (
@@ -105,7 +105,7 @@ class PoseSequence:
 
     @cached_property
     def seen(self) -> npt.NDArray[np.bool_]:
-        """Tell ``(T, K)`` which landmark was found in which frame."""
+        """``(T, K)``: which landmark was found in which frame."""
         seen = _all_finite(self.xy)
         seen.setflags(write=False)
         return seen
@@ -208,12 +208,12 @@ class PoseSequence:
 
 
 def find_columns(names: Sequence[str], landmarks: Sequence[str], what: str) -> list[int]:
-    """Return where `names` stand among `landmarks`.
+    """Return the indices of `names` in `landmarks`.
 
     Raises
     ------
     PoseError
-        When one of them does not; `what` says in its words whose landmarks these are.
+        When a name is missing; `what` is the owner of the landmarks in the message.
 
     """
     missing = [name for name in names if name not in landmarks]
@@ -223,18 +223,18 @@ def find_columns(names: Sequence[str], landmarks: Sequence[str], what: str) -> l
 
 
 def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
-    """Put the frames of a stream together.
+    """Concatenate the parts of a stream to one pose sequence.
 
     Parameters
     ----------
     moments
-        At least one, in order, with the same landmarks and frame size; confidence is kept where
-        all of them tell it.
+        At least one part, in order, with the same landmarks and frame size. Confidence is kept
+        only if all of them have it.
 
     Raises
     ------
     PoseError
-        When the time does not go on from one to the next.
+        When the time does not increase from one part to the next.
 
     """
     known = [each.confidence for each in moments if each.confidence is not None]
@@ -248,7 +248,7 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
 
 def _checked_names(names: Any) -> tuple[str, ...]:
     if not isinstance(names, str):
-        # What is no collection, or holds what cannot be hashed, is no set of names either.
+        # TypeError: not a collection, or with entries that are not hashable.
         with suppress(TypeError):
             return _distinct_names(tuple(names))
     raise PoseError(f"landmarks must be non-empty names, got {names!r}")
@@ -299,7 +299,7 @@ def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
 
 
 def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:
-    """Tell which of the points ``(..., 2)`` have both coordinates."""
+    """Return ``(...)``: which of the points ``(..., 2)`` have both coordinates."""
     known = np.isfinite(points)
     return np.asarray(known[..., 0] & known[..., 1], dtype=np.bool_)
 

@@ -169,7 +169,7 @@ def _example(manner: Manner, generator: np.random.Generator) -> Trajectory:
     body = _body(right=active, left=other)
     jitter = generator.normal(0, TREMOR, body.xy.shape)
     shaky = replace(body, xy=body.xy + jitter)
-    return shaky.mirrored() if generator.random() < 0.5 else shaky
+    return shaky.mirror() if generator.random() < 0.5 else shaky
 
 
 def _drawn(manner: Manner, generator: np.random.Generator) -> tuple[list[FloatArray], list[float]]:

@@ -352,7 +352,7 @@ def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
 
 
 def _may_gesture(landmark: str) -> bool:
-    """Tell whether a landmark may carry a gesture."""
+    """Return whether a landmark may carry a gesture."""
     return _without_side(parse_body_part(landmark)) not in TRUNK_AND_LEGS
 
 

@@ -311,7 +311,7 @@ def test_an_imported_gesture_has_no_mirror_image() -> None:
     imported = replace(drawn, trajectory=None, switches=Switches(mirror="on"))
     assert label_of([imported], recording(circle)) == "circle"
     with pytest.raises(GestureError, match="'circle' was imported without its demonstration"):
-        imported.mirrored()
+        imported.mirror()
 
 
 def test_switches_are_kept_in_the_file_and_left_out_when_automatic() -> None:

@@ -241,7 +241,7 @@ def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:
 
 
 def find_duplicates(one: Hand, other: Hand) -> bool:
-    """Tell whether two results show the same hand."""
+    """Return whether two results show the same hand."""
     near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
     distances = np.linalg.norm(one.xy - other.xy, axis=1)
     if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:

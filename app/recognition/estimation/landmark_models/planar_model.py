@@ -97,5 +97,5 @@ class PlanarModel:
 
 
 def _takes_planes(shape: tuple[int | str | None, ...]) -> bool:
-    """Tell whether an input is a batch of one, or of a size left open, of three planes."""
+    """Return whether an input is a batch of one, or of a size left open, of three planes."""
     return shape[1] == 3 and (shape[0] == 1 or not isinstance(shape[0], int))

@@ -68,7 +68,7 @@ class Region:
 
     @property
     def usable(self) -> bool:
-        """Tell whether the region is finite and of a size that an image can have."""
+        """Return whether the region is finite and of a size that an image can have."""
         return (
             math.isfinite(self.x + self.y + self.rotation)
             and abs(self.x) < LARGEST_SIDE
