@@ -100,14 +100,14 @@ class Recognizer:
         """
         repair = repair_poses(poses) if self.repairs else None
         query = condense(repair.trajectory if repair else Trajectory.from_poses(poses))
-        comparison = self.compare(query)
-        result = self.decide(comparison)
+        table = self.compare(query)
+        result = self.decide(table)
         if repair:
             poor, findings = self._fault(repair, result.nearest), repair.findings
             if poor or findings:
                 label = None if poor else result.label
                 result = replace(result, label=label, findings=findings, fault=poor)
-        return Trace(query=query, comparison=comparison, result=result)
+        return Trace(query=query, score_table=table, result=result)
 
     def _fault(self, repair: Repair, nearest: str) -> str | None:
         """Return why poses are too poor to be the nearest gesture, with either hand; or None."""
@@ -159,7 +159,7 @@ class Recognizer:
 
     @property
     def landmarks(self) -> tuple[str, ...]:
-        """The landmarks that are salient in any gesture of the language, alphabetically."""
+        """The salient landmarks of all gestures, in alphabetical order."""
         return self.vote.landmarks
 
     def sensitivity(self, label: str) -> Sensitivity | None:

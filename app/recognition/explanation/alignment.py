@@ -25,7 +25,7 @@ DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond, and of what two gestures
 typically cost."""
 
-ElasticVoter = Path | Direction | Posture | HandAttitude
+AlignedVoter = Path | Direction | Posture | HandAttitude
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -155,7 +155,7 @@ def align(
     landmarks: Sequence[str],
     *,
     start: float = 0.0,
-    voter: ElasticVoter | None = None,
+    voter: AlignedVoter | None = None,
 ) -> Alignment | None:
     """Align a query with a gesture's example.
 
@@ -233,7 +233,7 @@ def _places(shown: FloatArray) -> list[list[list[float] | None]]:
     ]
 
 
-def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
+def _parts(voter: AlignedVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
     if isinstance(voter, Path | Direction):
         return tuple(landmarks)
     bones = list_limbs(landmarks)

@@ -1,4 +1,4 @@
-"""A situation: all that a recognition depends on, so that it can be repeated with a change."""
+"""A context: all that a recognition depends on, so that it can be repeated with a change."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class RecognitionContext:
 
     @classmethod
     def of_take(cls, recognizer: Recognizer, take: Take) -> RecognitionContext:
-        """Return the situation in which a take is recognised."""
+        """Return the context in which a take is recognised."""
         return cls(recognizer=recognizer, poses=take.poses, whole=take.untrimmed)
 
     @property
@@ -74,9 +74,9 @@ class RecognitionContext:
         return self.trace.query
 
     @property
-    def comparison(self) -> ScoreTable:
+    def score_table(self) -> ScoreTable:
         """The stroke beside every gesture."""
-        return self.trace.comparison
+        return self.trace.score_table
 
     @property
     def result(self) -> Recognition:

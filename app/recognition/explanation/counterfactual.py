@@ -1,6 +1,6 @@
 """Counterfactuals: the smallest changes with which a recognition would have turned out right.
 
-Each is verified: the situation is changed, and the recogniser run again.
+Each is verified: the context is changed, and the recogniser run again.
 """
 
 from __future__ import annotations
@@ -121,14 +121,14 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
     return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
 
 
-def find_counterfactuals(situation: RecognitionContext, expected: str) -> Counterfactuals:
+def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterfactuals:
     """Find the smallest changes with which `expected` is recognised.
 
     Of each series of ever larger changes the first that helps is kept.
 
     Parameters
     ----------
-    situation
+    context
         In which another label was recognised, or none.
     expected
         A label of the language.
@@ -136,27 +136,27 @@ def find_counterfactuals(situation: RecognitionContext, expected: str) -> Counte
     """
     found: list[_Found] = []
     tried = 0
-    for series in list_interventions(situation, expected):
+    for series in list_interventions(context, expected):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
-            if (helps := _verified(situation, change, expected)) is not None:
+            if (helps := _verify(context, change, expected)) is not None:
                 found.append(helps)
                 break
-    rest = _Rest(situation)
-    told = tuple(_told(each, expected, rest) for each in _smallest(found))
+    rest = _Rest(context)
+    told = tuple(_describe(each, expected, rest) for each in _choose_smallest(found))
     return Counterfactuals(found=told, tried=tried)
 
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """A change that helps, and the situation that it makes."""
+    """A change that helps, and the context that it makes."""
 
     change: Intervention
     after: RecognitionContext
     margin: float
 
 
-def _smallest(found: Iterable[_Found]) -> list[_Found]:
+def _choose_smallest(found: Iterable[_Found]) -> list[_Found]:
     """Choose the smallest changes, not too many of a kind."""
     by_kind = sorted(found, key=lambda each: (each.change.kind, each.change.size, -each.margin))
     chosen = [
@@ -167,19 +167,19 @@ def _smallest(found: Iterable[_Found]) -> list[_Found]:
     return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
 
 
-def _verified(situation: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
+def _verify(context: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
     """Run the recogniser with a change: None where it does not help or cannot be made."""
     try:
-        after = change.apply(situation)
+        after = change.apply(context)
         if after.result.label != expected:
             return None
     except OsgError:
         return None
     at = after.result.gestures.index(expected)
-    return _Found(change, after, measure_margin(after.comparison.scores.tolist(), at))
+    return _Found(change, after, measure_margin(after.score_table.scores.tolist(), at))
 
 
-def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
+def _describe(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
     effect = None
     if found.change.reach != "take":
         now = rest.recognised(found.after)
@@ -202,8 +202,8 @@ def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
 class _Rest:
     """Takes of all gestures of a language, to see whether they are still recognised."""
 
-    def __init__(self, situation: RecognitionContext) -> None:
-        self._situation = situation
+    def __init__(self, context: RecognitionContext) -> None:
+        self._situation = context
 
     @cached_property
     def _takes(self) -> list[tuple[str, Trajectory]]:
@@ -226,13 +226,13 @@ class _Rest:
         """Labels of the takes that are recognised as things are."""
         return self.recognised(self._situation)
 
-    def recognised(self, situation: RecognitionContext) -> list[str]:
-        """Return the labels of the takes that are recognised in another situation."""
-        return [label for label, take in self._takes if _is_recognised(situation, label, take)]
+    def recognised(self, context: RecognitionContext) -> list[str]:
+        """Return the labels of the takes that are recognised in another context."""
+        return [label for label, take in self._takes if _is_recognised(context, label, take)]
 
 
-def _is_recognised(situation: RecognitionContext, label: str, take: Trajectory) -> bool:
+def _is_recognised(context: RecognitionContext, label: str, take: Trajectory) -> bool:
     try:
-        return situation.recognizer.recognize_trajectory(take).label == label
+        return context.recognizer.recognize_trajectory(take).label == label
     except OsgError:
         return False

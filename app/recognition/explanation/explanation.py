@@ -129,13 +129,13 @@ class Explanation:
 
 
 def explain(
-    situation: RecognitionContext, expected: str, *, with_counterfactuals: bool = True
+    context: RecognitionContext, expected: str, *, with_counterfactuals: bool = True
 ) -> Explanation:
     """Explain one recognition.
 
     Parameters
     ----------
-    situation
+    context
         The language, the profile, the stroke, and what the stroke was cut out of.
     expected
         The label that should have been recognised.
@@ -150,15 +150,15 @@ def explain(
         When the recording shows nothing that a gesture needs.
 
     """
-    if expected not in situation.language.labels:
+    if expected not in context.language.labels:
         raise OsgError(
-            f"no gesture {expected!r} in {situation.language.name!r} to expect; it has "
-            f"{', '.join(situation.language.labels)}"
+            f"no gesture {expected!r} in {context.language.name!r} to expect; it has "
+            f"{', '.join(context.language.labels)}"
         )
-    comparison, result = situation.comparison, situation.result
+    table, result = context.score_table, context.result
     at = result.gestures.index(expected)
-    other = _held_against(comparison, result, at)
-    pairings = _Pairings(situation)
+    other = _find_other(table, result, at)
+    pairings = _Pairings(context)
     wanted = with_counterfactuals and result.label != expected
     return Explanation(
         profile=result.profile,
@@ -167,15 +167,15 @@ def explain(
         nearest=result.nearest,
         confidence=result.confidence,
         other=None if other is None else result.gestures[other],
-        score=float(comparison.scores[at]),
-        other_score=math.inf if other is None else float(comparison.scores[other]),
-        novelty=float(comparison.novelty[at]),
+        score=float(table.scores[at]),
+        other_score=math.inf if other is None else float(table.scores[other]),
+        novelty=float(table.novelty[at]),
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
         verdicts=break_down_votes(
-            comparison, result, situation.language.gestures[at].thresholds, at, other
+            table, result, context.language.gestures[at].thresholds, at, other
         ),
-        turned=_difference(comparison, at, other),
+        turned=_difference(table, at, other),
         alignments=tuple(
             alignment
             for index in (at, other)
@@ -183,36 +183,36 @@ def explain(
             for alignment in pairings.alignments(index)
         ),
         differences=pairings.differences(at),
-        counterfactuals=find_counterfactuals(situation, expected) if wanted else NONE_NEEDED,
+        counterfactuals=find_counterfactuals(context, expected) if wanted else NONE_NEEDED,
     )
 
 
-def _held_against(comparison: ScoreTable, result: Recognition, expected: int) -> int | None:
+def _find_other(table: ScoreTable, result: Recognition, expected: int) -> int | None:
     """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
     nearest = result.gestures.index(result.nearest)
     if nearest != expected:
         return nearest
-    scores = comparison.scores
+    scores = table.scores
     scores[expected] = np.inf
     return int(scores.argmin()) if np.isfinite(scores).any() else None
 
 
-def _difference(comparison: ScoreTable, expected: int, other: int | None) -> float:
-    if other is None or not np.isfinite(comparison.scores[[expected, other]]).all():
+def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
+    if other is None or not np.isfinite(table.scores[[expected, other]]).all():
         return 0.0
-    return float(comparison.turned[expected] - comparison.turned[other])
+    return float(table.turned[expected] - table.turned[other])
 
 
 class _Pairings:
-    """The query of a situation beside its gestures, as the recogniser compared them."""
+    """The query of a context beside its gestures, as the recogniser compared them."""
 
-    def __init__(self, situation: RecognitionContext) -> None:
-        self._gestures = situation.language.gestures
-        self._comparison = situation.comparison
-        self._full = PROFILES[situation.profile].compares_motion
-        self._start = float(situation.poses.time[0])
-        self._landmarks = situation.recognizer.landmarks
-        self._query = situation.trajectory
+    def __init__(self, context: RecognitionContext) -> None:
+        self._gestures = context.language.gestures
+        self._table = context.score_table
+        self._full = PROFILES[context.profile].compares_motion
+        self._start = float(context.poses.time[0])
+        self._landmarks = context.recognizer.landmarks
+        self._query = context.trajectory
 
     def alignments(self, index: int) -> Iterator[Alignment]:
         """Align the query with a gesture, where both have a movement."""
@@ -240,10 +240,10 @@ class _Pairings:
         return () if pairing is None else find_differences(pairing, sees_direction=self._full)
 
     def _example(self, index: int) -> Example | None:
-        gesture, traversal = self._gestures[index], self._comparison.traversals[index]
+        gesture, traversal = self._gestures[index], self._table.traversals[index]
         if traversal is None:
             return find_nearest_example(self._query, gesture, self._landmarks)
-        mirrored = bool(self._comparison.mirrored[index])
+        mirrored = bool(self._table.mirrored[index])
         return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
 
 

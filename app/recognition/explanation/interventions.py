@@ -1,6 +1,6 @@
 """Changes: what might have been otherwise about a recognition, each a step that can be taken.
 
-A change turns one situation into another: another language, profile, tuning or stretch of the
+A change turns one context into another: another language, profile, tuning or stretch of the
 take. Whoever shows it can also apply it.
 """
 
@@ -47,8 +47,8 @@ class Intervention(ABC):
         """A clause for people that follows "it would have been read so"."""
 
     @abstractmethod
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
-        """Return the situation with this change.
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
+        """Return the context with this change.
 
         Raises
         ------
@@ -77,11 +77,11 @@ class Trim(Intervention):
         """See `Change`."""
         return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
         # The ends are moments of frames; a rounding error must not lose them.
-        poses = situation.whole.between(self.start - 1e-6, self.end + 1e-6)
-        return replace(situation, poses=poses)
+        poses = context.whole.between(self.start - 1e-6, self.end + 1e-6)
+        return replace(context, poses=poses)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,11 +98,11 @@ class VoterWeight(Intervention):
         """See `Change`."""
         return describe_weight(self.voter, self.factor)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        weights = {**situation.tuning.weights}
+        weights = {**context.tuning.weights}
         weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
-        return situation.with_tuning(replace(situation.tuning, weights=weights))
+        return context.with_tuning(replace(context.tuning, weights=weights))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,9 +118,9 @@ class Simplification(Intervention):
         """See `Change`."""
         return describe_simplification(self.tolerance)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_tuning(replace(situation.tuning, simplification=self.tolerance))
+        return context.with_tuning(replace(context.tuning, simplification=self.tolerance))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,9 +136,9 @@ class KeypointRepair(Intervention):
         """See `Change`."""
         return describe_repair(self.on)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_tuning(replace(situation.tuning, keypoints_repaired=self.on))
+        return context.with_tuning(replace(context.tuning, keypoints_repaired=self.on))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,9 +154,9 @@ class OtherProfile(Intervention):
         """See `Change`."""
         return f"with the profile {self.profile}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_profile(self.profile)
+        return context.with_profile(self.profile)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,10 +174,10 @@ class SalientKeypoints(Intervention):
         followed = join_words(humanize_all(self.salient))
         return f"with {followed} as the salient keypoints of {self.label!r}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        gesture = situation.language.gesture(self.label)
-        return situation.with_gesture(gesture.with_salient(self.salient))
+        gesture = context.language.gesture(self.label)
+        return context.with_gesture(gesture.with_salient(self.salient))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,11 +195,11 @@ class SwitchPosition(Intervention):
         """See `Change`."""
         return f"with the switch {self.switch} of {self.label!r} {self.position}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        gesture = situation.language.gesture(self.label)
+        gesture = context.language.gesture(self.label)
         switches = replace(gesture.switches, **{self.switch: self.position})
-        return situation.with_gesture(replace(gesture, switches=switches))
+        return context.with_gesture(replace(gesture, switches=switches))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -215,13 +215,13 @@ class NewDemonstration(Intervention):
         """See `Change`."""
         return f"with this take as the demonstration of {self.label!r}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        before = situation.language.gesture(self.label)
+        before = context.language.gesture(self.label)
         made = Gesture.from_demonstration(
             self.label,
-            situation.poses,
+            context.poses,
             description=before.description,
             command=before.command,
         )
-        return situation.with_gesture(replace(made, switches=before.switches))
+        return context.with_gesture(replace(made, switches=before.switches))

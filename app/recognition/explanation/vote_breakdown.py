@@ -56,7 +56,7 @@ class VoterBreakdown:
 
 
 def break_down_votes(
-    comparison: ScoreTable,
+    table: ScoreTable,
     result: Recognition,
     thresholds: Mapping[str, float],
     expected: int,
@@ -66,7 +66,7 @@ def break_down_votes(
 
     Parameters
     ----------
-    comparison, result
+    table, result
         What was compared, and what was decided.
     thresholds
         Of the expected gesture, see `Gesture.thresholds`.
@@ -78,7 +78,7 @@ def break_down_votes(
     label = result.gestures[expected]
     given = []
     for row, voter in enumerate(result.voters):
-        distances, shares = comparison.distances[row], comparison.contributions[row]
+        distances, shares = table.distances[row], table.contributions[row]
         vote = result.votes.get(voter)
         against = 0.0 if other is None else float(shares[expected]) - float(shares[other])
         given.append(

@@ -315,10 +315,10 @@ def condense(trajectory: Trajectory) -> Trajectory:
 
 
 def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
-    """Choose the landmarks worth keeping, in the trajectory's order."""
+    """Choose the landmarks to keep, in the trajectory's order."""
     names = trajectory.landmarks
     upper = [name for name in names if name in UPPER_BODY and name not in salient]
-    # Of a set with legs and a face only the arms count; names of other sets may all be arms.
+    # Of MediaPipe's set only the upper body is kept; names of other sets may all be arms.
     known = frozenset(POSE_LANDMARKS) if upper else frozenset()
     others = [name for name in names if name not in salient and name not in known]
     kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}

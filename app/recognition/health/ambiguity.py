@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from app.recognition.health.finding import Finding
-from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.text.wording import join_words
 
@@ -53,8 +53,8 @@ class Ambiguity:
 class _Lead(NamedTuple):
     """What each of two walks has said that the other has not, of which one at least is nothing."""
 
-    one: Reading
-    other: Reading
+    one: Parse
+    other: Parse
 
 
 _DIFFERENT = None
@@ -150,9 +150,9 @@ class _PairSearch:
         one, other, lead = pair
         theirs = self._automaton.moves(other)
         for label, mine in self._automaton.moves(one).items():
-            for target, said in mine:
-                for their_target, their_said in theirs.get(label, ()):
-                    yield label, (target, their_target, _compared(lead, said, their_said))
+            for target, added in mine:
+                for their_target, their_added in theirs.get(label, ()):
+                    yield label, (target, their_target, _extend_lead(lead, added, their_added))
 
     def _gestures(self, pair: _Pair) -> tuple[str, ...]:
         gestures = []
@@ -164,11 +164,11 @@ class _PairSearch:
         return tuple(reversed(gestures))
 
 
-def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead | None:
+def _extend_lead(lead: _Lead | None, added: Parse, their_added: Parse) -> _Lead | None:
     """Return how two parses differ after one more gesture."""
     if lead is _DIFFERENT:
         return _DIFFERENT
-    one, other = lead.one + said, lead.other + their_said
+    one, other = lead.one + added, lead.other + their_added
     common = min(len(one), len(other))
     if one[:common] != other[:common]:
         return _DIFFERENT
@@ -189,13 +189,13 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
         ):
             return False
         for label, moves in automaton.moves(position).items():
-            for target, said in moves:
+            for target, added in moves:
                 if automaton.positions[target].phrase not in (None, phrase):
                     continue
                 beside = frozenset(
-                    (their_target, _compared(lead, said, their_said))
+                    (their_target, _extend_lead(lead, added, their_added))
                     for other, lead in others
-                    for their_target, their_said in automaton.moves(other).get(label, ())
+                    for their_target, their_added in automaton.moves(other).get(label, ())
                 )
                 following: _Walk = (target, beside)
                 if following not in known:

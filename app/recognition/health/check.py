@@ -95,11 +95,11 @@ def check_health(
         )
     recognizer = Recognizer(language, "full")
     shown = sum(gesture.trajectory is not None for gesture in language.gestures)
-    advance = _counted(progress, "rehearsing", shown * takes)
+    advance = _count_steps(progress, "rehearsing", shown * takes)
     run_trials = TrialRunner(takes=takes, seed=seed, person=person, advance=advance)
     trials = run_trials(recognizer)
     read = find_false_alarms(
-        recognizer, EXAMPLES, seed=seed, advance=_counted(progress, "accidental movements", 0)
+        recognizer, EXAMPLES, seed=seed, advance=_count_steps(progress, "accidental movements", 0)
     )
     distances = _demonstrated_distances(recognizer)
     gestures = tuple(
@@ -111,7 +111,7 @@ def check_health(
         for pair in combinations(range(len(gestures)), 2)
     ]
     pairs.sort(key=_confusion_rate, reverse=True)
-    searching = replace(run_trials, advance=_counted(progress, "remedies", 0))
+    searching = replace(run_trials, advance=_count_steps(progress, "remedies", 0))
     findings = [
         *_pair_findings(recognizer, pairs, trials, searching),
     ]
@@ -132,7 +132,7 @@ def check_health(
     )
 
 
-def _counted(progress: Progress, stage: str, total: int) -> Callable[[], None]:
+def _count_steps(progress: Progress, stage: str, total: int) -> Callable[[], None]:
     """Return what is called after each piece of work; a total of 0 is not known beforehand."""
     done = 0
 
@@ -200,7 +200,7 @@ def check_pairs(
 
     """
 
-    def forecast(one: int, other: int) -> RateEstimate | None:
+    def estimate(one: int, other: int) -> RateEstimate | None:
         performer = _performer(trials, one)
         return None if performer is None else trials.confusion(performer, other)
 
@@ -208,8 +208,8 @@ def check_pairs(
     between = [each for each in (distances[pair], distances[second, first]) if np.isfinite(each)]
     return PairHealth(
         gestures=(language.labels[first], language.labels[second]),
-        first_as_second=forecast(first, second),
-        second_as_first=forecast(second, first),
+        first_as_second=estimate(first, second),
+        second_as_first=estimate(second, first),
         distance=float(np.mean(between)) if between else None,
     )
 
@@ -233,17 +233,20 @@ def _pair_findings(
         if confusion is None or confusion.rate <= MOST_CONFUSION:
             break
         first, second = (language.labels.index(label) for label in pair.gestures)
-        contrasts = compare_pair(recognizer, first, second), compare_pair(recognizer, second, first)
+        differences = (
+            compare_pair(recognizer, first, second),
+            compare_pair(recognizer, second, first),
+        )
         remedies: tuple[Remedy, ...] = ()
         both_shown = pair.first_as_second is not None and pair.second_as_first is not None
         if len(findings) < MOST_REMEDIED and both_shown:
-            strokes = tuple(None if each is None else each.stroke for each in contrasts)
+            strokes = tuple(None if each is None else each.stroke for each in differences)
             remedies = find_pair_remedies(language, (first, second), trials, run_trials, strokes)
         findings.append(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
                 pair.gestures,
-                _confusion_message(pair, contrasts),
+                _confusion_message(pair, differences),
                 below_bar=True,
                 remedies=remedies,
             )
@@ -256,7 +259,7 @@ def _is_duplicate(pair: PairHealth) -> bool:
 
 
 def _confusion_message(
-    pair: PairHealth, contrasts: tuple[PairDifference | None, PairDifference | None]
+    pair: PairHealth, differences: tuple[PairDifference | None, PairDifference | None]
 ) -> str:
     first, second = pair.gestures
     if _is_duplicate(pair):
@@ -266,7 +269,7 @@ def _confusion_message(
     confusion, forth = pair.confusion, pair.confusion is pair.first_as_second
     assert confusion is not None  # asked before
     one, other = (first, second) if forth else (second, first)
-    differing = contrasts[0 if forth else 1]
+    differing = differences[0 if forth else 1]
     where = ""
     if differing is not None:
         where = f"; the demonstration of {one} differs in this: {differing.words}"
@@ -294,8 +297,8 @@ def _gesture_findings(
     findings: list[Finding] = []
     for gesture, health in zip(language.gestures, gestures, strict=True):
         findings += check_demonstration(gesture)
-        told = health.label in explained
-        if not told and health.missed is not None and health.missed.rate > MOST_MISSED:
+        explained_by_pair = health.label in explained
+        if not explained_by_pair and health.missed is not None and health.missed.rate > MOST_MISSED:
             message = (
                 f"{health.missed.rate:.0%} of all takes of {health.label} "
                 f"({health.missed.low:.0%} to {health.missed.high:.0%}) would not be read as it"

@@ -148,22 +148,22 @@ def use_both_hands(gesture: Gesture) -> Gesture | None:
 
 def widen(gesture: Gesture) -> Gesture | None:
     """Stretch what moves horizontally."""
-    return _reshown(gesture, lambda shown: _stretched(shown, (LARGER, 1.0)))
+    return _change_demonstration(gesture, lambda shown: _stretch(shown, (LARGER, 1.0)))
 
 
 def heighten(gesture: Gesture) -> Gesture | None:
     """Stretch what moves vertically."""
-    return _reshown(gesture, lambda shown: _stretched(shown, (1.0, LARGER)))
+    return _change_demonstration(gesture, lambda shown: _stretch(shown, (1.0, LARGER)))
 
 
 def slow_down(gesture: Gesture) -> Gesture | None:
     """Let it take twice as long."""
-    return _reshown(gesture, lambda shown: replace(shown, time=SLOWER * shown.time))
+    return _change_demonstration(gesture, lambda shown: replace(shown, time=SLOWER * shown.time))
 
 
 def reverse(gesture: Gesture) -> Gesture | None:
     """Show it from its end to its start."""
-    return _reshown(
+    return _change_demonstration(
         gesture,
         lambda shown: replace(shown, xy=shown.xy[::-1], time=shown.time[-1] - shown.time[::-1]),
     )
@@ -180,7 +180,7 @@ def lengthen_stroke(gesture: Gesture, start: float, end: float) -> Gesture | Non
         added = np.concatenate([np.zeros_like(shown.xy[:1]), np.cumsum(more, axis=0)])
         return replace(shown, xy=shown.xy + added * _moving(shown))
 
-    return _reshown(gesture, changed)
+    return _change_demonstration(gesture, changed)
 
 
 def set_switch(
@@ -198,14 +198,16 @@ def set_switch(
     return replace(gesture, switches=wanted)
 
 
-def _reshown(gesture: Gesture, change: Callable[[Trajectory], Trajectory]) -> Gesture | None:
+def _change_demonstration(
+    gesture: Gesture, change: Callable[[Trajectory], Trajectory]
+) -> Gesture | None:
     """Apply a change to the demonstration, and draw it anew; None without a demonstration."""
     if gesture.trajectory is None or not gesture.salient:
         return None
     return replace(gesture, trajectory=change(gesture.trajectory)).redraw()
 
 
-def _stretched(shown: Trajectory, factors: tuple[float, float]) -> Trajectory:
+def _stretch(shown: Trajectory, factors: tuple[float, float]) -> Trajectory:
     """Stretch every arm's landmarks about their mean places; the trunk stays."""
     with np.errstate(invalid="ignore"):
         seen = np.isfinite(shown.xy).any(axis=(0, 2))

@@ -131,7 +131,8 @@ def find_pair_remedies(
     )
     missed = sum(before.missed(performer).rate for performer in performers)
     tried = [
-        (_tried(changed, run_trials), edit, changed) for edit, changed in _changed(two, strokes)
+        (_try_edit(changed, run_trials), edit, changed)
+        for edit, changed in _apply_edits(two, strokes)
     ]
     tried.sort(key=lambda trial: (trial[0].rate, trial[0].high))
     best_of_kind = {edit.kind: (edit, changed) for _, edit, changed in reversed(tried)}
@@ -146,7 +147,7 @@ def find_pair_remedies(
     return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
 
 
-def _changed(
+def _apply_edits(
     two: list[Gesture],
     strokes: Sequence[tuple[float, float] | None],
 ) -> Iterator[tuple[GestureEdit, list[Gesture]]]:
@@ -161,7 +162,7 @@ def _changed(
             yield change, [changed, other] if which == 0 else [other, changed]
 
 
-def _tried(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
+def _try_edit(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     language = Language("two", two)
     # Only scores are compared: thresholds are not made for a language that nobody will speak.
     uncalibrated = replace(language, thresholds_for=language.fingerprint)

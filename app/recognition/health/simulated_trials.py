@@ -44,7 +44,7 @@ class SimulatedTrials:
     novelty
         ``(P, N)``: how much farther than its thresholds allow each take lies from its own gesture;
         above 1 it is refused. NaN for a gesture without thresholds.
-    unforeseen
+    bias
         Of `VARIANT_BIASES` the one of whoever performed.
 
     """
@@ -52,7 +52,7 @@ class SimulatedTrials:
     gestures: npt.NDArray[np.intp]
     scores: FloatArray
     novelty: FloatArray
-    unforeseen: VariantBias
+    bias: VariantBias
 
     @property
     def margins(self) -> FloatArray:
@@ -70,21 +70,21 @@ class SimulatedTrials:
         A take that is not what was shown is as near to any gesture.
         """
         astray = 1 / self.scores.shape[2]
-        return RateEstimate.of_margins(self.margins[performer, :, other], self.unforeseen, astray)
+        return RateEstimate.of_margins(self.margins[performer, :, other], self.bias, astray)
 
     def misread(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is nearer to any other one than to itself."""
         astray = 1 - 1 / self.scores.shape[2]
-        return RateEstimate.of_margins(self._to_rivals(performer), self.unforeseen, astray)
+        return RateEstimate.of_margins(self._to_rivals(performer), self.bias, astray)
 
     def refused(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is too far from itself to be recognised at all."""
-        return RateEstimate.of_margins(self._to_refusal(performer), self.unforeseen)
+        return RateEstimate.of_margins(self._to_refusal(performer), self.bias)
 
     def missed(self, performer: int) -> RateEstimate:
         """Forecast how often a gesture is misread, or refused."""
         margins = np.minimum(self._to_rivals(performer), self._to_refusal(performer))
-        return RateEstimate.of_margins(margins, self.unforeseen)
+        return RateEstimate.of_margins(margins, self.bias)
 
     def _to_rivals(self, performer: int) -> FloatArray:
         """Return ``(N,)`` margins to the nearest other gesture."""
@@ -136,7 +136,7 @@ def simulate_trials(
     for row, index in enumerate(performed):
         demonstration = language.gestures[index].trajectory
         assert demonstration is not None  # chosen above
-        for take, performed_take in enumerate(_performed(demonstration, count, seed, person)):
+        for take, performed_take in enumerate(_perform(demonstration, count, seed, person)):
             compared = recognizer.compare(performed_take)
             scores[row, take] = compared.scores
             novelty[row, take] = compared.novelty[index]
@@ -145,12 +145,12 @@ def simulate_trials(
         gestures=np.array(performed, dtype=np.intp),
         scores=scores,
         novelty=novelty,
-        unforeseen=VARIANT_BIASES[person],
+        bias=VARIANT_BIASES[person],
     )
 
 
 @lru_cache(maxsize=MOST_REMEMBERED)
-def _performed(
+def _perform(
     demonstration: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
     """Perform a demonstration, as the voters see it."""

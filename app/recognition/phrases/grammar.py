@@ -1,8 +1,8 @@
-"""A grammar: which sequences of gestures are phrases, and what each tells the robot.
+"""Grammar: the phrases of a language, which are sequences of gestures with one command.
 
-Modelled on CADDIAN (Chiarella et al. 2015, 2018): a message is opened and closed by a gesture of
-its own, and a phrase has slots for quantities. Every repetition is bounded, so the sequences are
-finitely many and what is ambiguous can be found exactly, see `ambiguity`.
+Modelled on CADDIAN (Chiarella et al. 2015, 2018): messages have start and end gestures, and phrases
+have slots for quantities. Every repetition is bounded, so there are finitely many sequences and
+ambiguities can be found exactly, see `ambiguity`.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from app.recognition.phrases.validation import check_grammar
 from app.recognition.text.strict_json import build_pointer
 
 DEFAULT_TIMEOUT = 10.0
-"""Seconds: as long as attention stays with a dialogue that does not answer (Nielsen 1993)."""
+"""Seconds: how long attention stays with a dialogue without answer (Nielsen 1993)."""
 
 FRAME = ("start", "end", "cancel")
-"""The gestures around a message, by their roles."""
+"""Roles of the gestures around a message."""
 
 
 @dataclass(frozen=True)
 class Use:
-    """Where a grammar names a gesture.
+    """A reference to a gesture in a grammar.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Use:
     pointer
         JSON pointer into the language file.
     where
-        The same in words.
+        The place in words.
     role
         One of `FRAME`; None inside a phrase or a slot type.
 
@@ -47,18 +47,18 @@ class Use:
 
 @dataclass(frozen=True)
 class Grammar:
-    """All phrases of a language, and what frames them.
+    """The phrases of a language, with its start, end and cancel gestures and time-out.
 
     Attributes
     ----------
     phrases
         In the author's order.
     slot_types
-        What slots may be filled with.
+        The types of slots.
     start, end
         Labels of the gestures that open and close a message; None: none is needed.
     cancel
-        Label of the gesture that drops what was begun.
+        Label of the gesture that drops an unfinished message.
     timeout
         Most seconds between the end of a gesture and the start of the next one of a message.
     most_phrases
@@ -80,7 +80,7 @@ class Grammar:
     most_phrases: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse what contradicts itself."""
+        """Validate the grammar."""
         check_grammar(self)
 
     def slot_type(self, name: str) -> SlotType:
@@ -88,7 +88,7 @@ class Grammar:
         return next(each for each in self.slot_types if each.name == name)
 
     def uses(self) -> Iterator[Use]:
-        """Give every place that names a gesture, in the file's order."""
+        """Yield every reference to a gesture, in the file's order."""
         for role in FRAME:
             label = getattr(self, role)
             if label is not None:
@@ -103,7 +103,7 @@ class Grammar:
                 yield Use(label, pointer, f"the phrase {phrase.name!r}")
 
     def require(self, labels: Collection[str]) -> None:
-        """Refuse a language that lacks a gesture of the grammar.
+        """Check that a language has all gestures of the grammar.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class Grammar:
                 )
 
     def users_of(self, label: str) -> tuple[str, ...]:
-        """Name the phrases and other places that need a gesture, each once.
+        """Return the phrases and other places that need a gesture, in words, each once.
 
         A phrase with a slot needs the gestures of the slot's type as well.
         """
@@ -161,7 +161,7 @@ class Grammar:
         )
 
     def example(self, phrase: Phrase) -> tuple[str, ...]:
-        """Return a message of one phrase in which every part is shown."""
+        """Return a message of one phrase with all its parts."""
         opening = () if self.start is None else (self.start,)
         closing = () if self.end is None else (self.end,)
         return (*opening, *self._example_of(phrase.parts), *closing)

@@ -1,4 +1,4 @@
-"""What a grammar must obey beyond the shape of its entries, each fault with its JSON pointer."""
+"""Grammar validation: rules beyond the schema, with the JSON pointer of each error."""
 
 from __future__ import annotations
 
@@ -29,8 +29,7 @@ MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
 
 MAX_PHRASES_IN_MESSAGE = 8
-"""CADDIAN's missions have up to eleven commands; what is longer than a breath of attention is
-planned on the surface."""
+"""CADDIAN's missions have up to eleven commands; longer ones are planned on the surface."""
 
 MAX_GESTURES_IN_PHRASE = 40
 """With every repetition counted: bounds the work of the check, and a phrase of forty gestures takes
@@ -40,14 +39,14 @@ MAX_GESTURES_IN_GRAMMAR = 1000
 """Of all phrases together, for the same reason: the check compares each with each."""
 
 MAX_TIMEOUT = 600.0
-"""Seconds: after ten minutes nobody goes on with a sentence."""
+"""Seconds: ten minutes, far longer than any pause within a message."""
 
 SLOT_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
-"""What stands between braces; also a valid name of a parameter on any robot."""
+"""Name of a placeholder, which is also a valid parameter name on any robot."""
 
 
 def check_grammar(grammar: Grammar) -> None:
-    """Refuse a grammar that contradicts itself.
+    """Check that a grammar is consistent.
 
     Raises
     ------
@@ -71,8 +70,8 @@ def check_grammar(grammar: Grammar) -> None:
     for use in grammar.uses():
         if use.label == grammar.cancel and use.role != "cancel":
             raise LanguageError(
-                f"{use.label!r} is the cancel gesture, so that {use.where} could never be heard "
-                "with it: choose another",
+                f"{use.label!r} is the cancel gesture, so {use.where} cannot use it: choose "
+                "another gesture",
                 use.pointer,
             )
 
@@ -90,8 +89,8 @@ def _check_frame(grammar: Grammar) -> None:
         )
     if grammar.most_phrases > 1 and grammar.end is None:
         raise LanguageError(
-            "a message of several phrases needs an end gesture, or the robot would never know that "
-            "no more is coming",
+            "a message of several phrases needs an end gesture: without one the robot cannot "
+            "detect its end",
             "/grammar/most_phrases",
         )
     if len(grammar.phrases) > MAX_PHRASES:
@@ -139,7 +138,7 @@ def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool
 def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
     if not phrase.parts or all(_may_be_left_out(part) for part in phrase.parts):
         raise LanguageError(
-            f"{phrase.name!r} can be said without any gesture: let one part be needed",
+            f"{phrase.name!r} can be shown without any gesture: make one part required",
             pointer + "/parts",
         )
     for index, part in enumerate(phrase.parts):
@@ -203,8 +202,8 @@ def _check_slot_names(phrase: Phrase, pointer: str) -> None:
             )
         if group is not None and group.most > 1 and slot.most > 1:
             raise LanguageError(
-                f"{slot.name!r} may be repeated, and so may its group: which value belongs to "
-                "which repetition could not be told",
+                f"{slot.name!r} and its group may both be repeated, so its values cannot be "
+                "assigned to repetitions: let only one of them repeat",
                 at + "/most",
             )
         seen.add(slot.name)
