@@ -1,4 +1,4 @@
-"""Majority vote, the decision rule of profile ``paper``: each voter votes for its nearest gesture."""
+"""Majority vote of profile ``paper``: each voter votes for its nearest gesture."""
 
 from __future__ import annotations
 

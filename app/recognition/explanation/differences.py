@@ -1,8 +1,7 @@
-"""Differences: in what way a query is not the gesture that was expected, where and when.
+"""Differences: the ways in which a query differs from the expected gesture, with time and joint.
 
-Each kind is tried by undoing it: the query is turned round, shown with the other hand, cut short,
-and compared again. What that takes away of the distance between the paths is the difference's
-share.
+Each kind is tested by undoing it: the query is reversed, shown with the other hand, cut short, and
+compared again. The share of a difference is the part of the path distance that this removes.
 """
 
 from __future__ import annotations
@@ -29,57 +28,55 @@ Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
     "tempo", "place", "size", "wrist", "unseen",
 ]  # fmt: skip
-"""In what way: left and right exchanged by the pose model; the other way round; with the other
-hand; as its mirror image; a part missing, or too much; another course; slower or quicker; elsewhere
-beside the body; larger or smaller; with the wrist bent otherwise; not seen for a while."""
+"""Kinds: left and right exchanged by the pose model; opposite direction; other hand; mirror image;
+a part missing or added; another shape; slower or quicker; another place beside the body; larger or
+smaller; another bend of the wrist; not seen for a while."""
 
 DIFFERENT = 2 * ALIKE
-"""Path distance from which a query's path is told to differ: twice what two people's takes of one
-figure differ by. Of plausible takes by another person a third lie beyond it."""
+"""Least path distance of a difference: twice that of two people's takes of one figure. A third of
+simulated takes by another person exceed it."""
 
 LEAST_SHARE = 0.5
-"""Share of the distance that undoing a difference must take away for it to be named: what it
-explains is then more than what remains."""
+"""Least share of the distance that a difference must explain to be reported."""
 
 CUTS = tuple(range(STEPS // 8, STEPS // 2 + 1, 2))
-"""Steps of 32 that may be missing or too many at either end: from an eighth, the least that is a
-stroke of its own, to a half, beyond which the rest is no longer most of the gesture."""
+"""Steps of 32 that may be missing or added at either end: from an eighth, the shortest stroke, to a
+half, beyond which the rest is no longer most of the gesture."""
 
 AS_GOOD = 1.15
-"""Factor on the least distance up to which a smaller cut is as good: a little less than the least
-difference that people see in a figure, a fifth."""
+"""Factor on the least distance up to which a smaller cut is preferred: a little less than a fifth,
+the least difference that people notice in a figure."""
 
 ELSEWHERE = 0.5
-"""Torso lengths between the mean places from which a gesture is shown elsewhere: raised or lowered
-by more than a forearm's half; where people show the same, they differ by half of that."""
+"""Torso lengths between the mean positions from which the place differs: half a forearm, twice the
+difference between two people's takes."""
 
 CLEARLY_LARGER = 1.0
-"""Doublings of the size from which it is told; two people differ by a third of one."""
+"""Doublings of the size from which it differs; two people differ by a third of one."""
 
 BENT_OTHERWISE = 1.5
-"""Distance by `WristBend` from which a wrist is told to be bent otherwise: about the threshold of
-that voter, three times what two people's takes of one gesture differ by."""
+"""Distance by `WristBend` from which the bend differs: about that voter's threshold, three times
+the difference between two people's takes of one gesture."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Difference:
-    """One way in which a query is not the expected gesture.
+    """One way in which a query differs from the expected gesture.
 
     Attributes
     ----------
     kind
         See `Kind`.
     share
-        In [0, 1]: of the distance between the paths, beyond what takes of one figure differ by,
-        what undoing it takes away; 0 for what is told beside it and changes no path: tempo,
-        place, size, the wrist, what was not seen.
+        In [0, 1]: the part of the path distance, beyond that between takes of one figure, that
+        undoing it removes; 0 for differences that change no path: tempo, place, size, the wrist,
+        not seen.
     landmark
-        The joint concerned most; None: all of them.
+        The landmark that differs most; None: all of them.
     start, end
-        Seconds of the query's clock between which it lies; None: throughout. What is missing lies
-        where `start` is `end`.
+        Seconds in the query's clock; None: throughout. For a missing part, `start` equals `end`.
     words
-        A clause for people.
+        The difference as a clause.
 
     """
 
@@ -96,15 +93,14 @@ class Difference:
 
 
 def find_differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, ...]:
-    """Tell in what ways a query is not a gesture, the most telling first.
+    """Find the differences between a query and a gesture, those with the largest share first.
 
     Parameters
     ----------
     pairing
-        The two.
+        The query and the gesture.
     sees_direction
-        Whether the voters can tell one way round from the other; to those that see drawings both
-        are the same.
+        Whether the voters distinguish directions; shape voters do not.
 
     """
     found: list[Difference] = []
@@ -112,11 +108,11 @@ def find_differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Differe
         turned = _turned(pairing) if sees_direction else ()
         undone = [*_exchanged(pairing), *turned, *_on_the_other_side(pairing), *_cut(pairing)]
         found = [difference for difference in undone if difference.share >= LEAST_SHARE]
-        # A circle turned round is its mirror image too: of equals the first is the likeliest.
+        # A reversed circle is also its mirror image: of equal shares the first is most likely.
         found = sorted(found, key=lambda difference: -round(difference.share, 1))
         found = found or [_bent(pairing)]
     if found and found[0].kind == "exchanged_sides":
-        return tuple(found)  # where and how large such a path is, says nothing of the gesture
+        return tuple(found)  # place and size of such a path are meaningless
     beside = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing)]
     if sees_direction:
         beside += [*_read_backwards(pairing), *_bent_otherwise(pairing)]
@@ -124,7 +120,7 @@ def find_differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Differe
 
 
 def _exchanged(pairing: Pairing) -> Iterator[Difference]:
-    """Put right what the pose model exchanged, unless it was already."""
+    """Undo side swaps of the pose model that were not repaired."""
     seen = pairing.trajectory
     changed = find_side_swaps(seen).exchanged
     if not changed.any():
@@ -140,28 +136,28 @@ def _exchanged(pairing: Pairing) -> Iterator[Difference]:
         start=float(times[0]),
         end=float(times[-1]),
         words=(
-            f"left and right were taken for each other in {changed.sum()} of {len(changed)} "
+            f"left and right were exchanged in {changed.sum()} of {len(changed)} "
             f"moments between {times[0]:.1f} and {times[-1]:.1f} s"
         ),
     )
 
 
 def _turned(pairing: Pairing) -> Iterator[Difference]:
-    """Turn the query round."""
+    """Reverse the query."""
     backward = not pairing.example.traversal.backward
     left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
-    yield _throughout(pairing, "direction", left, "it goes the other way round")
+    yield _throughout(pairing, "direction", left, "it goes in the opposite direction")
 
 
 def _read_backwards(pairing: Pairing) -> Iterator[Difference]:
-    """Tell that the gesture fits only when read backwards."""
+    """Yield a difference if the gesture is nearest when traversed backwards."""
     if pairing.example.traversal.backward:
-        words = "it goes the other way round, which costs half as much again"
+        words = "it goes in the opposite direction, which multiplies the distance by 1.5"
         yield _beside("direction", _busiest(pairing), None, None, words)
 
 
 def _on_the_other_side(pairing: Pairing) -> Iterator[Difference]:
-    """Show the query with the other hand, mirrored, or both."""
+    """Exchange the query's hands, mirror it, or both."""
     counterparts = [other_side(name) for name in pairing.landmarks]
     paths, mirror = pairing.query.paths, np.array([-1.0, 1.0])
     examples = pairing.paths_begun_anywhere()
@@ -188,7 +184,7 @@ def _throughout(pairing: Pairing, kind: Kind, left: float, words: str) -> Differ
 
 
 def _cut(pairing: Pairing) -> Iterator[Difference]:
-    """Cut either end off the gesture, or off the query."""
+    """Cut off either end of the gesture or of the query."""
     query, example = pairing.query.paths, pairing.example.movement.paths
     for at_end in (True, False):
         steps, left = _best_cut(pairing, query, example, at_end)
@@ -225,9 +221,9 @@ def _cut(pairing: Pairing) -> Iterator[Difference]:
 def _best_cut(
     pairing: Pairing, whole: FloatArray, cut: FloatArray, at_end: bool
 ) -> tuple[int, float]:
-    """Find how many steps to cut off so that the rest is the whole of the other: with what left.
+    """Find how many steps to cut off so that the rest equals the other, and the distance left.
 
-    Where it leaves less to cut both, the one has something else there, not nothing: no cut is good.
+    No cut is returned if cutting both leaves less: then the parts differ, and none is missing.
     """
     rests, others = (
         [_stretched(path[: STEPS - steps] if at_end else path[steps:]) for steps in CUTS]
@@ -255,11 +251,11 @@ def _percent(steps: int) -> str:
 
 
 def _bent(pairing: Pairing) -> Difference:
-    """Tell where the courses part: nothing that was undone explains it."""
+    """Return where the paths differ most, if nothing that was undone explains the distance."""
     parted = find_divergence(pairing)
     where = f"where {pairing.example.label!r} {parted.expected}"
     if parted.shown == parted.expected:
-        where = f"as {pairing.example.label!r} does, but on another course"
+        where = f"as in {pairing.example.label!r}, but on another path"
     return Difference(
         kind="shape",
         share=parted.share,
@@ -280,7 +276,7 @@ def _busiest(pairing: Pairing) -> str:
 
 
 def _unseen(pairing: Pairing) -> Iterator[Difference]:
-    """Tell of salient joints that were not seen for longer than a gap that is bridged."""
+    """Yield salient landmarks that were not seen for longer than a bridged gap."""
     trajectory = pairing.trajectory
     for name in pairing.landmarks:
         if name not in trajectory.landmarks:
@@ -312,7 +308,7 @@ def _mean_place(trajectory: Trajectory, name: str) -> FloatArray:
 
 
 def _where(apart: FloatArray) -> str:
-    """Name the direction of ``(2,)`` in the image."""
+    """Return the direction of ``(2,)`` in the image, in words."""
     x, y = apart
     if abs(y) >= abs(x):
         return "lower" if y > 0 else "higher"
@@ -344,7 +340,7 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
     for wrist, here, there in zip(wrists, shown, expected, strict=True):
         distance = float(voter.distances(here, there)[0])
         if np.isfinite(distance) and distance > BENT_OTHERWISE:
-            # The mean of a sine stays within 1; a rounding error need not.
+            # The mean of sines is within 1 except for rounding errors.
             bends = np.degrees(np.arcsin(np.clip([here[0, 0], there[0, 0]], -1, 1)))
             apart = float(bends[0] - bends[1])
             words = (

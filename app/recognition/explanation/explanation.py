@@ -1,10 +1,10 @@
-"""Explanations: why a recognition came out as it did, and what would have turned it right."""
+"""Explanations: what decided a recognition, and what would have corrected it."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,16 +14,16 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import Alignment, Example, align, find_nearest_example
+from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual import (
     NONE_NEEDED,
-    Counterfactuals,
     find_counterfactuals,
 )
 from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import write_sentence
-from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
+from app.recognition.explanation.vote_breakdown import break_down_votes
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.voters.motion.path import Path
@@ -31,71 +31,8 @@ from app.recognition.voters.motion.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Explanation:
-    """Why one recognition came out as it did.
-
-    Attributes
-    ----------
-    profile
-        The recogniser's.
-    expected
-        The gesture that should have been recognised.
-    label, nearest, confidence
-        The recogniser's answer.
-    other
-        What the expected gesture is held against: the nearest one, or the runner-up where the
-        expected one is nearest; None in a language of one gesture.
-    score, other_score
-        Of the expected gesture and of the other, see `ScoreTable.scores`; infinite where not
-        comparable.
-    novelty
-        How much farther than its thresholds allow the query lies from the expected gesture: above
-        1 it is rejected; NaN without thresholds, as in profile ``paper``.
-    fault
-        What makes the recording too poor to judge; None: nothing.
-    votes
-        Per label how many voters with weight took it.
-    verdicts
-        What every voter said, those that spoke most against the expected gesture first.
-    turned
-        What is added to `score` minus `other_score` for traversal one of the two backwards.
-    alignments
-        Of the query with the expected gesture and with the other: of the paths, and in profile
-        ``full`` of the postures.
-    differences
-        In what ways the query is not the expected gesture, the most telling first; empty where
-        the gesture has no demonstration.
-    counterfactuals
-        What would have turned it right.
-
-    """
-
-    profile: str
-    expected: str
-    label: str | None
-    nearest: str
-    confidence: float
-    other: str | None
-    score: float
-    other_score: float
-    novelty: float
-    fault: str | None
-    votes: Mapping[str, int]
-    verdicts: tuple[VoterBreakdown, ...]
-    turned: float
-    alignments: tuple[Alignment, ...]
-    differences: tuple[Difference, ...]
-    counterfactuals: Counterfactuals
-
-    @property
-    def right(self) -> bool:
-        """Whether the expected gesture was recognised."""
-        return self.label == self.expected
-
-    @property
-    def margin(self) -> float:
-        """How much nearer the expected gesture is than the other; negative: farther."""
-        return self.other_score - self.score
+class Explanation(Analysis):
+    """What decided one recognition, with a sentence; see `Analysis` for its attributes."""
 
     @property
     def sentence(self) -> str:
@@ -136,23 +73,23 @@ def explain(
     Parameters
     ----------
     context
-        The language, the profile, the stroke, and what the stroke was cut out of.
+        The recogniser and the take.
     expected
         The label that should have been recognised.
     with_counterfactuals
-        Whether to look for what would have turned it right: by far the longest part.
+        Whether to search for counterfactuals, which takes most of the time.
 
     Raises
     ------
     OsgError
         When `expected` is no gesture of the language.
     PoseError
-        When the recording shows nothing that a gesture needs.
+        When no landmark that a gesture needs moves in the take.
 
     """
     if expected not in context.language.labels:
         raise OsgError(
-            f"no gesture {expected!r} in {context.language.name!r} to expect; it has "
+            f"no gesture {expected!r} in {context.language.name!r}; it has "
             f"{', '.join(context.language.labels)}"
         )
     table, result = context.score_table, context.result
@@ -204,7 +141,7 @@ def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
 
 
 class _Pairings:
-    """The query of a context beside its gestures, as the recogniser compared them."""
+    """Pairings of a context's query with its gestures, as the recogniser compared them."""
 
     def __init__(self, context: RecognitionContext) -> None:
         self._gestures = context.language.gestures
@@ -215,7 +152,7 @@ class _Pairings:
         self._query = context.trajectory
 
     def alignments(self, index: int) -> Iterator[Alignment]:
-        """Align the query with a gesture, where both have a movement."""
+        """Yield alignments of the query with a gesture, if both have a movement."""
         example = self._example(index)
         if example is None or len(self._query) < 2:
             return
@@ -226,7 +163,7 @@ class _Pairings:
                 yield aligned
 
     def differences(self, index: int) -> tuple[Difference, ...]:
-        """Tell in what ways the query is not a gesture."""
+        """Return the differences between the query and a gesture."""
         example = self._example(index)
         if example is None:
             return ()

@@ -1,4 +1,4 @@
-"""Candidates: changes worth trying, in series of which the smallest that helps is wanted."""
+"""Counterfactual search: lists interventions to try, in series of increasing size."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import find_salient_landmarks
 
 TRIM_STEP = 0.1
-"""Share of the stroke by which it is trimmed earlier or later, step by step."""
+"""Step of trimming, as a share of the stroke."""
 
 TRIM_STEPS = 4
-"""Steps at either end: what is cut by more than that at one end is hardly a gesture's transit."""
+"""Most steps at either end; a longer part is hardly a transit."""
 
 WEIGHTS = (0.5, 0.0, 2.0, 4.0)
-"""Factors on a voter's weight: halved, off, doubled, and once more."""
+"""Weight factors that are tried."""
 
 TOLERANCES = (0.5, 2.0, 4.0)
-"""Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
+"""Factors on the drawings' simplification tolerance that are tried."""
 
 Series = list[Intervention]
 
 
 def list_interventions(context: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Give all changes worth trying.
+    """Yield all interventions to try.
 
     Parameters
     ----------
     context
-        In which `expected` was not recognised.
+        A context in which `expected` was not recognised.
     expected
         A label of its language.
 
     Returns
     -------
-    Series of changes of one kind; of each the smallest that helps is wanted.
+    Series of interventions of one kind, in the order in which to try them.
 
     """
     yield from _trims(context)
@@ -65,7 +65,7 @@ def list_interventions(context: RecognitionContext, expected: str) -> Iterator[S
 
 
 def _trims(context: RecognitionContext) -> Iterator[Series]:
-    """Move the start, the end, or both, within what the stroke was cut out of."""
+    """Move the start, the end, or both, within the take."""
     time, whole = context.poses.time, context.whole.time
     start, end = float(time[0]), float(time[-1])
     duration = end - start
@@ -89,7 +89,7 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
 
 
 def _weights(context: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Weigh each voter that has a say less, and more, where that promises to help."""
+    """Decrease and increase the weight of each voter if that may make the expected gesture win."""
     gesture = context.language.labels.index(expected)
     vote = context.recognizer.vote
     for voter, share in context.result.weights.items():
@@ -103,7 +103,7 @@ def _weights(context: RecognitionContext, expected: str) -> Iterator[Series]:
 
 
 def _moved(share: float, factor: float) -> float:
-    """Return what share of all say changes hands when one voter's share is multiplied."""
+    """Return the total weight that moves when one voter's weight is multiplied."""
     return abs(share * factor / (1 - share + share * factor) - share)
 
 
@@ -118,14 +118,14 @@ def _drawings(context: RecognitionContext) -> Iterator[Series]:
 
 
 def _repairs(context: RecognitionContext) -> Iterator[Series]:
-    """Repair bad keypoints, or leave them, where there are any."""
+    """Switch the repair of keypoints on or off, if it changes any."""
     share = float(repair_poses(context.poses).touched.mean())
     if share > 0:
         yield [KeypointRepair(size=share, on=not context.recognizer.repairs)]
 
 
 def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Change the expected gesture, or the one it was taken for."""
+    """Change the expected gesture, or the one that was recognised."""
     moved = find_salient_landmarks(context.trajectory)
     for label in dict.fromkeys((expected, context.result.nearest)):
         gesture = context.language.gesture(label)
@@ -138,7 +138,7 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
 
 
 def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
-    """Follow one keypoint less, one that the query moves more, or just those that it moves."""
+    """Drop one salient landmark, add one that the query moves, or use just those that it moves."""
     now = {*gesture.salient}
     others = [now - {name} for name in now] + [now | {name} for name in moved] + [moved]
     return [
@@ -153,9 +153,9 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
 
 
 def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
-    """Let less count of the expected gesture, and more of the one it was taken for.
+    """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
-    Only where it can matter: which way round, from which side or how fast the other one was read.
+    Only switches that affect this recognition: direction, mirror image or tempo.
     """
     table, at = context.score_table, context.language.labels.index(label)
     traversal = table.traversals[at]

@@ -72,7 +72,7 @@ class PhraseEvent:
         return {
             "continues": f"{so_far}: then {following}",
             "complete": so_far,
-            "ambiguous": f"{so_far} means two things; nothing is done",
+            "ambiguous": f"{so_far} has two meanings; nothing is done",
             "cancelled": "cancelled",
             "timed_out": f"{so_far}: waited too long for {following}; begin again",
             "unexpected": f"{self.label} does not follow {so_far}, {following} does; begin again",
@@ -167,11 +167,11 @@ class PhraseParser:
         return (*self.expire(start), *self._advance(label, start, end))
 
     def expire(self, now: float) -> tuple[PhraseEvent, ...]:
-        """Hear that no gesture had begun by `now`; an event when that is too long."""
+        """Process a pause: no gesture had begun by `now`; returns an event if it is too long."""
         message = self._message
         if not message.gestures or now - message.end <= self.grammar.timeout:
             return ()
-        # After a rejected gesture nobody knows whether the message was over.
+        # After a rejected gesture it is unknown whether the message had ended.
         if not message.doubtful and (parses := self._complete()):
             return (self._end_message(None, parses),)
         return (self._drop("timed_out", None),)
@@ -235,10 +235,10 @@ class PhraseParser:
     def _drop(
         self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None
     ) -> PhraseEvent:
-        """Forget the message."""
+        """Drop the message."""
         event = self._event(kind, label, mission)
         self._message = _Message()
-        # What was waited for in vain is told; otherwise what begins the next message.
+        # After a time-out the expected gestures of this message, otherwise those of the next one.
         in_vain = kind in ("timed_out", "unexpected")
         return event if in_vain else replace(event, expected=self.expected)
 

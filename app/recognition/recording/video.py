@@ -109,7 +109,7 @@ class FrameSource(Protocol):
 
     @property
     def info(self) -> VideoInfo:
-        """What the clip says about itself."""
+        """The clip's metadata."""
         ...
 
     @property

@@ -84,6 +84,12 @@ class RateEstimate:
         # Rounding may move an end past the rate.
         return cls(share, max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half)))
 
+    @property
+    def words(self) -> str:
+        """The estimate in words: "about 1 of 5 takes (9 to 35 %)"."""
+        few = f"1 of {1 / self.rate:.0f}" if 0 < self.rate < 0.4 else f"{10 * self.rate:.0f} of 10"
+        return f"about {few} takes ({100 * self.low:.0f} to {100 * self.high:.0f} %)"
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types, rounded."""
         return {name: round(value, DIGITS) for name, value in vars(self).items()}

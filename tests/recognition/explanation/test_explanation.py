@@ -166,7 +166,8 @@ def test_who_was_rejected_is_told_by_how_much() -> None:
     explanation = explain(examined, nearest, with_counterfactuals=False)
     assert (explanation.label, explanation.other != nearest) == (None, True)
     assert explanation.novelty > 1.0
-    assert f"{explanation.novelty:.1f} times as far as its thresholds allow" in explanation.sentence
+    allowed = f"{explanation.novelty:.1f} times as far from it as its thresholds allow"
+    assert allowed in explanation.sentence
     limits = {verdict.voter: verdict.limit for verdict in explanation.verdicts}
     assert limits["path"] == LANGUAGE.calibrated().gesture(nearest).thresholds["path"]
     assert limits["hu"] is None

@@ -1,4 +1,4 @@
-"""A whole TensorFlow Lite model as an ONNX model."""
+"""ONNX model: conversion of a whole TensorFlow Lite model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OPERATOR_SET: Final = 13
 also those that ship with a robot's older CUDA."""
 
 FILE_VERSION: Final = 8
-"""ONNX file format version of the same age of runtime as the operator set, and later ones."""
+"""ONNX file format version that the same runtimes support."""
 
 
 def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[str] = ()) -> bytes:
@@ -37,8 +37,8 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
     credit
         Origin and licence, kept in the model's description.
     unused
-        Names of outputs to leave out, with all that only they need: ONNX Runtime computes every
-        output of a file, asked for or not.
+        Names of outputs to leave out, with the nodes that only they need: ONNX Runtime computes
+        every output of a file, even if it is not requested.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
 
 
 def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
-    """Return the nodes, which stand in the order of computation, that any wanted value needs."""
+    """Return the nodes, in the order of computation, that any wanted value needs."""
     needed = []
     wanted = set(wanted)
     for node in reversed(nodes):

@@ -1,4 +1,4 @@
-"""How each TensorFlow Lite operator of MediaPipe's models is written in ONNX.
+"""Operator conversion: the ONNX nodes of each TensorFlow Lite operator of MediaPipe's models.
 
 Sources: TensorFlow Lite's ``schema.fbs`` and reference kernels; ONNX operators, opset 13.
 """
@@ -19,7 +19,7 @@ _VALID_PADDING: Final = 1
 """``Padding.VALID``: no border. The other value, SAME, adds one so that stride alone shrinks."""
 
 _NO_ACTIVATION, _RELU, _RELU6 = 0, 1, 3
-"""``ActivationFunctionType``: what is applied to the result within the same operator."""
+"""``ActivationFunctionType``: the activation fused into an operator."""
 
 Converter = Callable[[GraphBuilder, Operator], None]
 
