@@ -196,7 +196,7 @@ class Spotter:
             self._looked = now
             self._look(now)
         self._recognize_one()
-        return self._ended(now)
+        return self._take_final(now)
 
     def listen(self, poses: PoseSequence) -> tuple[Spotted, ...]:
         """Process a whole pose sequence frame by frame, as a robot does, and end the stream."""
@@ -230,7 +230,7 @@ class Spotter:
             self._look(np.inf)
         while self._waiting:
             self._recognize_one()
-        return self._ended(np.inf)
+        return self._take_final(np.inf)
 
     def _look(self, now: float) -> None:
         """Find strokes in the kept frames, and queue the stretches that end with a new one."""
@@ -297,7 +297,7 @@ class Spotter:
         most = max(moved.get(name, 0.0) for name in self._landmarks)
         return most >= MIN_DISPLACEMENT * measure_body_unit(trajectory)
 
-    def _ended(self, now: float) -> tuple[Spotted, ...]:
+    def _take_final(self, now: float) -> tuple[Spotted, ...]:
         """Return the best candidates that no later one can replace."""
         found: list[Spotted] = []
         while self._candidates:

@@ -84,8 +84,8 @@ class Recognition:
             equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
             object.__setattr__(self, "weights", MappingProxyType(equal))
         for name in ("distances", "scores", "novelty"):
-            object.__setattr__(self, name, _frozen(getattr(self, name)))
-        by_view = {view: _frozen(values) for view, values in self.novelty_by_view.items()}
+            object.__setattr__(self, name, _freeze(getattr(self, name)))
+        by_view = {view: _freeze(values) for view, values in self.novelty_by_view.items()}
         object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
 
     @property
@@ -153,7 +153,7 @@ class Recognition:
         }
 
 
-def _frozen(values: FloatArray) -> FloatArray:
+def _freeze(values: FloatArray) -> FloatArray:
     """Return a read-only copy."""
     frozen = values.copy()
     frozen.setflags(write=False)

@@ -71,25 +71,25 @@ def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
     check_image(image)
     if water == "off" or (water == "auto" and not is_murky(image)):
         return image
-    compensated = _compensated(image)
-    table = _balance_and_stretch(_sampled(compensated))
+    compensated = _compensate(image)
+    table = _balance_and_stretch(_sample(compensated))
     return np.asarray(cv2.LUT(compensated, table), np.uint8)
 
 
 def is_murky(image: Image) -> bool:
     """Return whether the range of brightness is so small that correction helps."""
-    darkest, lightest = np.percentile(_sampled(image) @ LUMA, [TAIL, 100 - TAIL])
+    darkest, lightest = np.percentile(_sample(image) @ LUMA, [TAIL, 100 - TAIL])
     return bool(lightest - darkest < MURKY_RANGE)
 
 
-def _sampled(image: Image) -> FloatArray:
+def _sample(image: Image) -> FloatArray:
     """Return ``(N, 3)``: a sample of the image's pixels."""
     return image[::SAMPLING, ::SAMPLING].reshape(-1, 3).astype(np.float64)
 
 
-def _compensated(image: Image) -> Image:
+def _compensate(image: Image) -> Image:
     """Add the mean difference to green to red, and to blue, most where the pixel is green."""
-    means = _sampled(image).mean(axis=0)
+    means = _sample(image).mean(axis=0)
     channels = [np.ascontiguousarray(image[..., channel]) for channel in range(3)]
     for weak in (RED, BLUE):
         lack = (means[GREEN] - means[weak]) / 255

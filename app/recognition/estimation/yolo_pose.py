@@ -149,7 +149,7 @@ def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:
     if len(outputs) == 1 and outputs[0].ndim == 3 and len(outputs[0]) == 1:
         values = outputs[0][0].astype(np.float64)
         if len(values) == CANDIDATE:
-            return _without_overlap(_candidates(values.T))
+            return _drop_overlapping(_candidates(values.T))
         if values.shape[1] == DETECTION:
             return _detections(values)
     raise ModelError(
@@ -172,7 +172,7 @@ def _detections(rows: FloatArray) -> People:
     return People(rows[:, :4].reshape(-1, 2, 2), np.clip(rows[:, 4], 0, 1), keypoints)
 
 
-def _without_overlap(people: People) -> People:
+def _drop_overlapping(people: People) -> People:
     """Keep the best of overlapping candidates."""
     extents = np.concatenate([people.boxes[:, 0], people.boxes[:, 1] - people.boxes[:, 0]], axis=1)
     kept = np.asarray(

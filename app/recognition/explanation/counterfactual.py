@@ -143,8 +143,8 @@ def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterf
                 found.append(helps)
                 break
     rest = _Rest(context)
-    told = tuple(_describe(each, expected, rest) for each in _choose_smallest(found))
-    return Counterfactuals(found=told, tried=tried)
+    described = tuple(_describe(each, expected, rest) for each in _choose_smallest(found))
+    return Counterfactuals(found=described, tried=tried)
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,7 +40,7 @@ class Explanation(Analysis):
         return write_sentence(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; what is infinite becomes None."""
+        """Return plain JSON types; infinite values become None."""
         return {
             "profile": self.profile,
             "expected": self.expected,

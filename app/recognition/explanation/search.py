@@ -96,13 +96,15 @@ def _weights(context: RecognitionContext, expected: str) -> Iterator[Series]:
         if 0 < share < 1:
             for factors in (WEIGHTS[:2], WEIGHTS[2:]):
                 yield [
-                    VoterWeight(size=_moved(share, factor), voter=voter, factor=factor)
+                    VoterWeight(
+                        size=_measure_moved_weight(share, factor), voter=voter, factor=factor
+                    )
                     for factor in factors
                     if vote.may_win(context.score_table, context.result, gesture, voter, factor)
                 ]
 
 
-def _moved(share: float, factor: float) -> float:
+def _measure_moved_weight(share: float, factor: float) -> float:
     """Return the total weight that moves when one voter's weight is multiplied."""
     return abs(share * factor / (1 - share + share * factor) - share)
 

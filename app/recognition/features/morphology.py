@@ -34,13 +34,13 @@ def close_image(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.u
     """
     row = image.shape[1]
     everything = (1 << image.size) - 1
-    bits = _dilated(int.from_bytes(np.packbits(image).tobytes(), "big"), row, diameter)
-    bits = everything ^ (_dilated(everything ^ (bits & everything), row, diameter) & everything)
+    bits = _dilate(int.from_bytes(np.packbits(image).tobytes(), "big"), row, diameter)
+    bits = everything ^ (_dilate(everything ^ (bits & everything), row, diameter) & everything)
     unpacked = np.frombuffer(bits.to_bytes(image.size // 8, "big"), dtype=np.uint8)
     return np.unpackbits(unpacked).reshape(image.shape) * np.uint8(255)
 
 
-def _dilated(bits: int, row: int, diameter: int) -> int:
+def _dilate(bits: int, row: int, diameter: int) -> int:
     """Dilate an image: unite it with itself moved by every pixel of the disc; `row`: bits in a row.
 
     The disc is a union of rectangles, from high and narrow to low and wide. All of them are at
@@ -50,7 +50,7 @@ def _dilated(bits: int, row: int, diameter: int) -> int:
     stages = _stages(diameter)
     up = sum(stage.lower for stage in stages if stage.by_moving)
     reached, united, height, aside = 0, 0, diameter // 2, diameter // 2
-    strip = _moved(bits, 0, 1, row)
+    strip = _extend_union(bits, 0, 1, row)
     for stage in stages:
         height -= stage.lower
         if stage.by_moving:
@@ -59,13 +59,13 @@ def _dilated(bits: int, row: int, diameter: int) -> int:
             aside += stage.wider
             continue
         up += stage.lower
-        united = _moved(united, 1, 1 + 2 * stage.lower, row)
-        strip, reached = _moved(strip, 2 * reached, 2 * stage.reach, 1), stage.reach
+        united = _extend_union(united, 1, 1 + 2 * stage.lower, row)
+        strip, reached = _extend_union(strip, 2 * reached, 2 * stage.reach, 1), stage.reach
         united |= strip << up * row + aside - reached
-    return _moved(united, 1, 2 * height, row) >> (up + height) * row + aside
+    return _extend_union(united, 1, 2 * height, row) >> (up + height) * row + aside
 
 
-def _moved(bits: int, done: int, wanted: int, step: int) -> int:
+def _extend_union(bits: int, done: int, wanted: int, step: int) -> int:
     """Extend the union of an image moved by 0 to `done` steps to 0 to `wanted` steps."""
     while done < wanted:
         more = min(done + 1, wanted - done)

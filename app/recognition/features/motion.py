@@ -189,7 +189,7 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
 
     """
     places = _places(trajectory.landmarks, tuple(landmarks))
-    smooth = _smoothed(
+    smooth = _smooth(
         replace(trajectory, landmarks=places.needed, xy=trajectory.xy.take(places.columns, axis=1))
     )
     followed, path = places.followed, places.paths
@@ -264,7 +264,7 @@ def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
     )
 
 
-def _smoothed(trajectory: Trajectory) -> Trajectory:
+def _smooth(trajectory: Trajectory) -> Trajectory:
     """Smooth with a Gaussian in time; gaps are bridged by straight lines."""
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
@@ -275,13 +275,13 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     np.exp(np.negative(weights, out=weights), out=weights)
     # A column of ones beside the coordinates: its average is the sum of the weights.
     beside = np.ones((len(time), 2 * len(trajectory.landmarks) + 1))
-    beside[:, :-1] = _bridged(trajectory).reshape(len(time), -1)
+    beside[:, :-1] = _bridge_gaps(trajectory).reshape(len(time), -1)
     averaged = weights @ beside
     xy = averaged[:, :-1] / averaged[:, -1:]
     return replace(trajectory, xy=xy.reshape(trajectory.xy.shape))
 
 
-def _bridged(trajectory: Trajectory) -> FloatArray:
+def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
     """Return ``(T, K, 2)`` without gaps; NaN for landmarks that were never seen."""
     xy, time = trajectory.xy, trajectory.time
     finite = np.isfinite(xy)

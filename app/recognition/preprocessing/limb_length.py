@@ -41,16 +41,18 @@ def limit_limbs(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
     """
     within = paths.copy()
     places = {parse_body_part(name): index for index, name in enumerate(demonstration.landmarks)}
-    lengths = _longest(demonstration, places)
+    lengths = _find_longest(demonstration, places)
     for inner, outer in lengths:
         if outer.endswith("wrist"):
-            _bring(within, places[inner], places[outer], lengths[inner, outer])
+            _move_within(within, places[inner], places[outer], lengths[inner, outer])
     for inner, outer in lengths:
-        _bring(within, places[outer], places[inner], lengths[inner, outer])
+        _move_within(within, places[outer], places[inner], lengths[inner, outer])
     return within
 
 
-def _longest(demonstration: Trajectory, places: dict[str, int]) -> dict[tuple[str, str], float]:
+def _find_longest(
+    demonstration: Trajectory, places: dict[str, int]
+) -> dict[tuple[str, str], float]:
     """Return the greatest length of each bone that was seen, from the trunk outwards."""
     torso = _torso_length(demonstration)
     longest = {}
@@ -76,7 +78,7 @@ def _torso_length(demonstration: Trajectory) -> float:
     return float(np.median(known)) if len(known) else 0.0
 
 
-def _bring(paths: FloatArray, mover: int, anchor: int, longest: float) -> None:
+def _move_within(paths: FloatArray, mover: int, anchor: int, longest: float) -> None:
     """Move one landmark along its bone to within `longest` of another, in place."""
     bone: npt.NDArray[np.float64] = paths[..., mover, :] - paths[..., anchor, :]
     length = np.linalg.norm(bone, axis=-1, keepdims=True)

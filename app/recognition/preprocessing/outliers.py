@@ -56,7 +56,7 @@ def find_outliers(trajectory: Trajectory) -> Mask:
 
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
-    followed = _followed(trajectory.landmarks)
+    followed = _find_followed(trajectory.landmarks)
     paths = trajectory.xy.take(followed, axis=1)
     if (unit := measure_body_unit(trajectory)) != 1.0:
         paths /= unit
@@ -67,17 +67,17 @@ def find_outliers(trajectory: Trajectory) -> Mask:
     whole: Mask = np.asarray(known.all(axis=0))
     together = np.flatnonzero(whole & kinked)
     if len(together):
-        off[:, followed[together]] = _strays(paths.take(together, axis=1), trajectory.time)
+        off[:, followed[together]] = _find_strays(paths.take(together, axis=1), trajectory.time)
     for index in np.flatnonzero(~whole).tolist():
         seen = np.flatnonzero(known[:, index])
         path = paths[seen, index, None]
         if _has_kink(path).any():
-            off[seen, followed[index]] = _strays(path, trajectory.time[seen])[:, 0]
+            off[seen, followed[index]] = _find_strays(path, trajectory.time[seen])[:, 0]
     return off
 
 
 @lru_cache(maxsize=64)
-def _followed(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
+def _find_followed(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
     """Return the indices of the landmarks that a gesture may follow."""
     return np.flatnonzero([name not in UNFOLLOWED for name in landmarks])
 
@@ -102,15 +102,15 @@ def measure_body_unit(trajectory: Trajectory) -> float:
     return TORSOS_PER_EXTENT * max(measure_displacements(trajectory).values()) or 1.0
 
 
-def _strays(paths: FloatArray, time: FloatArray) -> Mask:
+def _find_strays(paths: FloatArray, time: FloatArray) -> Mask:
     """Return ``(T, K)``: the outliers of paths ``(T, K, 2)`` in torso lengths."""
-    off = _there_and_back(paths, time)
+    off = _find_clearest(paths, time)
     for index in np.flatnonzero(off.any(axis=0)).tolist():
-        off[:, index] = _with_those_behind(off[:, index], paths[:, [index]], time)
+        off[:, index] = _find_further(off[:, index], paths[:, [index]], time)
     return off
 
 
-def _with_those_behind(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
+def _find_further(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
     """Find further outliers of one landmark after removing those found, until there are none.
 
     Returns
@@ -120,14 +120,14 @@ def _with_those_behind(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
     """
     while off.mean() <= MOST_JUMPS:
         kept = np.flatnonzero(~off)
-        found = _there_and_back(path[kept], time[kept])[:, 0]
+        found = _find_clearest(path[kept], time[kept])[:, 0]
         if not found.any():
             return off
         off[kept[found]] = True
     return np.zeros_like(off)
 
 
-def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
+def _find_clearest(paths: FloatArray, time: FloatArray) -> Mask:
     """Find each landmark's clearest outliers, of one or more moments, without adjacent ones.
 
     Parameters
@@ -150,7 +150,7 @@ def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
         if lasts.min() > LONGEST_JUMP:
             break
         net = paths[length + 1 :] - paths[:firsts]
-        stray = _least_stray(paths, time, net, lasts)
+        stray = _measure_least_stray(paths, time, net, lasts)
         if length == 1:
             usual = _lower_quartile(stray)
         carried = NOTICED + ACCELERATION / 8 * lasts**2
@@ -175,7 +175,7 @@ def _lower_quartile(values: FloatArray) -> FloatArray:
     return np.asarray(ordered[below] + (place - below) * (ordered[above] - ordered[below]))
 
 
-def _least_stray(
+def _measure_least_stray(
     paths: FloatArray, time: FloatArray, net: FloatArray, lasts: FloatArray
 ) -> FloatArray:
     """Compute the least distance from the straight line of the positions between two moments.
@@ -183,7 +183,7 @@ def _least_stray(
     Parameters
     ----------
     paths, time
-        As for `_there_and_back`.
+        As for `_find_clearest`.
     net, lasts
         ``(F, K, 2)`` and ``(F,)``: displacement and seconds between each of the first F moments
         and the one that is ``T - F`` later.

@@ -68,7 +68,7 @@ def find_fault(
         time, places = trajectory.time, trajectory.xy[:, index]
         if not np.isfinite(places).all():
             seen = np.flatnonzero(np.isfinite(places).all(axis=1))
-            followed = _followed(time, seen) / poses.duration
+            followed = _sum_followed_time(time, seen) / poses.duration
             if followed < LEAST_FOLLOWED:
                 only = f"only {followed:.0%} of its {poses.duration:.1f} s"
                 return f"the {humanize(name)} is followed for {only}"
@@ -82,7 +82,7 @@ def find_fault(
     return None
 
 
-def _followed(time: FloatArray, seen: npt.NDArray[np.intp]) -> float:
+def _sum_followed_time(time: FloatArray, seen: npt.NDArray[np.intp]) -> float:
     """Sum the seconds between moments at which a landmark was seen, without longer gaps."""
     lasts = np.diff(time[seen])
     bridged = (lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)

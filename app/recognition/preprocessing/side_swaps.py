@@ -115,7 +115,7 @@ def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     if not sides.size:
         return none
     xy = trajectory.xy.reshape(frames, -1).take(sides, axis=1).astype(np.float32)
-    blended = _blended(trajectory)
+    blended = _find_blended(trajectory)
     known = np.isfinite(xy)
     clear = (~blended if known.all() else known.any(axis=(1, 2, 3)) & ~blended).nonzero()[0]
     if len(clear) < 3:
@@ -123,7 +123,7 @@ def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     xy = xy if len(clear) == frames else xy[clear]
     if (unit := measure_body_unit(trajectory)) != 1.0:
         xy = xy / unit
-    between = _lengths(xy[:, :, 0] - xy[:, :, 1])
+    between = _measure_lengths(xy[:, :, 0] - xy[:, :, 1])
     toll = TOLL * median(np.add.reduce(between, axis=1, dtype=np.float64))
     # With a body in view the trunk shows the sides after a gap, so hands get no allowance.
     speed = 0.0 if set(SHOULDERS) <= set(trajectory.landmarks) else UNSEEN_SPEED
@@ -133,14 +133,14 @@ def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     # A change of sides saves at most the two accelerations around it.
     if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
         return none
-    mistaken = _steadiest(accelerations.of_all(), toll)
-    if not mistaken.any():
+    swapped = _find_steadiest(accelerations.of_all(), toll)
+    if not swapped.any():
         return none
-    if mistaken.mean() > MOST_EXCHANGED:
-        mistaken = ~mistaken
+    if swapped.mean() > MOST_EXCHANGED:
+        swapped = ~swapped
     exchanged = none.exchanged.copy()
-    exchanged[clear] = mistaken
-    return SideSwaps(exchanged, blended | _blended_arms(trajectory, blended))
+    exchanged[clear] = swapped
+    return SideSwaps(exchanged, blended | _find_blended_arms(trajectory, blended))
 
 
 def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> FloatArray:
@@ -164,7 +164,7 @@ def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> 
     return changed
 
 
-def _blended(trajectory: Trajectory) -> Mask:
+def _find_blended(trajectory: Trajectory) -> Mask:
     """Return ``(T,)``: frames in which the shoulders are too close to each other."""
     if not set(SHOULDERS) <= set(trajectory.landmarks):
         return np.zeros(len(trajectory), dtype=bool)
@@ -176,7 +176,7 @@ def _blended(trajectory: Trajectory) -> Mask:
     return np.asarray(width < (BLENDED * usual if usual > FRONTAL else 0.0))
 
 
-def _blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
+def _find_blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
     """Return ``(T,)``: frames whose elbows are closer together than shortly before and after.
 
     The model's smoothing mixes arms for longer than shoulders, which are closer together. Swapped
@@ -250,7 +250,7 @@ class _Accelerations:
         carried_on *= self.carried
         off = self.both[third][2:] - last
         off -= carried_on
-        missed = _lengths(off, self.elsewhere)
+        missed = _measure_lengths(off, self.elsewhere)
         return np.asarray(np.add.reduce(missed, axis=(1, 2), dtype=np.float64))
 
     def of_all(self) -> FloatArray:
@@ -259,7 +259,7 @@ class _Accelerations:
         return np.stack(choices, axis=1).reshape(-1, 2, 2, 2)
 
 
-def _lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArray:
+def _measure_lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArray:
     """Return the lengths of vectors ``(T, 2, ...)`` minus `less`; 0 if negative or unknown.
 
     The vectors are overwritten.
@@ -272,7 +272,7 @@ def _lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArr
     return np.asarray(np.fmax(lengths, 0.0, out=lengths))
 
 
-def _steadiest(missed: FloatArray, toll: float) -> Mask:
+def _find_steadiest(missed: FloatArray, toll: float) -> Mask:
     """Return ``(T,)``: frames to exchange for the least sum; the first one is never exchanged.
 
     Parameters

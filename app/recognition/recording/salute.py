@@ -162,7 +162,7 @@ def salute_score(hand_xy: FloatArray) -> float:
         When `hand_xy` has another shape.
 
     """
-    points = [complex(x, y) for x, y in _checked(hand_xy).tolist()]
+    points = [complex(x, y) for x, y in _check_shape(hand_xy).tolist()]
     if not all(map(cmath.isfinite, points)):
         return 0.0
     try:
@@ -276,7 +276,7 @@ def check_published_rule(hand_xy: FloatArray) -> bool:
         When `hand_xy` has another shape.
 
     """
-    tips = _checked(hand_xy)[_TIPS]
+    tips = _check_shape(hand_xy)[_TIPS]
     index, middle, little = np.linalg.norm(np.diff(tips, axis=0), axis=1)
     return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
 
@@ -352,7 +352,7 @@ class SaluteTrigger:
         return self.held
 
 
-def _checked(hand_xy: FloatArray) -> FloatArray:
+def _check_shape(hand_xy: FloatArray) -> FloatArray:
     points = np.asarray(hand_xy, dtype=np.float64)
     if points.shape != (len(HAND_LANDMARKS), 2):
         raise PoseError(f"a hand has shape {points.shape}, expected (21, 2): x and y of 21 points")

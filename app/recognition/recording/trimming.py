@@ -188,7 +188,7 @@ def _hand_motion(poses: PoseSequence) -> Motion | None:
     """Measure the motion of the moving wrists; None where none moves or is seen."""
     count = int(np.ceil(poses.duration / GRID_STEP)) + 1
     wrists = [name for name in WRISTS if name in poses.landmarks]
-    seen = _without_exchanged_sides(poses)
+    seen = _drop_side_swaps(poses)
     if count < 3 or not any(np.isfinite(seen.column(name)).any() for name in wrists):
         return None
     trajectory = Trajectory.from_poses(seen).select(wrists).fill_gaps().resample_in_time(count)
@@ -219,13 +219,13 @@ def measure_motion(paths: Sequence[FloatArray], time: FloatArray) -> Motion | No
         return None
     moments = np.arange(len(time))
     smooth = np.stack(
-        [_smoothed(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
+        [_smooth(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
     )
     speed = np.linalg.norm(np.gradient(smooth, time, axis=0), axis=1)
     return Motion(time=time, xy=smooth, speed=speed, known=known)
 
 
-def _without_exchanged_sides(poses: PoseSequence) -> PoseSequence:
+def _drop_side_swaps(poses: PoseSequence) -> PoseSequence:
     """Remove frames with side swaps, in which the shoulders cross or come near each other.
 
     The model's smoothing also blends the frames beside swapped ones.
@@ -249,7 +249,7 @@ def _extent(path: FloatArray) -> float:
     return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
 
 
-def _smoothed(values: FloatArray) -> FloatArray:
+def _smooth(values: FloatArray) -> FloatArray:
     """Convolve with the Gaussian of `SMOOTHING` seconds, with the end values extended."""
     deviation = SMOOTHING / GRID_STEP
     half = int(np.ceil(3 * deviation))
@@ -267,7 +267,7 @@ def split_pieces(motion: Motion) -> list[Piece]:
     peaks, valleys = _turning_points(np.maximum(speed, resting))
     while valleys:
         excess = [
-            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _allowed(motion, valley)
+            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _find_limit(motion, valley)
             for i, valley in enumerate(valleys)
         ]
         worst = int(np.argmax(excess))
@@ -278,13 +278,13 @@ def split_pieces(motion: Motion) -> list[Piece]:
         peaks.pop(worst if speed[peaks[worst]] < speed[peaks[worst + 1]] else worst + 1)
     cuts = [0, *valleys, len(speed) - 1]
     pieces = [
-        _without_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
+        _drop_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
         for i, peak in enumerate(peaks)
     ]
     return [piece for piece in pieces if _extent(motion.xy[piece.first : piece.last + 1]) > TREMOR]
 
 
-def _allowed(motion: Motion, valley: int) -> float:
+def _find_limit(motion: Motion, valley: int) -> float:
     """Return the largest speed of a minimum to split at, as a share of its lower peak."""
     reach = round(CORNER_REACH / GRID_STEP)
     before = motion.xy[valley] - motion.xy[max(valley - reach, 0)]
@@ -312,7 +312,7 @@ def _turning_points(values: FloatArray) -> tuple[list[int], list[int]]:
     return middles[peaks].tolist(), valleys
 
 
-def _without_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piece:
+def _drop_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piece:
     fast = np.flatnonzero(speed[first : last + 1] > pause)
     return Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else Piece(first, last)
 

@@ -114,7 +114,7 @@ class FrameSource(Protocol):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Say in sentences what was wrong with the frames read so far."""
+        """Problems of the frames read so far, as sentences."""
         ...
 
     def __iter__(self) -> Iterator[VideoFrame]:
@@ -156,7 +156,7 @@ class FrameReader(Iterator[VideoFrame]):
         self._time = 0.0
         self._reformatter = VideoReformatter()
         self._first: DecodedFrame | None = None
-        self._container = _opened(self._path, self._limits)
+        self._container = _open(self._path, self._limits)
         self._decoded = self._decode()
         try:
             self._stream = _video_stream(self._container, self._path)
@@ -212,7 +212,7 @@ class FrameReader(Iterator[VideoFrame]):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Say in sentences what was wrong with the frames read so far."""
+        """Problems of the frames read so far, as sentences."""
         found = []
         read = f"{self._count} of {self.info.frames or 'an unknown number of'} frames were read"
         stated = self.info.duration or 0.0
@@ -315,7 +315,7 @@ def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
     return np.rint(blended).astype(np.uint8)
 
 
-def _opened(path: Path, limits: VideoLimits) -> InputContainer:
+def _open(path: Path, limits: VideoLimits) -> InputContainer:
     if not path.is_file():
         raise VideoError(f"{path} is not a file; give the path of a clip")
     if path.stat().st_size == 0:

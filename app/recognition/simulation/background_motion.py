@@ -149,28 +149,30 @@ def simulate_background_motion(count: int = 3, *, seed: int = 0) -> tuple[Backgr
 
     """
     return tuple(
-        BackgroundMovement(manner.kind, _example(manner, np.random.default_rng([seed, *which])))
+        BackgroundMovement(manner.kind, _draw(manner, np.random.default_rng([seed, *which])))
         for which in np.ndindex(len(MANNERS), count)
         for manner in [MANNERS[which[0]]]
     )
 
 
-def _example(manner: Manner, generator: np.random.Generator) -> Trajectory:
+def _draw(manner: Manner, generator: np.random.Generator) -> Trajectory:
     """Draw one example, with the right or the left hand."""
-    places, seconds = _drawn(manner, generator)
-    active = _stroke(places, seconds)
+    places, seconds = _draw_path(manner, generator)
+    active = _join_strokes(places, seconds)
     idle = np.broadcast_to(np.array(REST), active.shape)
     other = idle
     if manner.both:
         lag = len(active) // (2 * manner.repeated[1]) if manner.alternating else 0
         other = np.concatenate([np.repeat(active[:1], lag, axis=0), active])[: len(active)]
-    body = _body(right=active, left=other)
+    body = _build_body(right=active, left=other)
     jitter = generator.normal(0, TREMOR, body.xy.shape)
     shaky = replace(body, xy=body.xy + jitter)
     return shaky.mirror() if generator.random() < 0.5 else shaky
 
 
-def _drawn(manner: Manner, generator: np.random.Generator) -> tuple[list[FloatArray], list[float]]:
+def _draw_path(
+    manner: Manner, generator: np.random.Generator
+) -> tuple[list[FloatArray], list[float]]:
     """Draw the positions of one example, and the durations of the strokes between them."""
     rounds = int(generator.integers(manner.repeated[0], manner.repeated[1] + 1))
     pace = float(np.exp(generator.normal(0, TEMPO_SPREAD)))
@@ -187,7 +189,7 @@ def _drawn(manner: Manner, generator: np.random.Generator) -> tuple[list[FloatAr
     return places, ways
 
 
-def _stroke(places: Sequence[FloatArray], seconds: Sequence[float]) -> FloatArray:
+def _join_strokes(places: Sequence[FloatArray], seconds: Sequence[float]) -> FloatArray:
     """Join positions by minimum-jerk strokes: ``(T, 2)`` at `RATE`.
 
     A stroke lasts a third longer than its interval and overlaps the next one, so that the hand
@@ -208,12 +210,12 @@ def _minimum_jerk(share: FloatArray) -> FloatArray:
     return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
 
 
-def _body(right: FloatArray, left: FloatArray) -> Trajectory:
+def _build_body(right: FloatArray, left: FloatArray) -> Trajectory:
     """Build the upper body's landmarks for two wrists' paths ``(T, 2)``, x outward each."""
     paths = {"nose": np.broadcast_to(NOSE, right.shape)}
     # The diver faces the camera: the right hand's outside is the image's left.
     for side, outward, wrist in (("right", (-1.0, 1.0), right), ("left", (1.0, 1.0), left)):
-        for part, path in _arm(wrist).items():
+        for part, path in _build_arm(wrist).items():
             paths[f"{side}_{part}"] = path * outward
     return Trajectory(
         landmarks=tuple(paths),
@@ -223,7 +225,7 @@ def _body(right: FloatArray, left: FloatArray) -> Trajectory:
     )
 
 
-def _arm(wrist: FloatArray) -> dict[str, FloatArray]:
+def _build_arm(wrist: FloatArray) -> dict[str, FloatArray]:
     """Return an arm whose hand is at the wrist's position; stretched if that is too far away."""
     reach = wrist - SHOULDER
     distance = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)

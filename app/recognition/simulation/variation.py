@@ -147,7 +147,7 @@ def draw_variants(
     seed
         Of the random generator; the same seed gives the same variants.
     person
-        Whose: the demonstrator's own further takes, or somebody else's.
+        Who performs: the demonstrator, or another person.
 
     Returns
     -------
@@ -168,13 +168,13 @@ def vary(
 ) -> tuple[Trajectory, ...]:
     """Draw variants with a given spread; parameters and errors as for `draw_variants`."""
     if count < 0:
-        raise OsgError(f"cannot draw {count} variants: ask for none or more")
+        raise OsgError(f"cannot draw {count} variants: give 0 or more")
     if len(trajectory) < 2:
         return (trajectory,) * count
-    xy = _bridged(trajectory)
+    xy = _bridge_gaps(trajectory)
     centre = xy.mean(axis=0)
     draws = _Draws(np.random.default_rng(seed), count, len(trajectory.landmarks))
-    paths = _displaced(xy, trajectory.landmarks, draws, spread)
+    paths = _displace(xy, trajectory.landmarks, draws, spread)
     if trajectory.unit == "extent":
         paths *= (_extent(xy) / np.maximum(_extent(paths), 1e-12))[:, None, None, None]
     paths = limit_limbs(centre + paths, trajectory)
@@ -212,34 +212,34 @@ class _Draws:
         return self._of[name]
 
 
-def _displaced(
+def _displace(
     xy: FloatArray, landmarks: Sequence[str], draws: _Draws, spread: Spread
 ) -> FloatArray:
     """Vary paths ``(T, K, 2)``: ``(count, T, K, 2)``, relative to their mean positions in `xy`."""
     moved = xy - xy.mean(axis=0)
-    leaders = _leaders(landmarks)
+    leaders = _find_leaders(landmarks)
     gesturing = np.array([_may_gesture(name) for name in landmarks])
     own_size = np.sqrt((moved**2).sum(axis=2).mean(axis=0)) * gesturing
-    habits = _habits(draws, spread)[:, leaders]
+    habits = _draw_habits(draws, spread)[:, leaders]
     habits[:, ~gesturing] = np.eye(2)
     formed = np.moveaxis(np.moveaxis(moved, 0, 1) @ np.swapaxes(habits, -1, -2), 2, 1)
-    way = _way(moved)
+    way = _measure_way(moved)
     waves = np.arange(1, WAVES + 1)
     strength = 1 / np.sqrt(1 + (waves / SLOW_WAVES) ** 2)
     strength *= spread.waver / np.sqrt((strength**2).sum())
     care = np.exp(spread.care * draws["care"])[:, None, None, None]
-    waver = care * _along(way, waves, strength, draws["waver"][:, leaders])
+    waver = care * _sum_cosines(way, waves, strength, draws["waver"][:, leaders])
     whole_size = np.sqrt((own_size**2).sum())
-    drift = _along(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
-    wrists = _wrists(landmarks)
+    drift = _sum_cosines(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
+    wrists = _find_wrists(landmarks)
     bones = np.sqrt(((xy - xy[:, wrists]) ** 2).sum(axis=2)).mean(axis=0)
     sway = spread.sway * whole_size * drift[:, :, wrists]
     swayed = np.sqrt(2) * np.minimum(whole_size, MOST_SWAYED * bones)  # two landmarks drift
-    varied = _carried(xy, formed + own_size[:, None] * waver + sway, landmarks, wrists)
+    varied = _turn_hands(xy, formed + own_size[:, None] * waver + sway, landmarks, wrists)
     return np.asarray(varied + spread.sway * swayed[:, None] * drift)
 
 
-def _carried(
+def _turn_hands(
     xy: FloatArray, varied: FloatArray, landmarks: Sequence[str], wrists: npt.NDArray[np.intp]
 ) -> FloatArray:
     """Turn hands with their forearms; a hand whose forearm is not seen is unchanged.
@@ -247,11 +247,11 @@ def _carried(
     Parameters
     ----------
     xy
-        ``(T, K, 2)``: the demonstration, see `_bridged`.
+        ``(T, K, 2)``: the demonstration, see `_bridge_gaps`.
     varied
         ``(count, T, K, 2)``: variants, relative to the mean positions in `xy`.
     landmarks, wrists
-        The K names, and `_wrists` of them.
+        The K names, and `_find_wrists` of them.
 
     """
     parts = [parse_body_part(name) for name in landmarks]
@@ -283,7 +283,7 @@ def _complex(vectors: FloatArray) -> npt.NDArray[np.complex128]:
     return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
 
 
-def _along(
+def _sum_cosines(
     way: FloatArray, numbers: npt.NDArray[np.intp], strength: FloatArray, draws: FloatArray
 ) -> FloatArray:
     """Sum cosines along the path, ``(count, T, K, 2)``, with random coefficients.
@@ -304,7 +304,7 @@ def _along(
     return np.asarray((cosines @ flat).reshape(count, len(way), landmarks, 2))
 
 
-def _habits(draws: _Draws, spread: Spread) -> FloatArray:
+def _draw_habits(draws: _Draws, spread: Spread) -> FloatArray:
     """Return ``(count, K, 2, 2)`` matrices that scale, rotate, stretch and shear."""
     habit = draws["habit"]
     slant = spread.slant * habit[..., 0]
@@ -317,16 +317,16 @@ def _habits(draws: _Draws, spread: Spread) -> FloatArray:
     return np.asarray(scale * (turn.reshape(square) @ bent.reshape(square)))
 
 
-def _leaders(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
+def _find_leaders(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
     """Return ``(K,)``: the index of the landmark whose draws each one shares, its arm's first."""
     first: dict[str, int] = {}
     return np.array(
-        [first.setdefault(_limb(name), index) for index, name in enumerate(landmarks)],
+        [first.setdefault(_name_limb(name), index) for index, name in enumerate(landmarks)],
         dtype=np.intp,
     )
 
 
-def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
+def _find_wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
     """Return ``(K,)``: the index of the wrist that carries each of a hand's landmarks.
 
     A landmark that is no part of a hand, or whose wrist is missing, has its own index.
@@ -346,7 +346,7 @@ def _may_gesture(landmark: str) -> bool:
     return _without_side(parse_body_part(landmark)) not in TRUNK_AND_LEGS
 
 
-def _limb(landmark: str) -> str:
+def _name_limb(landmark: str) -> str:
     """Return the name of the arm that a landmark belongs to, or the landmark's own name."""
     part = parse_body_part(landmark)
     bare = _without_side(part)
@@ -358,7 +358,7 @@ def _without_side(part: str) -> str:
     return next((part.removeprefix(side) for side in SIDES if part.startswith(side)), part)
 
 
-def _bridged(trajectory: Trajectory) -> FloatArray:
+def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
     """Return ``(T, K, 2)`` without gaps: bridged, constant at the ends, 0 where never seen."""
     xy = np.zeros_like(trajectory.xy)
     for index in range(len(trajectory.landmarks)):
@@ -372,7 +372,7 @@ def _bridged(trajectory: Trajectory) -> FloatArray:
     return xy
 
 
-def _way(xy: FloatArray) -> FloatArray:
+def _measure_way(xy: FloatArray) -> FloatArray:
     """Return ``(T,)``: the share of the landmarks' joint path up to each moment."""
     steps = np.sqrt((np.diff(xy, axis=0) ** 2).sum(axis=(1, 2)))
     travelled = np.concatenate([[0.0], np.cumsum(steps)])

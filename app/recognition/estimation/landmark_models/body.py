@@ -48,7 +48,7 @@ VISIBILITY_WEIGHT: Final = 0.1
 class BodyTracker:
     """Tracks the most certain person through the frames of a clip.
 
-    Detection runs only on frames where nobody is tracked. The landmarks of a frame give the
+    Detection runs only on frames where no body is tracked. The landmarks of a frame give the
     region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
     at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
     landmark moves fast against the size of the body.

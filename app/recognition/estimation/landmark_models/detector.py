@@ -111,7 +111,7 @@ class Detector:
         chosen = np.flatnonzero(scores >= LEAST_SCORE)
         if not len(chosen):
             return ()
-        points = self._decoded(raw[0, chosen], self._anchors[chosen])
+        points = self._decode(raw[0, chosen], self._anchors[chosen])
         found = blend_overlapping(points, scores[chosen], layout.overlap)
         return tuple(
             Detection(
@@ -122,7 +122,7 @@ class Detector:
             for detection in found
         )
 
-    def _decoded(
+    def _decode(
         self, raw: npt.NDArray[np.float32], anchors: npt.NDArray[np.float32]
     ) -> npt.NDArray[np.float64]:
         """``(N, 2 + K, 2)`` box corners and keypoints in input pixels, from offsets to anchors."""

@@ -84,7 +84,7 @@ class ModelSession:
         self._session = open_session(
             path, threads, provider, remedy="run `osg-studio models install`"
         )
-        self._input, self._outputs = _matched(path, self._session, signature)
+        self._input, self._outputs = _match_signature(path, self._session, signature)
         self._pixels = np.empty((self.input_size, self.input_size, 3), np.uint8)
         self._tensor = np.empty((1, self.input_size, self.input_size, 3), np.float32)
 
@@ -171,7 +171,7 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
     return session
 
 
-def _matched(path: Path, session: Any, signature: Signature) -> tuple[str, list[str]]:
+def _match_signature(path: Path, session: Any, signature: Signature) -> tuple[str, list[str]]:
     """Return the names of the input and of the outputs that the signature asks for."""
     inputs, outputs = session.get_inputs(), session.get_outputs()
     side = signature.input_size

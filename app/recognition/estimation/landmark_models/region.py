@@ -148,8 +148,8 @@ class Region:
         As in MediaPipe's association of regions, which ignores rotation because regions of one
         object are rotated alike.
         """
-        across = _shared(self.x, self.side, other.x, other.side)
-        down = _shared(self.y, self.side, other.y, other.side)
+        across = _measure_overlap(self.x, self.side, other.x, other.side)
+        down = _measure_overlap(self.y, self.side, other.y, other.side)
         union = self.side**2 + other.side**2 - across * down
         return across * down / union if union > 0 else 0.0
 
@@ -160,7 +160,7 @@ def upright(base: FloatArray, top: FloatArray) -> float:
     return (angle + math.pi) % (2 * math.pi) - math.pi
 
 
-def _shared(one: float, one_side: float, other: float, other_side: float) -> float:
+def _measure_overlap(one: float, one_side: float, other: float, other_side: float) -> float:
     """Return the overlap of two intervals, each given by its middle and its length."""
     end = min(one + one_side / 2, other + other_side / 2)
     start = max(one - one_side / 2, other - other_side / 2)

@@ -62,14 +62,14 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
         graph.nodes.append(
             helper.make_node("Identity", [graph.value(index, "stored")], [name], name=name)
         )
-    nodes = _needed(graph.nodes, {model.tensors[index].name for index in outputs})
+    nodes = _select_needed(graph.nodes, {model.tensors[index].name for index in outputs})
     read = {name for node in nodes for name in node.input}
     converted = helper.make_model(
         helper.make_graph(
             nodes,
             "mediapipe",
-            _described(model, model.inputs),
-            _described(model, outputs),
+            _describe_values(model, model.inputs),
+            _describe_values(model, outputs),
             [weight for weight in graph.weights if weight.name in read],
         ),
         opset_imports=[helper.make_opsetid("", OPERATOR_SET)],
@@ -82,7 +82,7 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
     return content
 
 
-def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
+def _select_needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
     """Return the nodes, in the order of computation, that any wanted value needs."""
     needed = []
     wanted = set(wanted)
@@ -93,7 +93,7 @@ def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
     return needed[::-1]
 
 
-def _described(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
+def _describe_values(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
     return [
         helper.make_tensor_value_info(
             model.tensors[index].name, TensorProto.FLOAT, model.tensors[index].shape

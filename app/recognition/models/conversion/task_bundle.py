@@ -85,7 +85,7 @@ def described(content: bytes, schemas: Schemas) -> bytes:
     buffer = schema.BufferT()
     buffer.data = _description(len(model.subgraphs[0].outputs), schemas)
     model.buffers.append(buffer)
-    builder = _SteadyBuilder(len(content))
+    builder = _DeterministicBuilder(len(content))
     builder.Finish(model.Pack(builder), FILE_IDENTIFIER)
     return bytes(builder.Output())
 
@@ -111,12 +111,12 @@ def _description(outputs: int, schemas: Schemas) -> bytes:
     graph.outputTensorMetadata = [schema.TensorMetadataT() for _ in range(outputs)]
     description = schema.ModelMetadataT()
     description.subgraphMetadata = [graph]
-    builder = _SteadyBuilder(0)
+    builder = _DeterministicBuilder(0)
     builder.Finish(description.Pack(builder), METADATA_IDENTIFIER)
     return bytes(builder.Output())
 
 
-class _SteadyBuilder(flatbuffers.Builder):  # type: ignore[misc]
+class _DeterministicBuilder(flatbuffers.Builder):  # type: ignore[misc]
     """Aligns data as TensorFlow Lite requires, and writes the same bytes in every release.
 
     Releases of `flatbuffers` differ in which tables may share the description of their fields

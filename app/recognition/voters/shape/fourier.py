@@ -46,7 +46,7 @@ class FourierDescriptors(ShapeVoter):
     """
 
     name = "fourier"
-    unit = "Euclidean distance between contours of norm 1 at their best common start point"
+    unit = "Euclidean distance between outlines of norm 1 at their best common start point"
     prior = 0.05
     within = 0.33
     between = 0.8
