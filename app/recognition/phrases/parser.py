@@ -201,8 +201,8 @@ class PhraseParser:
         if not self._message.gestures:
             return (self._event("outside", label),)
         dropped = self._drop("unexpected", label)
-        anew = self._advance(label, start, end) if label == self.grammar.start else ()
-        return (dropped, *anew)
+        restarted = self._advance(label, start, end) if label == self.grammar.start else ()
+        return (dropped, *restarted)
 
     def _moves(self, position: int) -> Mapping[str, Iterable[tuple[int, Parse]]]:
         return self._automaton.moves(position)
