@@ -100,7 +100,7 @@ def larger(take: Trajectory) -> Trajectory:
 FAULTS: dict[str, tuple[Fault, list[str]]] = {
     "none": (lambda take: take, []),
     "the other way round": (turned_round, ["direction"]),
-    "the other hand": (Trajectory.mirrored, ["hand"]),
+    "the other hand": (Trajectory.mirror, ["hand"]),
     "last third missing": (last_missing, ["missing"]),
     "first third missing": (first_missing, ["missing"]),
     "too much before": (approached, ["extra"]),

@@ -119,7 +119,7 @@ def composed(
         if kind == "accidental":
             movement = accidents[int(random.integers(len(accidents)))].trajectory
             frames = max(2, round(movement.time[-1] * RATE))
-            path = movement.select(names).resampled_in_time(frames).xy * TORSO
+            path = movement.select(names).resample_in_time(frames).xy * TORSO
             label = None
         else:
             index = random.choice(np.flatnonzero(people & (is_known == (kind == "gesture"))))

@@ -82,7 +82,7 @@ def looks(take: Trajectory, salient: tuple[str, ...]) -> FloatArray:
     units = steps / np.maximum(lengths, 1e-9)[:, None, None]
     turns = 1 - (units[1:] * units[:-1]).sum(axis=(1, 2))
     opening = np.sqrt(((seen.paths[-1] - seen.paths[0]) ** 2).sum())
-    paths = take.select(salient).resampled_in_time(64).xy
+    paths = take.select(salient).resample_in_time(64).xy
     rough = paths[1:-1] - (paths[2:] + paths[:-2]) / 2
     values = [
         seen.duration,

@@ -60,7 +60,7 @@ def stochastically_resampled(
         moments = np.interp(at, travelled, shown.time)
         xy = (path + flat.mean(axis=0)).reshape(-1, *shown.xy.shape[1:])
         take = replace(shown, xy=xy, time=moments - moments[0])
-        found.append(take.resampled_in_time(len(shown)))
+        found.append(take.resample_in_time(len(shown)))
     return tuple(found)
 
 
@@ -137,8 +137,8 @@ def _without_waver(
 
 
 def _flat(shown: Trajectory) -> FloatArray:
-    """Return ``(T, 2 K)`` without the gaps that `filled` leaves; these stay at 0."""
-    return np.nan_to_num(shown.filled().xy).reshape(len(shown), -1)
+    """Return ``(T, 2 K)`` without the gaps that `fill_gaps` leaves; these stay at 0."""
+    return np.nan_to_num(shown.fill_gaps().xy).reshape(len(shown), -1)
 
 
 def _travelled(shown: Trajectory) -> FloatArray:
@@ -149,7 +149,7 @@ def _travelled(shown: Trajectory) -> FloatArray:
 
 def _corners(shown: Trajectory) -> FloatArray:
     """Return the shares of the way at which the ends and the corners lie, in ascending order."""
-    even = _flat(shown.resampled_in_arc_length(32))
+    even = _flat(shown.resample_in_arc_length(32))
     steps = even[2:] - even[:-2]
     units = steps / (np.linalg.norm(steps, axis=1, keepdims=True) + 1e-9)
     turned = np.arccos(np.clip((units[2:] * units[:-2]).sum(axis=1), -1, 1))

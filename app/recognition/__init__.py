@@ -1,7 +1,7 @@
-"""The domain core: from a clip to a recognition, its explanation and the check of a language.
+"""Gesture recognition: from a clip to a recognition, its explanation, and checks of a language.
 
-What is listed here is the public surface. It needs no web framework, database or display; a
-robot installs it alone.
+The names in `__all__` are the public interface. The package needs no web framework, database or
+display, so that a robot can install it alone.
 """
 
 from app.recognition.decision.result import Recognition

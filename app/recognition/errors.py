@@ -1,11 +1,11 @@
-"""The exceptions of the domain core: one tree, so that callers can catch as widely as they mean."""
+"""Exceptions of OSG Studio: one tree with the base `OsgError`."""
 
 
 class OsgError(ValueError):
-    """Base of every error that OSG Studio raises on purpose.
+    """Base of all errors that OSG Studio raises on purpose.
 
-    Its message is one line for a person: what is wrong (with the value seen), why that
-    matters where it is not obvious, and what to do next.
+    The message is one line for users: what is wrong with the value seen, why where that is not
+    obvious, and what to do next.
     """
 
 
@@ -14,11 +14,11 @@ RecognitionError = OsgError
 
 
 class PoseError(OsgError):
-    """Raised when a pose sequence is malformed or cannot be used for what was asked."""
+    """Raised when a pose sequence is malformed or lacks what an operation needs."""
 
 
 class LandmarkError(PoseError):
-    """Raised when a source of poses lacks a landmark that a language follows.
+    """Raised when a source of poses lacks a landmark that a language uses.
 
     Parameters
     ----------
@@ -35,15 +35,15 @@ class LandmarkError(PoseError):
 
 
 class KeypointFileError(OsgError):
-    """Raised when another program's keypoint file cannot be read, or does not tell enough."""
+    """Raised when another program's keypoint file cannot be read, or lacks information."""
 
 
 class FrameRateError(KeypointFileError):
-    """Raised when a keypoint file counts frames and nobody tells how many make a second."""
+    """Raised when a keypoint file numbers its frames and no frame rate is given."""
 
 
 class FrameSizeError(KeypointFileError):
-    """Raised when a keypoint file tells fractions of a picture whose size nobody tells."""
+    """Raised when a keypoint file has coordinates relative to a frame size that is not given."""
 
 
 class VideoError(OsgError):
@@ -51,11 +51,11 @@ class VideoError(OsgError):
 
 
 class BagError(OsgError):
-    """Raised when a dive recording (rosbag2, MCAP) cannot be read, or holds nothing to use."""
+    """Raised when a bag (rosbag2, MCAP) cannot be read, or has no usable topic."""
 
 
 class TopicError(BagError):
-    """Raised when a dive recording holds several usable topics and none, or another, was named."""
+    """Raised when a bag has several usable topics and none of them was chosen."""
 
 
 class GestureError(OsgError):
@@ -70,7 +70,7 @@ class LanguageError(OsgError):
     message
         What is wrong and what to do.
     pointer
-        JSON pointer (RFC 6901) to the fault, ``""`` for the whole document.
+        JSON pointer (RFC 6901) to the error, ``""`` for the whole document.
 
     """
 
@@ -84,12 +84,12 @@ class ModelError(OsgError):
 
 
 class EstimatorError(OsgError):
-    """Raised when a pose estimator cannot be had as asked, or is given what is no image."""
+    """Raised when a pose estimator is not available as configured, or its input is no image."""
 
 
 class SourceError(OsgError):
-    """Raised when a camera or stream cannot be opened, or stops giving frames."""
+    """Raised when a camera or stream cannot be opened, or stops sending frames."""
 
 
 class PublishError(OsgError):
-    """Raised when what was recognised cannot be published as asked."""
+    """Raised when recognitions cannot be published as configured."""

@@ -1,4 +1,4 @@
-"""Recognition: a query is drawn like the references, described, compared, and put to the vote."""
+"""Recogniser: compares a take with every gesture of a language and decides which one it is."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class Recognizer:
     Parameters
     ----------
     language
-        At least one gesture. Profile ``full`` takes its thresholds from it, or makes them where
-        they are missing or were made for other gestures; `language` then has them.
+        At least one gesture. Profile ``full`` uses its thresholds and calibrates those that are
+        missing or belong to other gestures; `Recognizer.language` then has them.
     profile
         One of `PROFILES`; the language's own when not given.
     tuning
-        How it deviates from the profile; as the language says when not given
+        Changes to the profile; the language's own when not given
         (`Language.tuning_with`).
 
     Raises
@@ -70,7 +70,7 @@ class Recognizer:
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
 
     def recognize(self, poses: PoseSequence) -> Recognition:
-        """Recognise the gesture in a recording without salutes.
+        """Recognise the gesture in a take, that is, poses without salutes around them.
 
         Profile ``paper``: each voter votes for its nearest gesture. The gesture with most votes
         wins; among equals the one with the smallest mean relative distance (a voter's distance
@@ -78,19 +78,19 @@ class Recognizer:
         Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`, and is
         rejected where it is beyond its thresholds, see `rejection`.
 
-        Where bad keypoints are repaired, the answer tells what was; a recording that is then still
-        too poor to judge gets no label but the `fault`.
+        Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
+        still too poor to judge get no label, and `fault` gives the reason.
 
         Raises
         ------
         PoseError
-            When the recording shows nothing, or no landmark that a gesture needs moves in it.
+            When no landmark is seen, or none that a gesture needs moves.
 
         """
         return self.examine(poses).result
 
     def examine(self, poses: PoseSequence) -> Trace:
-        """Recognise as `recognize` does, and keep what led to the answer.
+        """Recognise as `recognize` does, and return the trace: query, score table and result.
 
         Raises
         ------
@@ -100,17 +100,17 @@ class Recognizer:
         """
         repair = repair_poses(poses) if self.repairs else None
         query = condense(repair.trajectory if repair else Trajectory.from_poses(poses))
-        comparison = self.compare(query)
-        result = self.decide(comparison)
+        table = self.compare(query)
+        result = self.decide(table)
         if repair:
             poor, findings = self._fault(repair, result.nearest), repair.findings
             if poor or findings:
                 label = None if poor else result.label
                 result = replace(result, label=label, findings=findings, fault=poor)
-        return Trace(query=query, comparison=comparison, result=result)
+        return Trace(query=query, score_table=table, result=result)
 
     def _fault(self, repair: Repair, nearest: str) -> str | None:
-        """Tell why a recording is too poor to be the nearest gesture, whichever hand shows it."""
+        """Return why poses are too poor to be the nearest gesture, with either hand; or None."""
         gesture = self.language.gesture(nearest)
         poor = find_fault(repair.poses, gesture.salient, repair.trajectory)
         if poor and gesture.switches.mirror == "on":
@@ -119,12 +119,12 @@ class Recognizer:
         return poor
 
     def query(self, poses: PoseSequence) -> Trajectory:
-        """Return a recording as the voters see it: repaired or not, normalised and condensed.
+        """Return the trajectory that voters compare: repaired if the profile does, and normalised.
 
         Raises
         ------
         PoseError
-            When the recording shows nothing.
+            When no landmark is seen.
 
         """
         seen = repair_poses(poses).poses if self.repairs else poses
@@ -142,7 +142,7 @@ class Recognizer:
         return self.decide(self.compare(trajectory))
 
     def decide(self, compared: ScoreTable) -> Recognition:
-        """Decide what a comparison of this recogniser's means.
+        """Decide on a score table of this recogniser.
 
         Raises
         ------
@@ -152,22 +152,21 @@ class Recognizer:
         """
         if not np.isfinite(compared.scores).any():
             raise PoseError(
-                f"nothing to compare: of the landmarks that the gestures of "
-                f"{self.language.name!r} need ({', '.join(self.vote.needed)}), none moves in "
-                "this recording"
+                f"nothing to compare: none of the landmarks that the gestures of "
+                f"{self.language.name!r} need ({', '.join(self.vote.needed)}) moves in this take"
             )
         return self.vote.decide(compared)
 
     @property
     def landmarks(self) -> tuple[str, ...]:
-        """The landmarks that any gesture of the language follows, in alphabetical order."""
+        """The salient landmarks of all gestures, in alphabetical order."""
         return self.vote.landmarks
 
     def sensitivity(self, label: str) -> Sensitivity | None:
-        """Tell what about a gesture counts in this language.
+        """Return whether a gesture's direction, tempo and sides count in this language.
 
-        None in profile ``paper``, and where the gesture was imported without its demonstration:
-        then only drawings are compared, whatever the switches say.
+        None in profile ``paper`` and for gestures imported without demonstration: there only
+        drawings are compared, whatever the switches are.
         """
         return self.vote.sensitivity(self.language.labels.index(label))
 

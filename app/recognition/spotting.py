@@ -1,9 +1,8 @@
-"""Spotting: gestures found in a continuous stream, without salutes around them.
+"""Gesture spotting: recognises gestures in a continuous stream of poses, without salutes.
 
-A robot that waits for no trigger has to find out where a gesture begins and ends. People move in
-strokes with a bell-shaped speed (Flash and Hogan 1985), so a gesture begins and ends at minima of
-the hands' speed. Every stretch between two of them that may be as long as a gesture is put to the
-recogniser; of those that overlap the best one is kept, and reported once the hands have paused.
+People move in strokes with a bell-shaped speed (Flash and Hogan 1985), so gestures begin and end at
+minima of the hands' speed. Every stretch between two minima that is about as long as a gesture is
+recognised; of overlapping stretches the best is kept, and reported once the hands pause.
 """
 
 from __future__ import annotations
@@ -27,48 +26,49 @@ from app.recognition.recognizer import Recognizer
 from app.recognition.recording.trimming import GRID_STEP, Motion, Span, measure_motion, split_pieces
 
 CONFIDENT = 0.8
-"""Least confidence of a spotted gesture: below, another one of the language is about as near."""
+"""Least confidence of a spotted gesture; below, another gesture is about as near."""
 
 FAMILIAR = 0.97
-"""Least confidence that a stretch is this gesture rather than none, whatever else is near.
-Confidence is calibrated for takes of which half mean something; of the stretches of a stream almost
-none do. Somebody who points into the distance draws a *line* at 0.96."""
+"""Least confidence that a stretch is this gesture rather than none.
 
-ASKED = ("figure", "posture", "length")
-"""Views that tell a gesture from what is none. How the wrist is bent tells two signs of one arm
-apart; people bend it as they like where it means nothing, so a gesture is not doubted for it."""
+Confidence is calibrated for takes of which half are gestures; few stretches of a stream are.
+Pointing into the distance is a *line* with 0.96."""
+
+SEPARATING_GROUPS = ("figure", "posture", "length")
+"""Cue groups that separate gestures from other movements. The wrist's is left out: people bend
+their wrists at will where the bend has no meaning."""
 
 FASTER, SLOWER = 0.4, 2.2
-"""How much shorter or longer than its demonstration a gesture may take: two people's takes differ
-by half a doubling, rarely by more than one."""
+"""Shortest and longest duration of a gesture relative to its demonstration: two people's takes
+differ by half a doubling, rarely by more than one."""
 
 LOOK_EVERY = 0.2
-"""Seconds between two looks for strokes: a tenth of a gesture, a few frames of a camera."""
+"""Seconds between two searches for strokes: a tenth of a gesture, a few frames of a camera."""
 
 SLOW_EDGE = 0.2
-"""Seconds at either end of a stroke in which the hand hardly moves yet, or any more."""
+"""Seconds at either end of a stroke in which the hand hardly moves."""
 
 SETTLED = 0.25
-"""Seconds after which a stroke's end is believed: its slow edge, and what smoothing looks ahead."""
+"""Seconds after which a stroke's end is certain: its slow edge and the smoothing's look-ahead."""
 
 PAUSE = 0.6
-"""Seconds without a stroke after which a gesture is reported: a hand that turns a corner is
-slower than a stroke for up to 0.4 s, and a side of a square is a good line."""
+"""Seconds without a stroke after which a gesture is reported. A hand slows down at a corner for up
+to 0.4 s, and one side of a square alone would be a line."""
 
 MOST_STROKES = 8
 """Strokes that a gesture may consist of, at most; a square has four, a hesitant eight six."""
 
 MOST_WAITING = 64
-"""Stretches that may wait to be recognised; the oldest are forgotten first."""
+"""Longest queue of stretches to recognise; the oldest are dropped first."""
 
 LONGEST_MEMORY = 20.0
-"""Seconds kept at most, whatever the demonstrations: what takes longer is no gesture."""
+"""Most seconds of the stream that are kept, and longest gesture."""
 
 RANK_PER_SECOND = 2.0
-"""Logarithm of odds that one second more explained is worth."""
+"""Gain in rank, in log-odds, per second of a stretch's duration."""
 
 BEAT = 1e-6
-"""Seconds that make no difference between two moments."""
+"""Tolerance in seconds when times are compared."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,9 @@ class Spotted:
     Attributes
     ----------
     start, end
-        Seconds in the stream's clock between which it was shown.
+        Seconds in the stream's clock.
     recognition
-        What the recogniser says of that stretch.
+        The recogniser's result for that stretch.
 
     """
 
@@ -90,20 +90,20 @@ class Spotted:
 
     @property
     def rank(self) -> float:
-        """What decides between two that overlap: the odds of being right, and how much it explains.
+        """Rank among overlapping gestures: log-odds of the confidence, plus a gain per second.
 
-        A side of a square is a good line; the square is preferred since it leaves less unexplained.
+        The gain prefers a square to its sides, each of which is a line.
         """
         sure = min(max(self.recognition.confidence, 1e-6), 1 - 1e-6)
         return float(np.log(sure / (1 - sure))) + RANK_PER_SECOND * (self.end - self.start)
 
     def overlaps(self, start: float, end: float) -> bool:
-        """Tell whether it shares more with a stretch than a slow edge."""
+        """Return whether it overlaps a stretch by more than a slow edge."""
         return self.start < end - SLOW_EDGE and start < self.end - SLOW_EDGE
 
 
 class Spotter:
-    """Listens to a stream of poses; one recogniser, bounded memory and bounded work a frame.
+    """Spots gestures in a stream of poses, with bounded memory and bounded work per frame.
 
     Parameters
     ----------
@@ -115,23 +115,23 @@ class Spotter:
     Raises
     ------
     OsgError
-        When the profile is another one, whose confidence tells nothing about movements that mean
-        nothing, or when no gesture of the language has a demonstration.
+        When the profile does not reject, so that every movement would be a gesture, or when no
+        gesture of the language has a demonstration.
 
     """
 
     def __init__(self, recognizer: Recognizer, *, confident: float = CONFIDENT) -> None:
         if not PROFILES[recognizer.profile].rejects:
             raise OsgError(
-                f"profile {recognizer.profile!r} names every movement, also those that mean "
-                f"nothing; listen without salutes by profile full"
+                f"profile {recognizer.profile!r} rejects nothing, so every movement would be a "
+                f"gesture; use profile full to recognise without salutes"
             )
         gestures = recognizer.language.gestures
         lasts = [each.trajectory.time[-1] for each in gestures if each.trajectory is not None]
         if not lasts:
             raise OsgError(
                 f"language {recognizer.language.name!r} has only images and no demonstrations, so "
-                f"nobody knows how long its gestures take: define one from a clip"
+                f"the duration of its gestures is unknown; define one from a clip"
             )
         self._recognizer = recognizer
         self._confident = confident
@@ -146,18 +146,18 @@ class Spotter:
         self._longest = min(SLOWER * float(max(lasts)), LONGEST_MEMORY)
         self._seen: deque[PoseSequence] = deque()
         self._looked = -np.inf
-        self._believed = -np.inf  # the end of the last stroke whose stretches were taken up
+        self._believed = -np.inf  # the end of the last stroke whose stretches were queued
         self._reported = -np.inf  # the end of the last gesture reported
         self._moving = -np.inf  # when the last stroke was seen
         self._waiting: deque[Span] = deque(maxlen=MOST_WAITING)
         self._candidates: list[Spotted] = []
 
     def __len__(self) -> int:
-        """Count the frames that are remembered."""
+        """Return the number of frames kept."""
         return sum(len(moment) for moment in self._seen)
 
     def feed(self, moment: PoseSequence) -> tuple[Spotted, ...]:
-        """Take the next frame, or a few.
+        """Process the next frame, or a few.
 
         At most one stretch is recognised in a call.
 
@@ -168,12 +168,12 @@ class Spotter:
 
         Returns
         -------
-        The gestures that are now certain to have ended, mostly none.
+        The gestures that ended and cannot be replaced any more; mostly none.
 
         Raises
         ------
         PoseError
-            When the time does not go on, or the landmarks are others.
+            When the time does not increase, or the landmarks change.
 
         """
         if not len(moment):
@@ -181,13 +181,13 @@ class Spotter:
         now = float(moment.time[-1])
         if self._seen and moment.time[0] <= self._seen[-1].time[-1]:
             raise PoseError(
-                f"a stream's time must go on: {moment.time[0]:g} s after "
+                f"a stream's time must increase: got {moment.time[0]:g} s after "
                 f"{self._seen[-1].time[-1]:g} s"
             )
         if self._seen and moment.landmarks != self._seen[-1].landmarks:
             raise PoseError(
-                f"a stream keeps its {len(self._seen[-1].landmarks)} landmarks, got "
-                f"{len(moment.landmarks)} others; begin a new Spotter for another camera"
+                f"a stream must keep its {len(self._seen[-1].landmarks)} landmarks, got "
+                f"{len(moment.landmarks)} others; create a new Spotter for another camera"
             )
         self._seen.append(moment)
         while now - self._seen[0].time[-1] > self._longest + PAUSE + 2 * LOOK_EVERY:
@@ -196,19 +196,20 @@ class Spotter:
             self._looked = now
             self._look(now)
         self._recognize_one()
-        return self._ended(now)
+        return self._take_final(now)
 
     def listen(self, poses: PoseSequence) -> tuple[Spotted, ...]:
-        """Take a whole recording frame by frame, as a robot would, and end the stream."""
+        """Process a whole pose sequence frame by frame, as a robot does, and end the stream."""
         found: list[Spotted] = []
         for moment in poses.time.tolist():
             found += self.feed(poses.between(moment, moment))
         return (*found, *self.finish())
 
     def for_language(self, recognizer: Recognizer) -> Spotter:
-        """Return a spotter of another language that remembers what this one saw and told.
+        """Return a spotter of another language that continues this stream.
 
-        Gestures of this language that are not told yet are forgotten.
+        It keeps the frames and the time of the last report; pending gestures of this language
+        are dropped.
 
         Raises
         ------
@@ -219,20 +220,20 @@ class Spotter:
         other = Spotter(recognizer, confident=self._confident)
         other._seen.extend(self._seen)
         other._looked, other._moving = self._looked, self._moving
-        # Only what ends from now on is taken up: a gesture of the past must not come out today.
+        # Only stretches that end from now on are queued: old movements are not reported again.
         other._believed, other._reported = self._believed, self._reported
         return other
 
     def finish(self) -> tuple[Spotted, ...]:
-        """End the stream: return what was still awaited."""
+        """End the stream and return the gestures still pending."""
         if self._seen:
             self._look(np.inf)
         while self._waiting:
             self._recognize_one()
-        return self._ended(np.inf)
+        return self._take_final(np.inf)
 
     def _look(self, now: float) -> None:
-        """Cut what is remembered into strokes, and take up what ends with a new one."""
+        """Find strokes in the kept frames, and queue the stretches that end with a new one."""
         motion = self._motion()
         if motion is None:
             return
@@ -249,20 +250,20 @@ class Spotter:
                     self._waiting.append(Span(first.start, last.end))
 
     def _motion(self) -> Motion | None:
-        """Follow the language's landmarks through what is remembered."""
+        """Measure the motion of the language's landmarks in the kept frames."""
         poses = join_sequences(self._seen)
         names = [name for name in self._landmarks if name in poses.landmarks]
         count = int(np.ceil(poses.duration / GRID_STEP)) + 1
         if count < 3 or not names or not poses.select(names).seen.any():
             return None
         trajectory = Trajectory.from_poses(poses)
-        even = trajectory.select(names).filled().resampled_in_time(count)
+        even = trajectory.select(names).fill_gaps().resample_in_time(count)
         paths = np.moveaxis(even.xy / measure_body_unit(trajectory), 1, 0)
         shown = [path for path in paths if np.isfinite(path).any()]
         return measure_motion(shown, even.time + poses.time[0])
 
     def _recognize_one(self) -> None:
-        """Put the stretch that waits longest to the recogniser."""
+        """Recognise the stretch that has waited longest."""
         while self._waiting:
             span = self._waiting.popleft()
             poses = join_sequences(self._seen).between(span.start - BEAT, span.end + BEAT)
@@ -278,7 +279,7 @@ class Spotter:
             return
 
     def _is_gesture(self, spotted: Spotted) -> bool:
-        """Tell whether a stretch is a gesture: sure, large enough, and about as long."""
+        """Return whether a stretch is a gesture by its confidence, extent and duration."""
         result = spotted.recognition
         if result.label is None or result.confidence < self._confident:
             return False
@@ -296,8 +297,8 @@ class Spotter:
         most = max(moved.get(name, 0.0) for name in self._landmarks)
         return most >= MIN_DISPLACEMENT * measure_body_unit(trajectory)
 
-    def _ended(self, now: float) -> tuple[Spotted, ...]:
-        """Report the best candidates that nothing better can replace any more."""
+    def _take_final(self, now: float) -> tuple[Spotted, ...]:
+        """Return the best candidates that no later one can replace."""
         found: list[Spotted] = []
         while self._candidates:
             best = max(self._candidates, key=lambda each: each.rank)
@@ -314,7 +315,7 @@ class Spotter:
 
 
 def strokes_in(motion: Motion) -> list[Span]:
-    """Return the strokes of a motion in order, each with its slow beginning and end."""
+    """Return the strokes of a motion in order, including their slow edges."""
     pieces = split_pieces(motion)
     firsts = np.array([motion.time[piece.first] for piece in pieces])
     lasts = np.array([motion.time[piece.last] for piece in pieces])
@@ -328,5 +329,5 @@ def strokes_in(motion: Motion) -> list[Span]:
 def _familiarity(result: Recognition) -> float:
     """Return the confidence that the nearest gesture was shown rather than none."""
     at = result.gestures.index(result.nearest)
-    asked = np.fmax.reduce([result.novelty_by_view[view][at] for view in ASKED])
-    return estimate_confidence(float(asked), float(result.scores[at]), np.inf)
+    novelty = np.fmax.reduce([result.novelty_by_view[group][at] for group in SEPARATING_GROUPS])
+    return estimate_confidence(float(novelty), float(result.scores[at]), np.inf)

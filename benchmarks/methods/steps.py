@@ -25,7 +25,7 @@ def even_positions(trajectory: Trajectory, count: int = STEPS) -> FloatArray:
         When a landmark is missing at the beginning or the end.
 
     """
-    even = trajectory.filled(np.inf).resampled_in_arc_length(count).xy
+    even = trajectory.fill_gaps(np.inf).resample_in_arc_length(count).xy
     if not np.isfinite(even).all():
         raise PoseError("the methods compared with need every landmark from first to last frame")
     centred = even - even.mean(axis=(0, 1))

@@ -27,7 +27,7 @@ class TrainedOnVariants(Method):
 
     def add(self, label: str, demonstration: PoseSequence) -> None:
         """Draw variants as other people's takes would differ, and describe them."""
-        shown = Trajectory.from_poses(demonstration).filled(np.inf)
+        shown = Trajectory.from_poses(demonstration).fill_gaps(np.inf)
         drawn = draw_variants(shown, VARIANTS, seed=len(self._labels), person="another")
         self._labels.append(label)
         self._sequences.append(np.array([features(each) for each in (shown, *drawn)]))

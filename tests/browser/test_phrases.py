@@ -108,7 +108,7 @@ def test_an_ambiguity_is_told_at_once_and_can_be_tried(
     expect(page.get_by_text("Nothing ambiguous")).to_be_visible()
     page.get_by_label("Ends with").select_option("")
     told = page.get_by_role("list", name="Ambiguities")
-    expect(told).to_contain_text("the message is over, and it might go on")
+    expect(told).to_contain_text("the message is complete, but may continue")
     expect(page.get_by_text("4 ambiguities")).to_be_visible()
     assert faults(page) == []
     told.get_by_role("button", name="Try: circle, square").first.click()

@@ -52,7 +52,7 @@ def test_an_ambiguity_of_the_phrases_is_below_the_bar(
     Language("pool", [picture], grammar=grammar).save(file)
     ended = osg_studio("check", file)
     assert ended.code == 1
-    assert "BELOW THE BAR: after old the message is over, and it might go on with old" in ended.out
+    assert "BELOW THE BAR: after old the message is complete, but may continue" in ended.out
 
 
 @pytest.mark.slow

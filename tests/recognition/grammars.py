@@ -10,7 +10,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from app.recognition import LanguageError
-from app.recognition.phrases.automaton import Contribution, Reading
+from app.recognition.phrases.automaton import Contribution, Parse
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 
@@ -103,7 +103,7 @@ def _ways(part: Part) -> int:
     return sum(once**count for count in range(part.least, part.most + 1))
 
 
-Sentence = tuple[tuple[str, ...], Reading]
+Sentence = tuple[tuple[str, ...], Parse]
 
 
 def sentences(grammar: Grammar) -> Iterator[Sentence]:

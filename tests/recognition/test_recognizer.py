@@ -159,7 +159,7 @@ def test_a_recording_of_nobody_is_refused(recognizer: Recognizer) -> None:
 
 def test_a_recording_in_which_nothing_moves_is_refused(recognizer: Recognizer) -> None:
     for still in (recording(rest), recording(circle, frames=1)):
-        with pytest.raises(PoseError, match=r"need \(right_wrist\), none moves in this recording"):
+        with pytest.raises(PoseError, match=r"need \(right_wrist\) moves in this take"):
             recognizer.recognize(still)
 
 

@@ -140,12 +140,12 @@ def test_time_must_go_on(recognizer: Recognizer) -> None:
     spotter = Spotter(recognizer)
     assert spotter.feed(poses.between(-2, -1)) == ()
     spotter.feed(poses.between(0, 1))
-    with pytest.raises(PoseError, match="must go on"):
+    with pytest.raises(PoseError, match="must increase"):
         spotter.feed(poses.between(0.5, 1.5))
-    with pytest.raises(PoseError, match="keeps its 6 landmarks"):
+    with pytest.raises(PoseError, match="must keep its 6 landmarks"):
         spotter.feed(poses.between(1.01, 1.5).select(["right_wrist"]))
 
 
 def test_profile_paper_cannot_listen(recognizer: Recognizer) -> None:
-    with pytest.raises(OsgError, match="by profile full"):
+    with pytest.raises(OsgError, match="use profile full"):
         Spotter(Recognizer(recognizer.language, "paper"))

@@ -1,1 +1,1 @@
-"""From distances to a decision: fusion, thresholds, rejection, and the recognition result."""
+"""Decision: from voters' distances to a label, by fusion, votes, thresholds and rejection."""

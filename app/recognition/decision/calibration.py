@@ -1,10 +1,9 @@
-"""Calibration: each gesture's thresholds, without a recording more than its demonstration.
+"""Calibration: computes each gesture's rejection thresholds from its demonstration alone.
 
-Plausible takes of the demonstration (`variation`) tell how far each voter's distances reach for
-this gesture. Their logarithms spread alike for all gestures, so that one multiple of their
-geometric mean, the voter's `REACH`, serves for all: other people's takes lie twice as far as the
-demonstrator's own, and about one in twenty of them beyond it. Movements that mean nothing
-(`foreign`) then pull the thresholds in, a little, when they would pass them.
+The threshold of a voter is a multiple (`REACH`) of the geometric mean of its distances to simulated
+takes (`variation`), since the logarithms of distances spread alike for all gestures. Other people's
+takes are twice as far as the demonstrator's own, and about one in twenty is rejected. Simulated
+out-of-vocabulary movements (`negatives`) that would be accepted lower the thresholds a little.
 """
 
 from __future__ import annotations
@@ -32,12 +31,11 @@ from app.recognition.simulation.variation import SPREADS, draw_variants
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
-"""Plausible takes drawn of each gesture: their mean is known to a quarter of its value."""
+"""Simulated takes of each gesture; their mean is accurate to a quarter of its value."""
 
 OWN = 0.75
-"""How much of the typical distance is the gesture's own, the rest being that of any gesture
-(`Voter.within`), geometrically: twelve takes of one demonstration know more than the average
-over other gestures, but not all. From 0.7 to 1 the result is the same."""
+"""Weight of the gesture's own mean distance against that of all gestures (`Voter.within`), in the
+geometric mean of both. From 0.7 to 1 the result is the same."""
 
 REACH: Final[Mapping[str, float]] = MappingProxyType(
     {
@@ -46,43 +44,44 @@ REACH: Final[Mapping[str, float]] = MappingProxyType(
         if voter.cue is not None
     }
 )
-"""Per voter with a cue its `Cue.reach`, the longest first, as thresholds stand in language files.
-Over five recorded sets one in twenty of the demonstrator's takes lies beyond."""
+"""The `Cue.reach` of each voter that has a cue, in the order of thresholds in language files.
+
+One in twenty of the demonstrator's takes of five recorded sets is beyond."""
 
 LEAST_DISTANCE = 0.1
-"""Least distance to a take, as a share of the typical one: where only one bone is seen, its
-attitude may hardly differ."""
+"""Least distance to a take, as a share of the typical one: with only one bone seen, attitudes
+hardly differ."""
 
 OTHERS = 2.0
-"""How much farther other people's takes lie than the demonstrator's own, in squared distances:
-variants by 1.9 to 2.1 times, recorded takes by 1.9 to 2.6."""
+"""Ratio of squared distances of other people's takes to the demonstrator's own: 1.9 to 2.1 for
+variants, 1.9 to 2.6 for recorded takes."""
 
 LEAST_SHARE = 0.9
-"""How far foreign movements pull the thresholds in, at most: with 0.8, one in a hundred more of the
-foreign movements is accepted at as many true ones refused."""
+"""Least factor by which out-of-vocabulary movements lower the thresholds: at equal rejections, 0.8
+accepts one in a hundred more of them (`benchmarks/studies/rejection.md`)."""
 
 PLAUSIBLE = 0.2
-"""Novelty below which a foreign movement is the gesture, whatever it was spliced from: about that
-of a typical take, 1 / `REACH`."""
+"""Novelty below which a negative is in fact the gesture: about that of a typical take, 1 / `REACH`.
+"""
 
 DIGITS = 4
-"""Significant decimal digits kept of a threshold: far more than it is known to."""
+"""Significant digits of a threshold, far more than its accuracy."""
 
 RULE = repr((*REACH.items(), OWN, LEAST_SHARE, SPREADS["same"]))
-"""What thresholds depend on beside the gestures: those by another rule are made anew."""
+"""What thresholds depend on beside the gestures; those of another rule are computed again."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Reach:
-    """How far plausible takes of the gestures lie.
+    """Distances of simulated takes from the gestures.
 
     Attributes
     ----------
     thresholds
         ``(V, G)``: the multiples `REACH` of typical distances to further takes by the
-        demonstrator; infinite for voters that no view asks.
+        demonstrator; infinite for voters in no cue group.
     takes
-        ``(G, TAKES)``: novelties of other people's; NaN for gestures without demonstration.
+        ``(G, TAKES)``: novelties of other people's takes; NaN for gestures without demonstration.
 
     """
 
@@ -91,10 +90,10 @@ class _Reach:
 
 
 def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
-    """Give every gesture thresholds, and the rates of errors to expect with them.
+    """Return the gestures with thresholds and estimated error rates.
 
-    Gestures without a demonstration get none: they are never rejected. Of more than
-    `MAX_GESTURES_TRAVERSED`, all get those of a typical gesture and no rates.
+    Gestures without a demonstration get none and are never rejected. In a language of more than
+    `MAX_GESTURES_TRAVERSED` gestures, all get the thresholds of a typical one and no rates.
 
     Parameters
     ----------
@@ -103,49 +102,49 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
 
     """
     vote = FusedVote(gestures)
-    reach = _reach(gestures, vote)
-    foreign = _foreign(gestures, vote, reach.thresholds)
+    reach = _measure_reach(gestures, vote)
+    negatives = _measure_negatives(gestures, vote, reach.thresholds)
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
-        else _with_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
-        for index, (gesture, others) in enumerate(zip(gestures, foreign.T, strict=True))
+        else _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
+        for index, (gesture, others) in enumerate(zip(gestures, negatives.T, strict=True))
     )
 
 
-def _with_thresholds(
-    gesture: Gesture, reach: FloatArray, takes: FloatArray, foreign: FloatArray
+def _set_thresholds(
+    gesture: Gesture, reach: FloatArray, takes: FloatArray, negatives: FloatArray
 ) -> Gesture:
-    """Set the thresholds of one gesture.
+    """Return one gesture with thresholds and rates.
 
     Parameters
     ----------
     gesture
         The gesture.
     reach
-        ``(V,)`` thresholds as far as takes reach.
-    takes, foreign
-        Novelties with these thresholds, of other people's takes and of foreign movements; infinite
-        for a foreign movement that is nearer to another gesture, NaN for what is not known.
+        ``(V,)`` thresholds by the simulated takes alone.
+    takes, negatives
+        Novelties with these thresholds, of other people's takes and of negatives; infinite for a
+        negative that is nearer to another gesture, NaN if not known.
 
     """
-    near = foreign[foreign > PLAUSIBLE].min(initial=1.0)
+    near = negatives[negatives > PLAUSIBLE].min(initial=1.0)
     limit = max(LEAST_SHARE, float(near))
     thresholds = {
         voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in REACH
     }
-    if not np.isfinite(takes).all() or np.isnan(foreign).any():
+    if not np.isfinite(takes).all() or np.isnan(negatives).any():
         return replace(gesture, thresholds=thresholds, rates=None)
     margins = np.log(limit) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
         miss=round(RateEstimate.of_margins(margins, VARIANT_BIASES["another"]).rate, DIGITS),
-        false_alarm=round(float((foreign < limit).mean()), DIGITS),
+        false_alarm=round(float((negatives < limit).mean()), DIGITS),
     )
     return replace(gesture, thresholds=thresholds, rates=rates)
 
 
-def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
-    """Draw plausible takes of every gesture and measure how far they lie."""
+def _measure_reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
+    """Simulate takes of every gesture and measure their distances."""
     typical = np.array([voter.within for voter in VOTERS])
     cues = [voter.cue for voter in VOTERS]
     multiples = np.array([cue.reach if cue else np.inf for cue in cues])
@@ -159,7 +158,7 @@ def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     for row in vote.references.as_shown:
         index = int(vote.references.gestures[row])
         if index >= len(gestures):
-            continue  # a mirror image varies as much as what it mirrors
+            continue  # a mirror image varies as much as its gesture
         distances = _distances_to_takes(gestures[index], vote, int(row))
         known = np.isfinite(distances).all(axis=1)
         least = LEAST_DISTANCE * typical[known, None]
@@ -170,18 +169,20 @@ def _reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     return _Reach(thresholds, takes)
 
 
-def _takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
-    return demonstration.once("takes to calibrate by", lambda: draw_variants(demonstration, TAKES))
+def _draw_takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:
+    return demonstration.compute_once("variants", lambda: draw_variants(demonstration, TAKES))
 
 
 def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArray:
-    """Compare a gesture as shown with `TAKES` plausible takes of it: ``(V, TAKES)``.
+    """Compute the distances of a gesture to `TAKES` simulated takes of it: ``(V, TAKES)``.
 
-    Infinite for voters of drawings, which are slow to make and not asked.
+    Infinite for shape voters, which are slow and not used in rejection.
     """
     assert gesture.trajectory is not None  # it has a row
     references = vote.references
-    takes = [describe_movement(take, references.landmarks) for take in _takes(gesture.trajectory)]
+    takes = [
+        describe_movement(take, references.landmarks) for take in _draw_takes(gesture.trajectory)
+    ]
     distances = np.full((len(VOTERS), TAKES), np.inf)
     for voter in MOTION_VOTERS:
         described = np.array([take[voter.name] for take in takes])
@@ -190,14 +191,16 @@ def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArr
     return distances
 
 
-def _foreign(gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArray) -> FloatArray:
-    """Measure how far foreign movements lie from the gesture they are nearest to.
+def _measure_negatives(
+    gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArray
+) -> FloatArray:
+    """Measure the novelties of out-of-vocabulary movements for their nearest gestures.
 
     Returns
     -------
-    ``(N, G)`` novelties, infinite for the gestures they are not nearest to. Where the
-    landmarks of the gestures are of another body than the accidental movements', or there are
-    more than `MAX_GESTURES_TRAVERSED` gestures, NaN: nothing is known.
+    ``(N, G)`` novelties, infinite for gestures that are not the nearest. NaN where the gestures
+    use other landmarks than the simulated movements have, or there are more than
+    `MAX_GESTURES_TRAVERSED` gestures.
 
     """
     if len(gestures) > MAX_GESTURES_TRAVERSED:

@@ -1,4 +1,4 @@
-"""The fused vote of profile ``full``: the smallest weighted sum of all voters' distances."""
+"""Fused vote, the decision rule of profile ``full``: the smallest weighted sum of distances."""
 
 from __future__ import annotations
 
@@ -43,18 +43,18 @@ _NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
 
 
 CLOSE_SCORES = 0.05
-"""Score by which the expected gesture may still miss when a voter's weight is tried: as much as
-another traversal of a gesture, which the new weight may bring about, is usually nearer."""
+"""Tolerance in score of `FusedVote.may_win`: a new weight may select another traversal, which is
+usually nearer by about as much."""
 
 
 def add_mirror_images(
     gestures: Sequence[Gesture],
 ) -> tuple[tuple[Gesture, ...], npt.NDArray[np.intp]]:
-    """Add the mirror images of gestures that either hand may show.
+    """Add the mirror images of gestures whose switch `mirror` is on.
 
     Returns
     -------
-    The G gestures and then the images; and for each of them the index of its gesture.
+    The G gestures followed by the images; and for each of them the index of its gesture.
 
     """
     mirrored = [
@@ -62,7 +62,7 @@ def add_mirror_images(
         for index, gesture in enumerate(gestures)
         if gesture.switches.mirror == "on" and gesture.trajectory is not None
     ]
-    images = [gestures[index].mirrored() for index in mirrored]
+    images = [gestures[index].mirror() for index in mirrored]
     return (*gestures, *images), np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
 
 
@@ -74,7 +74,7 @@ class FusedVote:
     gestures
         G gestures, at least one.
     tuning
-        Its weights are factors on the voters' weights in this language.
+        Its weight factors multiply the voters' weights in this language.
 
     Raises
     ------
@@ -90,31 +90,31 @@ class FusedVote:
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
-        # Last, for what a language needs does not change with what its author makes of it.
+        # Last: weight factors must not change which directions and tempos the language needs.
         self._factors = tuning.weights_of(VOTER_NAMES)
         self._weights: FloatArray = self._weights * self._factors
         self._thresholds = gather_thresholds(sides, VOTER_NAMES)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Compute the weights, and which directions and tempos the language needs."""
-        asked = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
+        first_rows = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
         own = self._motions.own_distances
-        one, other = np.triu_indices(len(asked), 1)
-        pairs = own[:, :, asked][:, one, other]
+        one, other = np.triu_indices(len(first_rows), 1)
+        pairs = own[:, :, first_rows][:, one, other]
         shapes = self._shapes.own_distances(MAX_GESTURES_TRAVERSED)
         self._weights, self._between = weigh_voters(
             VOTERS,
             [*shapes, *(row[np.isfinite(row)] for row in pairs)],
             len(self._motions.landmarks),
         )
-        if len(asked) < len(self._motions.as_shown):
+        if len(first_rows) < len(self._motions.as_shown):
             return
         self._tempo = find_tempo_dependent(self._motions, own, *self._of_motion, sides)
         free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
         self._motions = drop_ambiguous_traversals(self._motions, own, *self._of_motion, free)
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Tell what about a gesture counts here; None where its movement is not compared."""
+        """Return whether a gesture's direction, tempo and sides count; None without movement."""
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
@@ -127,7 +127,7 @@ class FusedVote:
 
     @property
     def landmarks(self) -> tuple[str, ...]:
-        """The landmarks that any gesture follows, in alphabetical order."""
+        """The salient landmarks of all gestures, in alphabetical order."""
         return self._motions.landmarks
 
     @property
@@ -137,7 +137,7 @@ class FusedVote:
 
     @property
     def unnormalized_weights(self) -> dict[str, float]:
-        """Each voter's weight before normalisation; 0: it cannot tell the gestures apart."""
+        """Each voter's weight before normalisation; 0 if it does not separate the gestures."""
         return dict(zip(VOTER_NAMES, self._weights.tolist(), strict=True))
 
     @cached_property
@@ -161,21 +161,21 @@ class FusedVote:
 
     @property
     def references(self) -> MotionReferences:
-        """The gestures as movements, in the traversals that the language leaves open."""
+        """The gestures' movements in all traversals that are not ambiguous in the language."""
         return self._motions
 
     def with_thresholds(self, thresholds: FloatArray) -> FusedVote:
-        """Return the same vote with other thresholds ``(V, G)`` than the gestures have."""
+        """Return the same vote with other thresholds, ``(V, G)``."""
         other = copy(self)
         other._thresholds = thresholds[:, self._owners]
         return other
 
     def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
-        """Compare a condensed query with every gesture, from its better side.
+        """Compare a condensed query with every gesture or its mirror image, whichever is nearer.
 
-        `drawn`: also as a drawing, which takes most of the time and rarely decides.
+        Without `drawn` the shape voters are left out; they take most of the time and rarely decide.
         """
-        distances, rows = self._compared(trajectory, drawn)
+        distances, rows = self._compare_sides(trajectory, drawn)
         shares = weigh_distances(distances, self._weights, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
         moved = rows >= 0
@@ -206,14 +206,14 @@ class FusedVote:
         )
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
-        """Recognise a condensed query; None where it moves nothing that a gesture needs."""
+        """Recognise a condensed query; None if no landmark that a gesture needs moves."""
         compared = self.compare(trajectory)
         return self.decide(compared) if np.isfinite(compared.scores).any() else None
 
     def may_win(
         self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
-        """Tell whether a gesture comes close to the smallest score when a voter is reweighted."""
+        """Return whether a gesture comes close to the least score when a voter is reweighted."""
         comparable = np.isfinite(table.scores)
         scores = table.scores
         added = table.contributions[table.voters.index(voter)]
@@ -221,7 +221,7 @@ class FusedVote:
         return bool(comparable[gesture] and scores[gesture] < scores.min() + CLOSE_SCORES)
 
     def decide(self, compared: ScoreTable) -> Recognition:
-        """Decide for the gesture with the smallest score, or for none where that is too novel.
+        """Return the gesture with the smallest score, or a rejection if its novelty is above 1.
 
         One of the scores must be finite.
         """
@@ -249,7 +249,7 @@ class FusedVote:
             novelty_by_view=dict(zip(CUE_GROUPS, compared.novelty_by_view, strict=True)),
         )
 
-    def _compared(
+    def _compare_sides(
         self, trajectory: Trajectory, drawn: bool
     ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
         """Return ``(V, sides)`` distances and ``(sides,)`` rows of the traversals, -1: none."""
@@ -263,16 +263,16 @@ class FusedVote:
         rows = np.full(len(self._owners), -1, dtype=np.intp)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
-            nearest = self._motions.nearest(query, *self._of_motion, len(self._owners))
+            nearest = self._motions.find_nearest(query, *self._of_motion, len(self._owners))
             rows, distances[_SHAPES:] = nearest.rows, nearest.distances
             distances[_SHAPES:, ~comparable] = np.inf
         return distances, rows
 
     def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
-        """Choose for each gesture itself or its mirror image: ``(G,)`` indices of sides."""
+        """Return for each gesture the nearer of itself and its mirror image: ``(G,)`` indices."""
         if len(self._owners) == len(self._labels):
             return np.arange(len(self._labels))
         chosen = np.empty(len(self._labels), dtype=np.intp)
         order = np.argsort(-scores, kind="stable")
-        chosen[self._owners[order]] = order  # the best is written last and stays
+        chosen[self._owners[order]] = order  # the best is written last
         return chosen

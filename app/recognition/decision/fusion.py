@@ -1,7 +1,7 @@
 """Fusion: the weight of each voter in a language, and one score from all their distances.
 
-A voter's distances are divided by its typical distance between two gestures of the language, so
-that 1 means "as different as two gestures are", whatever the voter's unit. Its weight is
+A voter's distances are divided by its between-class distance, so that 1 means "as different as two
+gestures of the language", whatever the voter's unit. Its weight is
 
     weight = prior * max(0, 1 - within / between),
 
@@ -21,8 +21,8 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
 PAIRS_BEFORE = 3
-"""Pairs of gestures that the typical distance counts for: a language of two has one pair, and one
-pair may be alike by chance."""
+"""Weight, in pairs of gestures, of the voter's general between-class distance: a language of two
+has one pair, which may be alike by chance."""
 
 
 def weigh_voters(
@@ -35,9 +35,9 @@ def weigh_voters(
     voters
         V voters.
     own
-        Per voter its finite distances between gestures of the language, all that there are.
+        Per voter all its finite distances between gestures of the language.
     landmarks
-        How many landmarks the language follows.
+        Number of the language's landmarks.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def weigh_voters(
 
 
 def fuse(distances: FloatArray, weights: FloatArray, between: FloatArray) -> FloatArray:
-    """Fuse distances ``(V, ...)`` to one score each: the sum of `weigh_distances`.
+    """Compute fused scores of distances ``(V, ...)``: the sums of `weigh_distances`.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def fuse(distances: FloatArray, weights: FloatArray, between: FloatArray) -> Flo
 
 
 def weigh_distances(distances: FloatArray, weights: FloatArray, between: FloatArray) -> FloatArray:
-    """Compute what each voter adds to the fused score.
+    """Compute each voter's contribution to the fused score.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The majority vote of profile ``paper``: each voter votes for its nearest gesture."""
+"""Majority vote of profile ``paper``: each voter votes for its nearest gesture."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class MajorityVote:
     gestures
         G gestures, at least one.
     tuning
-        Its weights are what each vote counts.
+        Its weight factors are the weights of the votes.
 
     Raises
     ------
@@ -43,16 +43,16 @@ class MajorityVote:
 
     @property
     def landmarks(self) -> tuple[str, ...]:
-        """The landmarks that any gesture follows, in alphabetical order."""
+        """The salient landmarks of all gestures, in alphabetical order."""
         return self._shapes.needed
 
     @property
     def needed(self) -> tuple[str, ...]:
-        """The same."""
+        """The same landmarks: a query must move one of them."""
         return self._shapes.needed
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return None: drawings alone are compared, whatever the switches say."""
+        """Return None: only drawings are compared, whatever the switches are."""
         return None
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:
@@ -72,7 +72,7 @@ class MajorityVote:
     def may_win(
         self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
-        """Tell whether no gesture has more votes when a voter's vote is reweighted."""
+        """Return whether no gesture has more votes when a voter's vote is reweighted."""
         count: dict[str, float] = defaultdict(float)
         for name, vote in result.counted.items():
             weight = result.weights[name]
@@ -80,11 +80,11 @@ class MajorityVote:
         return count[self._labels[gesture]] >= max(count.values())
 
     def decide(self, compared: ScoreTable) -> Recognition:
-        """Decide for the gesture with most votes; see `count_votes`."""
+        """Return the gesture with most votes; see `count_votes`."""
         return self.count_votes(compared.distances)
 
     def count_votes(self, distances: FloatArray) -> Recognition:
-        """Count the votes that follow from distances ``(7, G)``.
+        """Count the votes by distances ``(7, G)``.
 
         Among equals the gesture with the smallest mean relative distance wins, among those the
         first in the language.
@@ -118,7 +118,7 @@ class MajorityVote:
 
 
 def weigh_relative_distances(distances: FloatArray, weights: FloatArray) -> FloatArray:
-    """Bring voters with different units to one number per gesture, their sum.
+    """Weigh each voter's distances relative to its mean, so that different units add up.
 
     Parameters
     ----------

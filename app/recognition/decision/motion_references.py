@@ -1,4 +1,4 @@
-"""The gestures of a language as movements, in every traversal that the language leaves open."""
+"""Motion references: the gestures of a language as movements, in all allowed traversals."""
 
 from __future__ import annotations
 
@@ -25,43 +25,42 @@ from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.registry import MOTION_VOTERS
 
 SAME_FIGURE = 0.12
-"""Score below which two gestures are the same figure, where 1 is two gestures of the language: as
-far as two people's takes of one gesture lie apart. On air-drawn digits and commands the accuracy
-is the same from 0.05 to 0.1 and falls beyond 0.2, when useful traversals are lost."""
+"""Score below which two gestures are the same figure: that of two people's takes of one gesture. On
+air-drawn digits and commands the accuracy falls beyond 0.2, when useful traversals are lost
+(`benchmarks/studies/voters.md`)."""
 
 TURNED = 0.1
-"""Share of the forward distance that a figure turned round lies within, however far: two swipes to
-either side, one more curved than the other. Of the same person's, 0.03 is rarely exceeded; pairs
-of other figures on air-drawn digits and commands lie above 0.13."""
+"""Ratio of backward to forward distance below which two figures are one in opposite directions,
+such as two swipes. For the same person it rarely exceeds 0.03; for different digits and commands it
+is above 0.13."""
 
 CLEARANCE = 0.4
-"""How much nearer a figure must be backwards than forwards for its direction to matter: two
-circles that begin at different places are about as near to each other either way."""
+"""Largest ratio of backward to forward distance at which a direction matters: two circles with
+different starting points are about as near either way."""
 
 CLEARLY_SLOWER = 0.8
-"""Doublings of the duration between two gestures from which their tempo is told apart: 1.75 times
-as long. One person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
+"""Doublings of the duration from which two gestures differ in tempo: 1.75 times as long. One
+person's takes of a gesture differ by a quarter of a doubling, two people's by half."""
 
 MAX_GESTURES_TRAVERSED = 64
-"""Gestures beyond which a language takes every gesture as shown. Among so many, figures that
-differ by nothing but direction are to be expected, and the comparison of all with all in all
-traversals would take seconds."""
+"""Number of gestures beyond which only demonstrated traversals are used: figures that differ in
+direction only are then likely, and comparing all traversals would take seconds."""
 
 MOST_COMPARED = 1
-"""Readings of a kind that are compared elastically, of up to eight: those nearest step by step. Of
-576 air-drawn digits, letters and commands none was named otherwise with 1, 2, 3, 4 or all."""
+"""Traversals of a kind that are compared by DTW, of up to eight: those nearest step by step. The
+labels of 576 air-drawn digits, letters and commands are the same with 1, 2, 3, 4 or all."""
 
 REMEMBERED = 4
-"""Languages whose references are remembered: one, and a few versions with a change, each of up to
-ten megabytes."""
+"""Languages whose references are cached: one and a few edited versions, each of up to ten
+megabytes."""
 
 ROWS_AT_ONCE = 64
-"""Rows that a query is compared with at once: the costs of all their steps stay in the cache."""
+"""Rows compared at once, so that the costs of their steps fit the processor's cache."""
 
-_ELASTIC = {
+_DTW = {
     voter.name: place for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, DtwVoter)
 }
-"""Where the voters stand that align movements."""
+"""Indices of the voters that align movements by DTW."""
 
 _UNORDERED = {
     place: voter for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, UnorderedVoter)
@@ -78,12 +77,12 @@ _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
 @dataclass(frozen=True, eq=False)
 class NearestTraversals:
-    """The traversals of G gestures that fit a query best.
+    """The traversals of G gestures that are nearest to a query.
 
     Attributes
     ----------
     rows
-        ``(G,)``: which row of the references; -1 for a gesture without demonstration.
+        ``(G,)``: row of the references; -1 for a gesture without demonstration.
     distances
         ``(V, G)`` to these traversals, infinite for a gesture without demonstration.
 
@@ -95,18 +94,18 @@ class NearestTraversals:
 
 @dataclass(frozen=True, eq=False)
 class MotionReferences:
-    """What a query's movement is compared with: R rows, each a gesture in one traversal.
+    """Motion references of a language: R rows, each a gesture in one traversal.
 
     Attributes
     ----------
     landmarks
-        The landmarks to follow in a query.
+        The landmarks used of a query.
     gestures
         ``(R,)`` index of each row's gesture in the language.
     traversals
         Of each row.
     descriptors
-        Per voter's name ``(R, ...)``.
+        By voter's name, ``(R, ...)``.
 
     """
 
@@ -117,20 +116,20 @@ class MotionReferences:
 
     @classmethod
     def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
-        """Describe all gestures that have a demonstration, in all thinkable traversals.
+        """Return the references of all gestures with a demonstration, in all traversals.
 
-        The references of the last few languages are remembered: the same gestures are asked for
-        again with their thresholds, and whenever only the drawings or the voters' weights change.
+        Those of the last few languages are cached: the same gestures occur again with their
+        thresholds, or with other drawings or weights.
         """
-        return _remembered(tuple(ShownGesture.of(gesture) for gesture in gestures))
+        return _build_cached(tuple(ShownGesture.of(gesture) for gesture in gestures))
 
     @classmethod
     def of_shown(cls, gestures: Sequence[ShownGesture]) -> MotionReferences:
-        """Describe them anew."""
+        """Compute the references without cache."""
         landmarks = find_followed_landmarks([gesture.salient for gesture in gestures])
         every = len(gestures) <= MAX_GESTURES_TRAVERSED
         described = {
-            index: gesture.read(landmarks, every=every)
+            index: gesture.describe(landmarks, every=every)
             for index, gesture in enumerate(gestures)
             if gesture.trajectory is not None and len(gesture.trajectory) > 1 and gesture.salient
         }
@@ -148,16 +147,16 @@ class MotionReferences:
         )
 
     def __len__(self) -> int:
-        """Count the rows."""
+        """Return the number of rows."""
         return len(self.gestures)
 
     @cached_property
     def as_shown(self) -> npt.NDArray[np.intp]:
-        """Rows of the gestures as they were demonstrated."""
+        """Rows of the gestures' demonstrated traversals."""
         return np.flatnonzero(self._shown)
 
-    def kept(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
-        """Keep some of the rows."""
+    def take(self, rows: npt.NDArray[np.intp]) -> MotionReferences:
+        """Return references of some of the rows."""
         return MotionReferences(
             self.landmarks,
             self.gestures[rows],
@@ -166,28 +165,28 @@ class MotionReferences:
         )
 
     def distances(self, query: dict[str, FloatArray]) -> FloatArray:
-        """Compare a query, described per voter, with the rows that are `promising`.
+        """Compute the distances of a query, described per voter, to the rows of `find_promising`.
 
         Returns
         -------
         ``(V, R)``; infinite for the other rows.
 
         """
-        rows = self.promising(query[Path.name])
+        rows = self.find_promising(query[Path.name])
         distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
-        distances[:, rows] = self._measured(query, rows)
+        distances[:, rows] = self._measure(query, rows)
         return distances
 
-    def promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
-        """Choose the traversals that are worth an elastic comparison with a query.
+    def find_promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
+        """Return the traversals that are compared with a query by DTW.
 
-        Of each gesture the one as shown, and of each kind of traversal (forwards, backwards, with
-        exchanged sides) the `MOST_COMPARED` whose paths lie nearest, step by step.
+        Of each gesture the demonstrated one, and of each kind (forwards, backwards, with exchanged
+        sides) the `MOST_COMPARED` whose paths are nearest, step by step.
 
         Parameters
         ----------
         path
-            The query, as voter ``path`` describes it.
+            The query's descriptor of voter ``path``.
 
         Returns
         -------
@@ -195,7 +194,7 @@ class MotionReferences:
 
         """
         (paths, squares), rows = self._flat_paths, self._rows_by_kind
-        # The last place is of rows that there are not.
+        # The last element stands for missing rows.
         apart, chosen = np.empty(len(self) + 1), np.zeros(len(self) + 1, dtype=bool)
         apart[:-1], apart[-1] = squares - 2.0 * (paths @ path.ravel()), np.inf
         chosen[:-1] = self._shown
@@ -211,12 +210,12 @@ class MotionReferences:
 
     @cached_property
     def _shown(self) -> npt.NDArray[np.bool_]:
-        """``(R,)``: whether a row is a gesture as it was demonstrated."""
+        """``(R,)``: whether a row is a demonstrated traversal."""
         return np.asarray(np.diff(self.gestures, prepend=-1) != 0)
 
     @cached_property
     def _rows_by_kind(self) -> npt.NDArray[np.intp]:
-        """The rows of each gesture's traversals of a kind; R where there are no more of them."""
+        """Rows of each gesture's traversals of a kind, padded with R."""
         kinds: dict[tuple[int, bool, bool], list[int]] = {}
         for row, (gesture, traversal) in enumerate(
             zip(self.gestures, self.traversals, strict=True)
@@ -229,13 +228,13 @@ class MotionReferences:
         return rows
 
     @cached_property
-    def _elastic(self) -> DtwBatch:
-        """What the elastic voters compare with."""
-        return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _ELASTIC))
+    def _dtw_batch(self) -> DtwBatch:
+        """The references of the DTW voters."""
+        return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _DTW))
 
     @cached_property
     def _unordered(self) -> dict[str, StepReferences]:
-        """What the unordered voters compare with: the distinct rows."""
+        """The references of the unordered voters: the distinct rows."""
         distinct, _ = self._distinct
         return {
             voter.name: StepReferences(self.descriptors[voter.name][distinct])
@@ -244,7 +243,7 @@ class MotionReferences:
 
     @cached_property
     def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        """Rows that differ by more than the order of their steps; and of each row which it is."""
+        """Rows that differ in more than the order of steps; and each row's index among them."""
         exchanged = np.array([traversal.exchanged for traversal in self.traversals], dtype=np.intp)
         _, rows, which = np.unique(
             2 * self.gestures + exchanged, return_index=True, return_inverse=True
@@ -258,27 +257,27 @@ class MotionReferences:
 
     @cached_property
     def own_distances(self) -> FloatArray:
-        """``(V, S, R)``: of the rows as shown, the first so many that are read otherwise."""
+        """``(V, S, R)``: distances of the first S demonstrated traversals to all rows."""
         rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
         own = np.empty((len(MOTION_VOTERS), len(rows), len(self)))
         for start in range(0, len(self), ROWS_AT_ONCE):
-            block = self.kept(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
+            block = self.take(np.arange(start, min(start + ROWS_AT_ONCE, len(self))))
             for index, row in enumerate(rows):
                 query = {name: values[row] for name, values in self.descriptors.items()}
-                own[:, index, start : start + len(block)] = block._measured(query)
+                own[:, index, start : start + len(block)] = block._measure(query)
         return own
 
-    def _measured(
+    def _measure(
         self, query: dict[str, FloatArray], rows: npt.NDArray[np.intp] | None = None
     ) -> FloatArray:
-        """Compare a query with M of the rows, all when not given: ``(V, M)``.
+        """Compute the distances of a query to M of the rows, all when not given: ``(V, M)``.
 
-        The elastic voters' alignments are found together, which costs hardly more than one.
+        The DTW voters are computed together, which costs hardly more than one.
         """
         chosen = np.arange(len(self)) if rows is None else rows
-        costs = self._elastic.step_costs([query[name] for name in _ELASTIC], rows)
+        costs = self._dtw_batch.step_costs([query[name] for name in _DTW], rows)
         found = np.empty((len(MOTION_VOTERS), len(chosen)))
-        found[[*_ELASTIC.values()]] = compute_alignment_costs(costs, len(query[Path.name]), BAND)
+        found[[*_DTW.values()]] = compute_alignment_costs(costs, len(query[Path.name]), BAND)
         which = self._distinct[1].take(chosen)
         for place, voter in _UNORDERED.items():
             references = self._unordered[voter.name]
@@ -288,25 +287,25 @@ class MotionReferences:
             found[place] = other.distances(query[other.name], described)
         return found
 
-    def nearest(
+    def find_nearest(
         self, query: dict[str, FloatArray], weights: FloatArray, between: FloatArray, count: int
     ) -> NearestTraversals:
-        """Choose for each gesture the traversal that fits a query best.
+        """Return for each gesture the traversal that is nearest to a query.
 
         Parameters
         ----------
         query
-            Described per voter.
-        say, between
-            Of the voters, see `fusion.says`.
+            Descriptors by voter's name.
+        weights, between
+            Of the voters, see `fusion.weigh_voters`.
         count
             G, the number of gestures in the language.
 
         """
-        compared = self.promising(query[Path.name])
-        measured = self._measured(query, compared)
+        compared = self.find_promising(query[Path.name])
+        measured = self._measure(query, compared)
         scores = fuse(measured, weights, between) * self.penalties[compared]
-        # Writing the best last lets it stay, and of equals the first: as shown.
+        # The best is written last; of equals the first row, the demonstrated traversal.
         order = np.argsort(scores, kind="stable")[::-1]
         chosen = np.full(count, -1, dtype=np.intp)
         chosen[self.gestures[compared[order]]] = order
@@ -319,7 +318,7 @@ class MotionReferences:
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _remembered(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
+def _build_cached(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
     return MotionReferences.of_shown(gestures)
 
 
@@ -330,10 +329,10 @@ def find_tempo_dependent(
     between: FloatArray,
     gestures: Sequence[Gesture],
 ) -> npt.NDArray[np.bool_]:
-    """Tell ``(G,)`` whose tempo the language needs, unless the author has said.
+    """Return ``(G,)``: the gestures whose tempo counts, by their switch or automatically.
 
-    Of two gestures that are the same movement but for the time it takes. Parameters as for
-    `unambiguous`.
+    Automatically for two gestures that differ in duration only. Parameters as for
+    `drop_ambiguous_traversals`.
     """
     shown = references.as_shown
     scores = fuse(own, weights, between)[:, shown]
@@ -348,13 +347,13 @@ def find_tempo_dependent(
 
 
 def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[str, FloatArray]:
-    """Describe a query once for each voter."""
+    """Return the descriptors of a query by voter's name, cached."""
 
-    def work_out() -> dict[str, FloatArray]:
+    def compute() -> dict[str, FloatArray]:
         seen = build_movement(trajectory, landmarks)
         return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
 
-    return trajectory.once(("movement", tuple(landmarks)), work_out)
+    return trajectory.compute_once(("movement", tuple(landmarks)), compute)
 
 
 def drop_ambiguous_traversals(
@@ -364,23 +363,23 @@ def drop_ambiguous_traversals(
     between: FloatArray,
     free: Collection[int] = (),
 ) -> MotionReferences:
-    """Drop the traversals by which a gesture would be taken for another one of the language.
+    """Drop the traversals by which a gesture would be confused with another one of the language.
 
-    The language needs the direction of a gesture when another one is the same figure the other way
-    round: wherever both begin, they lie within `SAME_FIGURE` of each other when one of them is
-    turned round, or within `TURNED` times what they do when not, and at least clear of that. It
-    needs its sides when another one is the same figure with left and right exchanged.
+    Backward traversals are dropped when another gesture is the same figure in the opposite
+    direction: for some starting points, their distance with one of them reversed is below
+    `SAME_FIGURE` or `TURNED` times the forward distance, and below `CLEARANCE` times that.
+    Exchanged sides are dropped by the same rule.
 
     Parameters
     ----------
     references
-        In all thinkable traversals.
+        In all traversals.
     own
-        `own_distances` of the rows as shown.
+        `own_distances` of the references.
     weights, between
         Of the voters, see `fusion.weigh_voters`.
     free
-        Indices of gestures whose direction does not count, whatever the others are.
+        Indices of gestures whose direction never counts.
 
     """
     labels = references.gestures
@@ -398,4 +397,4 @@ def drop_ambiguous_traversals(
             alike = np.maximum(SAME_FIGURE, TURNED * plain)
             if matters and ((turned < alike) & (turned < CLEARANCE * plain)).any():
                 keep[rows & otherwise] = False
-    return references.kept(np.flatnonzero(keep))
+    return references.take(np.flatnonzero(keep))

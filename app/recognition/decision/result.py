@@ -1,4 +1,4 @@
-"""What recognition answers, with everything needed to question it."""
+"""Recognition result: label and confidence, with the distances and votes behind them."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ class Recognition:
     Attributes
     ----------
     label
-        The recognised gesture, or None when rejected (profile ``paper`` never rejects), or when the
-        recording is too poor to judge.
+        The recognised gesture, or None when rejected (profile ``paper`` never rejects) or when the
+        poses are too poor to recognise.
     nearest
         The best gesture even when rejected.
     confidence
         In [0, 1]. Profile ``full``: the estimated probability that `nearest` is the gesture
-        meant, where half of all movements mean none, see `estimate_confidence`. Profile
+        meant, if half of all movements are out-of-vocabulary, see `estimate_confidence`. Profile
         ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean
         relative distance over that of the nearest other gesture), or 0 where the other one is
-        nearer; relative to the language, it cannot tell that a query was no gesture at all.
+        nearer; it is relative to the language and does not detect out-of-vocabulary movements.
     profile
         The recogniser's profile.
     voters
@@ -38,28 +38,28 @@ class Recognition:
         G labels.
     distances
         ``(V, G)``, smaller = more alike, each voter in its own unit; infinite where query and
-        gesture cannot be compared, since the query lacks a salient keypoint or does not move it.
+        gesture cannot be compared because the query lacks a salient landmark or does not move it.
     votes
         Per voter's name the label of its nearest gesture, whether or not the vote has weight.
     weights
-        Per voter's name its share in the decision, summing to 1; 0 for a voter that cannot tell
-        the gestures of this language apart. Every voter of profile ``paper`` weighs the same.
+        Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
+        gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
-        What was repaired in the recording before it was compared, in sentences with counts.
+        Repairs of the poses before recognition, as sentences with counts.
     fault
-        What makes the recording too poor to judge, in words; `label` is then None.
+        Why the poses are too poor to recognise, in words; `label` is then None.
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
-        the mean relative distance. Empty where an earlier version did not tell.
+        the mean relative distance. Empty in results of earlier versions.
     novelty
-        ``(G,)``: how much farther than its thresholds allow the query lies from each gesture; when
-        that of `nearest` is above 1, `label` is None (`rejection`). NaN for a gesture without
-        thresholds, all of profile ``paper``.
+        ``(G,)``: distance relative to each gesture's thresholds; if that of `nearest` is above 1,
+        `label` is None (`rejection`). NaN for a gesture without thresholds, all of profile
+        ``paper``.
     novelty_by_view
-        Per view's name (`rejection.VIEWS`) the novelties ``(G,)`` in that view alone, of which
-        `novelty` is the largest; NaN where the view has no thresholds or cannot compare. Empty for
-        profile ``paper``, and where an earlier version did not tell.
+        By cue group's name (`rejection.CUE_GROUPS`) the novelties ``(G,)`` in that group alone, of
+        which `novelty` is the largest; NaN where the group has no thresholds or cannot compare.
+        Empty for profile ``paper``, and in results of earlier versions.
 
     """
 
@@ -79,26 +79,26 @@ class Recognition:
     novelty_by_view: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
-        """Freeze private copies of the arrays; voters without told weights weigh the same."""
+        """Freeze private copies of the arrays; without weights all voters have the same."""
         if not self.weights:
             equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
             object.__setattr__(self, "weights", MappingProxyType(equal))
         for name in ("distances", "scores", "novelty"):
-            object.__setattr__(self, name, _frozen(getattr(self, name)))
-        by_view = {view: _frozen(values) for view, values in self.novelty_by_view.items()}
+            object.__setattr__(self, name, _freeze(getattr(self, name)))
+        by_view = {view: _freeze(values) for view, values in self.novelty_by_view.items()}
         object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
 
     @property
     def counted(self) -> dict[str, str]:
-        """The votes that have weight."""
+        """The votes with weight above 0."""
         return {voter: label for voter, label in self.votes.items() if self.weights[voter] > 0}
 
     @property
     def margin(self) -> float:
         """How much nearer `nearest` is than every other gesture, in the unit of `scores`.
 
-        Negative where profile ``paper`` let more votes win over a nearer gesture; infinite where
-        no other can be compared; NaN where an earlier version did not tell `scores`.
+        Negative where in profile ``paper`` more votes win over a nearer gesture; infinite where
+        no other can be compared; NaN in results of earlier versions without `scores`.
         """
         if not self.scores.size:
             return math.nan
@@ -107,7 +107,7 @@ class Recognition:
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Recognition:
-        """Return the recognition that `to_dict` told, or an earlier version did."""
+        """Return the recognition of a dictionary by `to_dict`, of this or an earlier version."""
         rows = [
             [np.inf if value is None else value for value in row] for row in content["distances"]
         ]
@@ -132,7 +132,7 @@ class Recognition:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; what is infinite or NaN becomes None."""
+        """Return plain JSON types; infinite values and NaN become None."""
         return {
             "profile": self.profile,
             "label": self.label,
@@ -153,8 +153,8 @@ class Recognition:
         }
 
 
-def _frozen(values: FloatArray) -> FloatArray:
-    """Return a copy that nobody can change."""
+def _freeze(values: FloatArray) -> FloatArray:
+    """Return a read-only copy."""
     frozen = values.copy()
     frozen.setflags(write=False)
     return frozen

@@ -1,4 +1,4 @@
-"""A comparison: a query beside every gesture, and what the distances add up to."""
+"""Score table: the distances of a query to every gesture, and each voter's contribution."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.recognition.poses.sequence import FloatArray
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScoreTable:
-    """What decides a recognition, taken apart voter by voter.
+    """The distances and contributions of all voters for a query and all gestures.
 
     Attributes
     ----------
@@ -24,18 +24,16 @@ class ScoreTable:
         ``(V, G)``, each voter in its own unit; infinite where not comparable.
     contributions
         ``(V, G)``: what each voter adds to a gesture's score, smaller = more alike; 0 where it
-        cannot compare or has no say, infinite for a gesture that no voter can compare.
+        cannot compare or has weight 0, infinite for a gesture that no voter can compare.
     turned
-        ``(G,)``: what is added since the gesture fits only when read backwards, or with its sides
-        exchanged.
+        ``(G,)``: penalty for a gesture that is nearest backwards or with exchanged sides.
     traversals
-        The order in which each gesture's steps fit best; None where only its image is compared.
+        The nearest traversal of each gesture; None where only its image is compared.
     mirrored
-        ``(G,)``: whether it is the gesture's mirror image that fits best.
+        ``(G,)``: whether the gesture's mirror image is nearest.
     novelty_by_view
-        ``(K, G)``: how much farther than its thresholds allow the query lies from each gesture, in
-        each of `rejection.VIEWS` alone; NaN where a view has no thresholds or cannot compare, all
-        of profile ``paper``.
+        ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
+        group has no thresholds or cannot compare, all of profile ``paper``.
 
     """
 
@@ -58,7 +56,7 @@ class ScoreTable:
 
     @property
     def novelty(self) -> FloatArray:
-        """``(G,)``: the largest of the views' novelties, above 1: rejected (`rejection`).
+        """``(G,)``: the largest of the cue groups' novelties, above 1: rejected (`rejection`).
 
         NaN for a gesture without thresholds, all of profile ``paper``.
         """

@@ -1,4 +1,4 @@
-"""The gestures of a language as drawings, gathered by the keypoints that are drawn."""
+"""Shape references: the drawings of a language's gestures, grouped by salient landmarks."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from app.recognition.voters.shape.shape_voter import ShapeVoter, describe_drawin
 
 
 @dataclass(frozen=True, eq=False)
-class _Ballot:
-    """All gestures with the same salient keypoints: one drawing of the query serves them.
+class _DrawingGroup:
+    """All gestures with the same salient landmarks, which share one drawing of the query.
 
     Attributes
     ----------
     salient
-        Names of the keypoints.
+        Names of the landmarks.
     members
         Indices of the gestures in the language.
     references
@@ -37,12 +37,12 @@ class _Ballot:
 
 
 class ShapeReferences:
-    """What a query's drawings are compared with, by the paper's seven voters.
+    """Shape references of a language for the paper's seven voters.
 
     Parameters
     ----------
     gestures
-        G gestures; those without an image or without salient keypoints match nothing.
+        G gestures; those without an image or without salient landmarks match nothing.
     simplification
         Tolerance in pixels with which gestures and queries are drawn, see `draw`.
 
@@ -52,91 +52,93 @@ class ShapeReferences:
         self._count = len(gestures)
         self._simplification = simplification
         if simplification != SIMPLIFICATION:
-            gestures = [gesture.redrawn(simplification) for gesture in gestures]
-        self._ballots = _ballots(gestures, PAPER_VOTERS)
+            gestures = [gesture.redraw(simplification) for gesture in gestures]
+        self._groups = _group_by_landmarks(gestures, PAPER_VOTERS)
 
     @property
     def needed(self) -> tuple[str, ...]:
         """The landmarks that any gesture needs, in alphabetical order."""
-        return tuple(sorted({name for ballot in self._ballots for name in ballot.salient}))
+        return tuple(sorted({name for group in self._groups for name in group.salient}))
 
     def distances(self, trajectory: Trajectory) -> FloatArray:
-        """Compare a query with all gestures.
+        """Compute the distances of a query to all gestures.
 
-        It is drawn and described once per distinct set of salient keypoints, whatever the number
+        It is drawn and described once per distinct set of salient landmarks, whatever the number
         of gestures; the distances to all of them are array operations.
 
         Returns
         -------
-        ``(7, G)``; infinite where the query lacks a salient keypoint, or does not move it.
+        ``(7, G)``; infinite where the query lacks a salient landmark, or does not move it.
 
         """
         distances = np.full((len(PAPER_VOTERS), self._count), np.inf)
-        for ballot in self._ballots:
-            _judge(trajectory, ballot, self._simplification, distances)
+        for group in self._groups:
+            _fill_distances(trajectory, group, self._simplification, distances)
         return distances
 
     def own_distances(self, most: int) -> list[FloatArray]:
-        """Measure, per voter, the distances between gestures with the same salient keypoints.
+        """Compute, per voter, the distances between gestures with the same salient landmarks.
 
         Parameters
         ----------
         most
-            Gestures with the same salient keypoints to compare; the first so many.
+            Largest number of gestures with the same salient landmarks; the first ones are used.
 
         """
         own: list[list[FloatArray]] = [[np.empty(0)] for _ in PAPER_VOTERS]
-        for ballot in self._ballots:
+        for group in self._groups:
             for row, voter in enumerate(PAPER_VOTERS):
-                references = ballot.references[voter.name][:most]
+                references = group.references[voter.name][:most]
                 for index, reference in enumerate(references[:-1]):
                     own[row].append(voter.distances(reference, references[index + 1 :]))
         return [np.concatenate(parts) for parts in own]
 
 
-def _judge(
-    trajectory: Trajectory, ballot: _Ballot, simplification: float, distances: FloatArray
+def _fill_distances(
+    trajectory: Trajectory, group: _DrawingGroup, simplification: float, distances: FloatArray
 ) -> None:
-    """Fill in the distances ``(V, G)`` to the gestures of one ballot."""
-    if not set(ballot.salient) <= set(trajectory.landmarks):
+    """Write the distances ``(V, G)`` to the gestures of one group."""
+    if not set(group.salient) <= set(trajectory.landmarks):
         return
-    descriptors = trajectory.once(
-        ("drawing", ballot.salient, simplification),
-        lambda: _described(trajectory.select(ballot.salient), simplification),
+    descriptors = trajectory.compute_once(
+        ("drawing", group.salient, simplification),
+        lambda: _describe(trajectory.select(group.salient), simplification),
     )
     if descriptors:
-        distances[:, ballot.members] = [
-            voter.distances(descriptors[voter.name], ballot.references[voter.name])
+        distances[:, group.members] = [
+            voter.distances(descriptors[voter.name], group.references[voter.name])
             for voter in PAPER_VOTERS
         ]
 
 
-def _described(query: Trajectory, simplification: float) -> dict[str, FloatArray]:
-    """Draw and describe salient keypoints; nothing where one of them is never seen."""
+def _describe(query: Trajectory, simplification: float) -> dict[str, FloatArray]:
+    """Draw and describe salient landmarks; empty where one of them is never seen."""
     known = np.isfinite(query.xy)
     if not (known.all() or known.all(axis=2).any(axis=0).all()):
         return {}
     return describe_drawing(draw(query, simplification), PAPER_VOTERS)
 
 
-def _ballots(gestures: Sequence[Gesture], voters: Sequence[ShapeVoter]) -> tuple[_Ballot, ...]:
-    """Gather the gestures that can be compared by their salient keypoints."""
+def _group_by_landmarks(
+    gestures: Sequence[Gesture], voters: Sequence[ShapeVoter]
+) -> tuple[_DrawingGroup, ...]:
+    """Group the gestures that can be compared by their salient landmarks."""
     members: dict[tuple[str, ...], list[int]] = {}
     for index, gesture in enumerate(gestures):
         if gesture.salient and gesture.image.any():
             members.setdefault(gesture.salient, []).append(index)
-    ballots = []
+    groups = []
     for salient, indices in members.items():
-        descriptors = [_descriptors(gestures[index], voters) for index in indices]
+        descriptors = [_complete_descriptors(gestures[index], voters) for index in indices]
         references = {
             voter.name: np.stack([described[voter.name] for described in descriptors])
             for voter in voters
         }
-        ballots.append(_Ballot(salient, np.array(indices), references))
-    return tuple(ballots)
+        groups.append(_DrawingGroup(salient, np.array(indices), references))
+    return tuple(groups)
 
 
-def _descriptors(gesture: Gesture, voters: Sequence[ShapeVoter]) -> dict[str, FloatArray]:
-    """Return the stored descriptors, with those made now that the gesture lacks."""
+def _complete_descriptors(gesture: Gesture, voters: Sequence[ShapeVoter]) -> dict[str, FloatArray]:
+    """Return a gesture's descriptors, computing those that are not stored."""
     missing = [voter for voter in voters if voter.name not in gesture.descriptors]
     return dict(gesture.descriptors) | describe_drawing(gesture.drawing, missing)

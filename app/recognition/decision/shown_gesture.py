@@ -1,4 +1,4 @@
-"""A gesture as it was shown, in the traversals that it leaves open, described for all voters."""
+"""Shown gestures: a demonstration in its traversals, described for all motion voters."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from app.recognition.voters.registry import MOTION_VOTERS
 
 @dataclass(frozen=True, eq=False)
 class DescribedGesture:
-    """One gesture in its traversals, and per voter's name their descriptors."""
+    """The traversals of one gesture, and their descriptors by voter's name."""
 
     traversals: tuple[Traversal, ...]
     descriptors: dict[str, FloatArray]
@@ -25,7 +25,7 @@ class DescribedGesture:
 
 @dataclass(frozen=True)
 class ShownGesture:
-    """All of a gesture that its traversals depend on.
+    """The parts of a gesture that its traversals depend on.
 
     Attributes
     ----------
@@ -43,14 +43,14 @@ class ShownGesture:
 
     @classmethod
     def of(cls, gesture: Gesture) -> ShownGesture:
-        """Take it out of a gesture."""
+        """Return the shown gesture of a gesture."""
         switches = gesture.switches
         return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
 
-    def read(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
-        """Describe a gesture with a demonstration in `every` thinkable traversal, or just as shown.
+    def describe(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
+        """Describe the demonstration in `every` traversal, or only in the demonstrated one.
 
-        Once for each set of landmarks that a language follows.
+        Cached for each set of landmarks that a language uses.
         """
         trajectory = self.trajectory
         assert trajectory is not None
@@ -58,7 +58,7 @@ class ShownGesture:
         either_side = self.mirror == "auto" and uses_both_sides(self.salient)
         hands = find_hands(self.salient)
 
-        def work_out() -> DescribedGesture:
+        def compute() -> DescribedGesture:
             shown = build_movement(trajectory, landmarks)
             found = list_traversals(
                 shown, hands=hands, both_ways=both_ways, either_side=either_side
@@ -73,6 +73,6 @@ class ShownGesture:
                 },
             )
 
-        return trajectory.once(
-            ("traversals", landmarks, hands, both_ways, either_side, every), work_out
+        return trajectory.compute_once(
+            ("traversals", landmarks, hands, both_ways, either_side, every), compute
         )

@@ -1,4 +1,4 @@
-"""An examination: a recognition together with what led to it."""
+"""Recognition trace: a result together with the query and score table behind it."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from app.recognition.poses.trajectory import Trajectory
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Trace:
-    """What a recogniser saw, compared and decided.
+    """The query, score table and result of one recognition.
 
     Attributes
     ----------
     query
-        The recording as the voters see it.
-    comparison
-        It, beside every gesture.
+        The trajectory that the voters compared.
+    score_table
+        Its distances to every gesture.
     result
-        The answer.
+        The recognition.
 
     """
 
     query: Trajectory
-    comparison: ScoreTable
+    score_table: ScoreTable
     result: Recognition

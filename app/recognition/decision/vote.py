@@ -1,4 +1,4 @@
-"""The interface of votes: how a profile decides between the gestures of a language."""
+"""Vote interface: the decision rule of a profile."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Vote(Protocol):
 
     @property
     def landmarks(self) -> tuple[str, ...]:
-        """The landmarks that any gesture follows, in alphabetical order."""
+        """The salient landmarks of all gestures, in alphabetical order."""
         ...
 
     @property
@@ -32,7 +32,7 @@ class Vote(Protocol):
         ...
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return what about a gesture counts; None where its movement is not compared."""
+        """Return whether direction, tempo and sides count; None without movement."""
         ...
 
     def may_win(

@@ -1,4 +1,4 @@
-"""An estimator put together of what finds the body and what finds the hands."""
+"""Composed estimator: a pose estimator of separate models for body and hands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class BodyFinder(Protocol):
         ...
 
     def reset(self) -> None:
-        """Forget the person, before another clip."""
+        """Reset the tracking, before another clip."""
         ...
 
 
@@ -28,18 +28,18 @@ class HandFinder(Protocol):
         ...
 
     def reset(self) -> None:
-        """Forget the hands, before another clip."""
+        """Reset the tracking, before another clip."""
         ...
 
 
 class TrackedHands:
-    """MediaPipe's hands beside another body; a `HandFinder`.
+    """MediaPipe's hand models for use with another body model; a `HandFinder`.
 
     Parameters
     ----------
     tracker
-        Its ``search`` should be ``"palm"`` where the body has no fingers: the ends of the arms
-        cannot be looked at then.
+        Its ``search`` should be ``"palm"`` where the body has no finger landmarks, which
+        ``"pose"`` needs.
 
     """
 
@@ -51,19 +51,19 @@ class TrackedHands:
         return self._tracker.complete(image, self._tracker.follow(image), body)
 
     def reset(self) -> None:
-        """Forget the hands."""
+        """Reset the tracking."""
         self._tracker.reset()
 
 
 class ComposedEstimator:
-    """Body by one model, hands by another; a `PoseEstimator`.
+    """Pose estimator of one model for the body and another for the hands.
 
     Parameters
     ----------
     body
-        What finds the body.
+        Finds the body.
     hands
-        What finds the hands; None: nobody looks for them, and there is no salute.
+        Finds the hands; None: no hands, hence no salutes.
     landmarks
         Names of the landmarks that the body can have.
 
@@ -89,7 +89,7 @@ class ComposedEstimator:
         return FrameLandmarks(body, self._hands.find(image, body) if self._hands else ())
 
     def reset(self) -> None:
-        """Forget what was tracked so far; to be called before another clip."""
+        """Reset the tracking; call it before another clip."""
         self._body.reset()
         if self._hands:
             self._hands.reset()

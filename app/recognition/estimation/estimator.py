@@ -1,4 +1,4 @@
-"""The interface of pose estimators, whatever runs behind it."""
+"""Estimator interface: what every pose estimator provides."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.recognition.errors import EstimatorError
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 LARGEST_SIDE: Final = 16384
-"""Pixels. OpenCV keeps positions in an image in 16 bits, and this leaves room to turn a crop."""
+"""Pixels. OpenCV stores positions in 16 bits, and rotated crops need some room."""
 
 
 class PoseEstimator(Protocol):
@@ -24,7 +24,7 @@ class PoseEstimator(Protocol):
         ...
 
     def reset(self) -> None:
-        """Forget what was tracked and smoothed so far."""
+        """Reset tracking and smoothing."""
         ...
 
     def close(self) -> None:
@@ -33,7 +33,7 @@ class PoseEstimator(Protocol):
 
 
 def check_image(image: Image) -> None:
-    """Refuse what is no RGB image of 8 bits per channel, or larger than `LARGEST_SIDE`.
+    """Check that an image is RGB with 8 bits per channel, and at most `LARGEST_SIDE` pixels wide.
 
     Raises
     ------

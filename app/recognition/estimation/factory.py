@@ -1,4 +1,4 @@
-"""An estimator by the name of its backend."""
+"""Estimator factory: creates an estimator by the name of its backend."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ YOLO_POSE: Final = "yolo-pose"
 
 MEDIAPIPE_HANDS: Final = "mediapipe"
 NO_HANDS: Final = "none"
-"""Who looks for hands; besides these two, the paper's pair: ``DETECTOR.onnx,KEYPOINTS.onnx``."""
+"""Names of hand models; besides these two, the paper's pair ``DETECTOR.onnx,KEYPOINTS.onnx``."""
 
 
 def create_estimator(
@@ -55,14 +55,14 @@ def create_estimator(
         ``"mediapipe"``: the installed hand models; ``"none"``: no hands, hence no salutes; or
         ``"DETECTOR.onnx,KEYPOINTS.onnx"``, the paper's pair (`diver_hands`).
     threads, provider
-        How ONNX Runtime runs the models; the library `mediapipe` chooses for itself.
+        Settings of ONNX Runtime; the library `mediapipe` ignores them.
 
     Raises
     ------
     EstimatorError
         When the backend or the provider is unknown or not available here.
     ModelError
-        When a model file is missing or damaged, or is not what it is named as.
+        When a model file is missing or damaged, or is another model than expected.
 
     """
     if threads < 1:
@@ -93,14 +93,14 @@ def create_estimator(
 
 @runtime_checkable
 class _Limited(Protocol):
-    """What an estimator that finds less than others says of itself."""
+    """Interface of estimators that find only some landmarks, or no hands."""
 
     landmarks: tuple[str, ...]
     finds_hands: bool
 
 
 def list_landmarks(estimator: PoseEstimator) -> tuple[str, ...]:
-    """Return the landmarks that an estimator can find: all of `POSE_LANDMARKS` unless it says so.
+    """Return the landmarks that an estimator can find, by default all of `POSE_LANDMARKS`.
 
     The others are NaN in every `Body` it gives.
     """
@@ -108,7 +108,7 @@ def list_landmarks(estimator: PoseEstimator) -> tuple[str, ...]:
 
 
 def finds_hands(estimator: PoseEstimator) -> bool:
-    """Tell whether an estimator looks for hands: without them there is no salute."""
+    """Return whether an estimator finds hands, which salutes need."""
     return estimator.finds_hands if isinstance(estimator, _Limited) else True
 
 

@@ -1,4 +1,4 @@
-"""The second estimator: the `mediapipe` library itself, the reference of the parity test."""
+"""MediaPipe estimator: the `mediapipe` library itself, the reference of the parity test."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MILLISECONDS: Final = 1000
 class MediaPipeEstimator:
     """Body and hands by MediaPipe's Tasks library on the processor; a `PoseEstimator`.
 
-    The library looks up a logging host of its maker while it runs. It works without an answer;
-    where nothing may leave the machine, use `OnnxPoseEstimator`. Of its scores the library keeps
-    some to itself: a body's is always 1, a hand's is the belief in its side.
+    The library contacts a logging host of its maker while it runs, and works without a reply;
+    where nothing may leave the machine, use `OnnxPoseEstimator`. It does not return all scores: a
+    body's is always 1, a hand's is the probability of its side.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ class MediaPipeEstimator:
         image
             ``(height, width, 3)`` RGB, upright; any strides.
         time
-            Seconds. MediaPipe refuses a millisecond it has had: a time that does not come after
-            the frame before is taken as one millisecond later.
+            Seconds. MediaPipe refuses repeated milliseconds: a time not after the previous frame's
+            is passed as one millisecond later.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class MediaPipeEstimator:
         )
 
     def reset(self) -> None:
-        """Forget what was tracked and smoothed so far; to be called before another clip."""
+        """Reset tracking and smoothing; call it before another clip."""
         self.close()
         self._start()
 
@@ -114,7 +114,7 @@ class MediaPipeEstimator:
         return self._mediapipe.tasks.BaseOptions(model_asset_path=str(bundle))
 
     def _next_stamp(self, time: float) -> int:
-        """Milliseconds since the first frame, from 1 on: at 0 MediaPipe's filters do not start."""
+        """Return milliseconds since the first frame, from 1: MediaPipe's filters fail at 0."""
         if self._origin is None:
             self._origin = time
         elapsed = round((time - self._origin) * MILLISECONDS) + 1

@@ -1,4 +1,4 @@
-"""The default estimator: MediaPipe's own models on ONNX Runtime."""
+"""ONNX estimator, the default: MediaPipe's own models on ONNX Runtime."""
 
 from __future__ import annotations
 
@@ -27,9 +27,8 @@ from app.recognition.models import ModelName, model_path
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2
-"""One for the body and one for the hands, which share nothing: on the two cores of a laptop a frame
-takes as long as the slower of the two. Two threads within each model's run save at most a third of
-it, and threads beyond the machine's cores save nothing.
+"""One thread for the body and one for the hands, which run in parallel. Two threads within each
+model save at most a third of the time, threads beyond the machine's cores nothing.
 """
 
 
@@ -47,7 +46,7 @@ class OnnxPoseEstimator:
     provider
         ``"cpu"``, or ``"cuda"``, ``"tensorrt"``, ``"coreml"`` where ONNX Runtime has them.
     hands
-        ``"pose"`` looks for hands where the body's arms end, and now and then in the whole frame;
+        ``"pose"`` searches hands at the ends of the arms, and every few frames in the whole frame;
         ``"palm"`` only in the whole frame, as MediaPipe's hand landmarker does.
 
     Raises
@@ -84,7 +83,7 @@ class OnnxPoseEstimator:
         image
             ``(height, width, 3)`` RGB, upright; any size from 1 x 1 on and any strides.
         time
-            Seconds. One that does not come after the frame before restarts the smoothing.
+            Seconds. A time not after the previous frame's restarts the smoothing.
 
         Raises
         ------
@@ -102,7 +101,7 @@ class OnnxPoseEstimator:
         return FrameLandmarks(body, self._hands.complete(image, followed, body))
 
     def reset(self) -> None:
-        """Forget what was tracked and smoothed so far; to be called before another clip."""
+        """Reset tracking and smoothing; call it before another clip."""
         self._body.reset()
         self._hands.reset()
 

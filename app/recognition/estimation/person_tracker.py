@@ -1,4 +1,4 @@
-"""The one person that is followed where several are seen."""
+"""Person tracker: follows one person where several are seen."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS
 
 SAME_PERSON: Final = 0.3
-"""Least intersection over union of a person's boxes in two frames. An arm that is stretched out
-between them halves it; two people beside each other share less."""
+"""Least intersection over union of a person's boxes in two frames. Stretching an arm halves it; two
+people beside each other overlap less."""
 
 PATIENCE_SECONDS: Final = MAX_GAP_SECONDS
-"""How long a person who is out of sight is waited for. A longer gap is not bridged in a trajectory
-either, so the gesture is lost and another person may be followed."""
+"""Seconds after which an unseen person is given up: longer gaps are not bridged in trajectories
+either, so the gesture is lost anyway."""
 
 
 class PersonTracker:
-    """Keeps to one person from frame to frame.
+    """Selects the same person in every frame.
 
-    First the most prominent: the largest box, weighted by the detector's belief. Then whoever is
-    where that person was, however large others become; two divers of one size would otherwise take
-    turns. Frames are to be given in order of time.
+    First the most prominent: the largest box, weighted by the detector's confidence. Then the one
+    whose box overlaps the previous one, however large others become. Frames must be in order of
+    time.
     """
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Forget whom was followed."""
+        """Reset the tracking."""
         self._box: FloatArray | None = None
         self._since = -np.inf
 
     def choose(self, boxes: FloatArray, scores: FloatArray, time: float) -> int | None:
-        """Return which of N people in a frame is the one, or None where they are not seen.
+        """Return the index of the tracked person among N, or None where they are not seen.
 
         Parameters
         ----------
         boxes
             ``(N, 2, 2)`` corners (left, top) and (right, bottom), pixels.
         scores
-            ``(N,)`` belief in each, in [0, 1].
+            ``(N,)`` confidence of each, in [0, 1].
         time
             Seconds.
 
@@ -67,7 +67,7 @@ class PersonTracker:
 
 
 def measure_prominence(boxes: FloatArray, scores: FloatArray) -> FloatArray:
-    """Return ``(N,)`` how much each person stands out: area of the box times belief."""
+    """Return ``(N,)`` the prominence of each person: area of the box times confidence."""
     sides = np.clip(boxes[:, 1] - boxes[:, 0], 0, None)
     return np.asarray(sides.prod(axis=1) * scores, dtype=np.float64)
 

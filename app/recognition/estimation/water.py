@@ -1,7 +1,7 @@
-"""Under water: colour and contrast of a frame set right before landmarks are looked for in it.
+"""Water correction: restores colour and contrast of under-water frames before estimation.
 
-Water takes away red first and, where it is turbid, blue; what floats in it lays one and the same
-colour over everything. The models were trained in air.
+Water absorbs red first and, where it is turbid, blue; particles add a uniform colour. The models
+were trained in air.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ WaterCorrection = Literal["auto", "on", "off"]
 RED, GREEN, BLUE = 0, 1, 2
 
 SAMPLING: Final = 4
-"""Every so many pixels each way are enough to tell a frame's colours from."""
+"""Step in pixels, each way, with which a frame's colours are sampled."""
 
 TAIL: Final = 1.0
 """Per cent of the pixels at either end of the range that the stretch may clip: a lamp, a hole."""
 
 LEAST_RANGE: Final = 8.0
-"""Grey levels. An image with less of them shows nothing, and stretched nothing but noise."""
+"""Grey levels; an image with a smaller range would be stretched to noise."""
 
 MURKY_RANGE: Final = 64.0
-"""Grey levels between the `TAIL` darkest and lightest pixels below which ``"auto"`` corrects. A
-quarter of what there is: our frames of clear water have 75 to 190, mixed with 50 % of murk 40 to
-85, with 75 % 30 to 50. Above it the models do nearly as well on the frame as it is."""
+"""Grey levels between the `TAIL` darkest and lightest pixels below which ``"auto"`` corrects. Clear
+frames have 75 to 190, those with 50 % murk 40 to 85, with 75 % 30 to 50; above the limit the models
+work nearly as well without correction."""
 
 LUMA: Final = np.array([0.299, 0.587, 0.114])
 """Weights of red, green and blue in brightness (ITU-R BT.601)."""
@@ -42,11 +42,11 @@ LUMA: Final = np.array([0.299, 0.587, 0.114])
 def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
     """Return a frame as it would look in clear water, or the frame itself.
 
-    Three steps. What red lacks to green is added where the pixel is green, and so for blue where
-    the water is turbid (Ancuti et al. 2018, Sec. III, with a weight of 1).
-    All channels are brought to the same mean (grey world, Buchsbaum 1980). All are stretched
-    about it alike, until the widest fills its range. Their sharpening and fusion of several
-    images is left out: it adds nothing that the models could see.
+    Three steps. The mean difference of red to green is added where the pixel is green, and so for
+    blue where the water is turbid (Ancuti et al. 2018, Sec. III, with a weight of 1). All channels
+    are brought to the same mean (grey world, Buchsbaum 1980). All are stretched about it alike,
+    until the widest fills its range. Their sharpening and fusion of several images is left out,
+    which does not help the models.
 
     Parameters
     ----------
@@ -71,25 +71,25 @@ def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
     check_image(image)
     if water == "off" or (water == "auto" and not is_murky(image)):
         return image
-    compensated = _compensated(image)
-    table = _balance_and_stretch(_sampled(compensated))
+    compensated = _compensate(image)
+    table = _balance_and_stretch(_sample(compensated))
     return np.asarray(cv2.LUT(compensated, table), np.uint8)
 
 
 def is_murky(image: Image) -> bool:
-    """Tell whether so little of the range of brightness is left that correcting helps."""
-    darkest, lightest = np.percentile(_sampled(image) @ LUMA, [TAIL, 100 - TAIL])
+    """Return whether the range of brightness is so small that correction helps."""
+    darkest, lightest = np.percentile(_sample(image) @ LUMA, [TAIL, 100 - TAIL])
     return bool(lightest - darkest < MURKY_RANGE)
 
 
-def _sampled(image: Image) -> FloatArray:
-    """Return ``(N, 3)`` of the image's pixels."""
+def _sample(image: Image) -> FloatArray:
+    """Return ``(N, 3)``: a sample of the image's pixels."""
     return image[::SAMPLING, ::SAMPLING].reshape(-1, 3).astype(np.float64)
 
 
-def _compensated(image: Image) -> Image:
-    """Add to red, and to blue, what it lacks to green on average, most where the pixel is green."""
-    means = _sampled(image).mean(axis=0)
+def _compensate(image: Image) -> Image:
+    """Add the mean difference to green to red, and to blue, most where the pixel is green."""
+    means = _sample(image).mean(axis=0)
     channels = [np.ascontiguousarray(image[..., channel]) for channel in range(3)]
     for weak in (RED, BLUE):
         lack = (means[GREEN] - means[weak]) / 255

@@ -1,4 +1,4 @@
-"""A body from a YOLO-pose export of Ultralytics (YOLOv8, YOLO11, YOLO26): COCO's 17 keypoints.
+"""YOLO-pose: bodies from an Ultralytics export (YOLOv8, YOLO11, YOLO26), COCO's 17 keypoints.
 
 The file is the user's: ``yolo export model=yolo11n-pose.pt format=onnx``. Both forms of the output
 are read: candidates of every anchor, of which overlapping ones must be suppressed here, and final
@@ -30,17 +30,17 @@ DEFAULT_SIDE: Final = 640
 """Pixels; what Ultralytics trains and exports with. Used where a file leaves its input open."""
 
 LEAST_SCORE: Final = 0.25
-"""Belief in a person from which one counts; the default of Ultralytics' own prediction."""
+"""Least confidence of a person; the default of Ultralytics' own prediction."""
 
 MOST_OVERLAP: Final = 0.7
 """Intersection over union above which two candidates are one person; Ultralytics' default too."""
 
 LEAST_VISIBILITY: Final = 0.5
-"""Below it a keypoint is not seen, as in Ultralytics' own results: the place is then a guess of the
-model, and a guessed wrist draws strokes that nobody made."""
+"""Visibility below which a keypoint is NaN, as in Ultralytics' own results: its position is a guess
+that would add strokes."""
 
 VALUES: Final = 3
-"""Of a keypoint: x, y in pixels of the input, and the belief that it is visible."""
+"""Values of a keypoint: x, y in pixels of the input, and its visibility."""
 
 CANDIDATE: Final = 4 + 1 + VALUES * len(COCO_17)
 """Rows of the raw output: box (centre, extent), score of the one class, keypoints."""
@@ -125,12 +125,12 @@ class YoloPose:
         return _body(people.keypoints[chosen], float(people.scores[chosen]), letterbox)
 
     def reset(self) -> None:
-        """Forget the person."""
+        """Reset the tracking."""
         self._subject.reset()
 
 
 def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:
-    """Read the people out of what a YOLO-pose model gives for one image.
+    """Decode the output of a YOLO-pose model for one image.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:
     if len(outputs) == 1 and outputs[0].ndim == 3 and len(outputs[0]) == 1:
         values = outputs[0][0].astype(np.float64)
         if len(values) == CANDIDATE:
-            return _without_overlap(_candidates(values.T))
+            return _drop_overlapping(_candidates(values.T))
         if values.shape[1] == DETECTION:
             return _detections(values)
     raise ModelError(
@@ -172,7 +172,7 @@ def _detections(rows: FloatArray) -> People:
     return People(rows[:, :4].reshape(-1, 2, 2), np.clip(rows[:, 4], 0, 1), keypoints)
 
 
-def _without_overlap(people: People) -> People:
+def _drop_overlapping(people: People) -> People:
     """Keep the best of overlapping candidates."""
     extents = np.concatenate([people.boxes[:, 0], people.boxes[:, 1] - people.boxes[:, 0]], axis=1)
     kept = np.asarray(

@@ -1,1 +1,1 @@
-"""Why a recognition came out as it did: differences, alignments, counterfactuals."""
+"""Explanations of recognitions: vote breakdown, alignments, differences, counterfactuals."""

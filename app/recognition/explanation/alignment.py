@@ -1,4 +1,4 @@
-"""Alignments: which moment of a query corresponds to which of a gesture, and what it costs."""
+"""DTW alignments: the corresponding steps of a query and a gesture, and their costs."""
 
 from __future__ import annotations
 
@@ -22,15 +22,14 @@ from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.posture import Posture
 
 DIGITS = 4
-"""Decimals of costs and seconds in JSON: a tenth of a millisecond, and of what two gestures
-typically cost."""
+"""Decimals of costs and seconds in JSON: a tenth of a millisecond."""
 
-ElasticVoter = Path | Direction | Posture | HandAttitude
+AlignedVoter = Path | Direction | Posture | HandAttitude
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Example:
-    """A gesture as a query was compared with it: from one side, in one traversal.
+    """A gesture in the traversal, and mirrored or not, in which a query was compared with it.
 
     Attributes
     ----------
@@ -39,11 +38,11 @@ class Example:
     traversal
         The order of its steps.
     mirrored
-        Whether it is its mirror image.
+        Whether it is the gesture's mirror image.
     movement
         In that traversal.
     time
-        ``(N,)`` seconds of the demonstration at which each step was shown.
+        ``(N,)`` seconds in the demonstration of each step.
 
     """
 
@@ -63,7 +62,7 @@ class Example:
         mirrored: bool = False,
     ) -> Example | None:
         """Return a gesture's example; None where the gesture has no demonstration."""
-        trajectory = (gesture.mirrored() if mirrored else gesture).trajectory
+        trajectory = (gesture.mirror() if mirrored else gesture).trajectory
         if trajectory is None or len(trajectory) < 2:
             return None
         shown = build_movement(trajectory, landmarks)
@@ -71,14 +70,14 @@ class Example:
             label=gesture.label,
             traversal=traversal,
             mirrored=mirrored,
-            movement=shown.reordered(traversal.order),
+            movement=shown.reorder(traversal.order),
             time=shown.reached[traversal.order],
         )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Alignment:
-    """The best alignment of a query with a gesture, by one elastic voter.
+    """The best DTW alignment of a query with a gesture, by one voter.
 
     Attributes
     ----------
@@ -89,21 +88,21 @@ class Alignment:
     parts
         P landmarks; for voters that compare limbs, the limbs' outer ends.
     pairs
-        ``(S, 2)``: steps of the query and of the gesture that correspond.
+        ``(S, 2)``: corresponding steps of the query and of the gesture.
     time
-        ``(N,)`` seconds of the query's clock at which it reached each step.
+        ``(N,)`` seconds in the query's clock of each of its steps.
     gesture_time
-        ``(N,)`` seconds of the demonstration at which the gesture did.
+        ``(N,)`` seconds in the demonstration of each of the gesture's steps.
     query, gesture
-        ``(N, P, 2)``: what the voter compares, step by step and part by part, x right and y down,
-        in its own unit; NaN where not seen. For `Path` each landmark's place relative to its mean
-        place, in sizes of the gesture: the squared lengths between places that correspond are the
-        costs, but for the N that they are divided by.
+        ``(N, P, 2)``: the voter's descriptors, step by step and part by part, x right and y down,
+        in its own unit; NaN where not seen. For `Path` each landmark's position relative to its
+        mean, in sizes of the gesture: the costs are the squared distances between corresponding
+        positions, divided by N.
     costs
-        ``(S, P)`` >= 0: what each pair adds to the voter's distance, part by part; their sum is
-        the distance.
+        ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
+        their sum.
     backward, mirrored
-        Whether the gesture is read backwards, and whether as its mirror image.
+        Whether the gesture is traversed backwards, and whether it is its mirror image.
 
     """
 
@@ -126,7 +125,7 @@ class Alignment:
 
     @property
     def over_time(self) -> FloatArray:
-        """``(N, P)``: the costs gathered by the query's steps."""
+        """``(N, P)``: the costs summed for each step of the query."""
         gathered = np.zeros((len(self.time), len(self.parts)))
         np.add.at(gathered, self.pairs[:, 0], self.costs)
         return gathered
@@ -155,22 +154,22 @@ def align(
     landmarks: Sequence[str],
     *,
     start: float = 0.0,
-    voter: ElasticVoter | None = None,
+    voter: AlignedVoter | None = None,
 ) -> Alignment | None:
     """Align a query with a gesture's example.
 
     Parameters
     ----------
     query
-        Following the same landmarks as the example.
+        Of the same landmarks as the example.
     example
-        What it was compared with.
+        The gesture.
     landmarks
-        The landmarks followed.
+        Names of the landmarks.
     start
         Second of the query's clock at which its movement begins.
     voter
-        Which of the elastic voters; `Path` when not given.
+        One of the DTW voters; `Path` when not given.
 
     Returns
     -------
@@ -189,7 +188,7 @@ def align(
     pairs = dtw_pairs(left, right, BAND)
     squares = (left[pairs[:, 0]] - right[pairs[:, 1]]) ** 2
     compared = np.isfinite(squares).sum(axis=1, keepdims=True)
-    # What is known of two vectors stands for the whole, as in `dtw_distances`.
+    # The known components stand for the whole vector, as in `dtw_distances`.
     costs = np.zeros((len(pairs), len(known)))
     costs[:, known] = np.nan_to_num(squares) * known.sum() / np.maximum(compared, 1)
     return Alignment(
@@ -212,28 +211,28 @@ def find_nearest_example(
 ) -> Example | None:
     """Return a gesture's example in the traversal whose path is nearest to the query's.
 
-    For voters that see drawings, to which all traversals are the same. None where one of the two
-    has no movement.
+    For shape voters, which do not distinguish traversals. None where one of the two has no
+    movement.
     """
     shown = Example.of(gesture, landmarks, AS_SHOWN)
     if shown is None or len(query) < 2:
         return None
     open_to = list_traversals(shown.movement, hands=find_hands(gesture.salient), both_ways=True)
     voter, moved = Path(), build_movement(query, landmarks)
-    read = np.stack([voter.describe(shown.movement.reordered(each.order)) for each in open_to])
+    read = np.stack([voter.describe(shown.movement.reorder(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
 
 
 def _places(shown: FloatArray) -> list[list[list[float] | None]]:
-    """Round ``(N, P, 2)`` for JSON; what was not seen becomes None."""
+    """Round ``(N, P, 2)`` for JSON; NaN becomes None."""
     return [
         [place if np.isfinite(place).all() else None for place in step]
         for step in np.round(shown, DIGITS).tolist()
     ]
 
 
-def _parts(voter: ElasticVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
+def _parts(voter: AlignedVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
     if isinstance(voter, Path | Direction):
         return tuple(landmarks)
     bones = list_limbs(landmarks)

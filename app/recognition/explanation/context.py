@@ -1,4 +1,4 @@
-"""A situation: all that a recognition depends on, so that it can be repeated with a change."""
+"""Recognition context: recogniser and take, so that a recognition can be repeated with changes."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from app.recognition.recording.segmentation import Take
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RecognitionContext:
-    """A recogniser and a stroke.
+    """Everything that a recognition depends on.
 
     Attributes
     ----------
     recognizer
-        For a language, with a profile and a tuning.
+        The recogniser, with language, profile and tuning.
     poses
-        The stroke that is recognised.
+        The stroke to recognise.
     whole
-        What the stroke was cut out of, so that it may be cut otherwise.
+        The poses that the stroke was cut out of, for other cuts.
 
     """
 
@@ -38,7 +38,7 @@ class RecognitionContext:
 
     @classmethod
     def of_take(cls, recognizer: Recognizer, take: Take) -> RecognitionContext:
-        """Return the situation in which a take is recognised."""
+        """Return the context of recognising a take."""
         return cls(recognizer=recognizer, poses=take.poses, whole=take.untrimmed)
 
     @property
@@ -58,42 +58,42 @@ class RecognitionContext:
 
     @cached_property
     def trace(self) -> Trace:
-        """What is seen, compared and decided.
+        """The trace of the recognition, computed once.
 
         Raises
         ------
         PoseError
-            When the stroke shows nothing that a gesture needs.
+            When no landmark that a gesture needs moves in the stroke.
 
         """
         return self.recognizer.examine(self.poses)
 
     @property
     def trajectory(self) -> Trajectory:
-        """The stroke as the voters see it."""
+        """The trajectory that the voters compare."""
         return self.trace.query
 
     @property
-    def comparison(self) -> ScoreTable:
-        """The stroke beside every gesture."""
-        return self.trace.comparison
+    def score_table(self) -> ScoreTable:
+        """The stroke's distances to every gesture."""
+        return self.trace.score_table
 
     @property
     def result(self) -> Recognition:
-        """What is recognised."""
+        """The recognition."""
         return self.trace.result
 
     def with_tuning(self, tuning: Tuning) -> RecognitionContext:
-        """Tune the recogniser otherwise."""
+        """Return the context with another tuning."""
         return replace(self, recognizer=Recognizer(self.language, self.profile, tuning=tuning))
 
     def with_profile(self, profile: str) -> RecognitionContext:
-        """Use other voters; weights, which are for voters of a profile, are dropped."""
+        """Return the context with another profile, without the weight factors of this one."""
         tuning = replace(self.tuning, weights={})
         return replace(self, recognizer=Recognizer(self.language, profile, tuning=tuning))
 
     def with_gesture(self, changed: Gesture) -> RecognitionContext:
-        """Put a gesture in the place of the one with its label."""
+        """Return the context with another gesture for the one of the same label."""
         gestures = [
             changed if gesture.label == changed.label else gesture
             for gesture in self.language.gestures

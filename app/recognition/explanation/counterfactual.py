@@ -1,6 +1,6 @@
-"""Counterfactuals: the smallest changes with which a recognition would have turned out right.
+"""Counterfactuals: the smallest interventions that would have corrected a recognition.
 
-Each is verified: the situation is changed, and the recogniser run again.
+Each is verified by applying the intervention and running the recogniser again.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants
 
 MOST = 8
-"""Counterfactuals told: more would be a list to search, not an answer."""
+"""Most counterfactuals returned, few enough to read."""
 
 MOST_OF_A_KIND = 2
-"""Of them of one kind: a second voter that may be switched off is worth knowing, a sixth not."""
+"""Most counterfactuals of one kind."""
 
 VARIANTS = 1
-"""Takes by another person that are imagined of each gesture, beside its demonstration, to see what
-a change does to the rest of the language."""
+"""Simulated takes of each gesture by another person, used with its demonstration to measure the
+effect of an intervention on the rest of the language."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class LanguageEffect:
-    """What a change does to the other gestures.
+    """The effect of an intervention on the other gestures.
 
     Attributes
     ----------
     takes
-        Demonstrations and plausible other takes of all gestures that were recognised again.
+        Number of demonstrations and simulated takes that were recognised again.
     right_before, right_after
-        How many of them are recognised without and with the change.
+        How many of them are recognised without and with the intervention.
     lost
         Labels of gestures of which a take is no longer recognised.
 
@@ -59,18 +59,18 @@ class LanguageEffect:
 
 @dataclass(frozen=True, kw_only=True)
 class Counterfactual:
-    """A change with which the expected gesture is recognised.
+    """An intervention with which the expected gesture is recognised.
 
     Attributes
     ----------
     change
-        What to change; its `size` orders the counterfactuals.
+        The intervention; its `size` orders the counterfactuals.
     label, confidence
-        The recogniser's answer after the change.
+        The recognition after the intervention.
     margin
         The score of the nearest other gesture minus that of the expected one, after it.
     effect
-        On the rest of the language; None for a change of this take alone.
+        On the rest of the language; None for an intervention on this take alone.
 
     """
 
@@ -93,14 +93,14 @@ class Counterfactual:
 
 @dataclass(frozen=True, kw_only=True)
 class Counterfactuals:
-    """The changes that help, the smallest first, and how many were tried.
+    """The interventions that correct a recognition, the smallest first.
 
     Attributes
     ----------
     found
         At most `MOST`, each verified.
     tried
-        How many changes were put to the recogniser.
+        Number of interventions that were tried.
 
     """
 
@@ -121,43 +121,43 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
     return float(np.delete(scores, expected).min(initial=np.inf) - scores[expected])
 
 
-def find_counterfactuals(situation: RecognitionContext, expected: str) -> Counterfactuals:
-    """Find the smallest changes with which `expected` is recognised.
+def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterfactuals:
+    """Find the smallest interventions with which `expected` is recognised.
 
-    Of each series of ever larger changes the first that helps is kept.
+    Of each series of increasing interventions the first that succeeds is kept.
 
     Parameters
     ----------
-    situation
-        In which another label was recognised, or none.
+    context
+        The context, in which another label was recognised, or none.
     expected
         A label of the language.
 
     """
     found: list[_Found] = []
     tried = 0
-    for series in list_interventions(situation, expected):
+    for series in list_interventions(context, expected):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
-            if (helps := _verified(situation, change, expected)) is not None:
+            if (helps := _verify(context, change, expected)) is not None:
                 found.append(helps)
                 break
-    rest = _Rest(situation)
-    told = tuple(_told(each, expected, rest) for each in _smallest(found))
-    return Counterfactuals(found=told, tried=tried)
+    rest = _Rest(context)
+    described = tuple(_describe(each, expected, rest) for each in _choose_smallest(found))
+    return Counterfactuals(found=described, tried=tried)
 
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """A change that helps, and the situation that it makes."""
+    """A successful intervention, and the context after it."""
 
     change: Intervention
     after: RecognitionContext
     margin: float
 
 
-def _smallest(found: Iterable[_Found]) -> list[_Found]:
-    """Choose the smallest changes, not too many of a kind."""
+def _choose_smallest(found: Iterable[_Found]) -> list[_Found]:
+    """Choose the smallest interventions, at most `MOST_OF_A_KIND` of a kind."""
     by_kind = sorted(found, key=lambda each: (each.change.kind, each.change.size, -each.margin))
     chosen = [
         each
@@ -167,19 +167,19 @@ def _smallest(found: Iterable[_Found]) -> list[_Found]:
     return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
 
 
-def _verified(situation: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
-    """Run the recogniser with a change: None where it does not help or cannot be made."""
+def _verify(context: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
+    """Run the recogniser with an intervention; None if it fails or cannot be applied."""
     try:
-        after = change.apply(situation)
+        after = change.apply(context)
         if after.result.label != expected:
             return None
     except OsgError:
         return None
     at = after.result.gestures.index(expected)
-    return _Found(change, after, measure_margin(after.comparison.scores.tolist(), at))
+    return _Found(change, after, measure_margin(after.score_table.scores.tolist(), at))
 
 
-def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
+def _describe(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
     effect = None
     if found.change.reach != "take":
         now = rest.recognised(found.after)
@@ -200,10 +200,10 @@ def _told(found: _Found, expected: str, rest: _Rest) -> Counterfactual:
 
 
 class _Rest:
-    """Takes of all gestures of a language, to see whether they are still recognised."""
+    """Takes of all gestures of a language, to test whether they are still recognised."""
 
-    def __init__(self, situation: RecognitionContext) -> None:
-        self._situation = situation
+    def __init__(self, context: RecognitionContext) -> None:
+        self._situation = context
 
     @cached_property
     def _takes(self) -> list[tuple[str, Trajectory]]:
@@ -218,21 +218,21 @@ class _Rest:
 
     @property
     def labels(self) -> list[str]:
-        """Of the takes."""
+        """Labels of the takes."""
         return [label for label, _ in self._takes]
 
     @cached_property
     def before(self) -> list[str]:
-        """Labels of the takes that are recognised as things are."""
+        """Labels of the takes that are recognised without intervention."""
         return self.recognised(self._situation)
 
-    def recognised(self, situation: RecognitionContext) -> list[str]:
-        """Return the labels of the takes that are recognised in another situation."""
-        return [label for label, take in self._takes if _is_recognised(situation, label, take)]
+    def recognised(self, context: RecognitionContext) -> list[str]:
+        """Return the labels of the takes that are recognised in another context."""
+        return [label for label, take in self._takes if _is_recognised(context, label, take)]
 
 
-def _is_recognised(situation: RecognitionContext, label: str, take: Trajectory) -> bool:
+def _is_recognised(context: RecognitionContext, label: str, take: Trajectory) -> bool:
     try:
-        return situation.recognizer.recognize_trajectory(take).label == label
+        return context.recognizer.recognize_trajectory(take).label == label
     except OsgError:
         return False

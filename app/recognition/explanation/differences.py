@@ -1,8 +1,7 @@
-"""Differences: in what way a query is not the gesture that was expected, where and when.
+"""Differences: the ways in which a query differs from the expected gesture, with time and joint.
 
-Each kind is tried by undoing it: the query is turned round, shown with the other hand, cut short,
-and compared again. What that takes away of the distance between the paths is the difference's
-share.
+Each kind is tested by undoing it: the query is reversed, shown with the other hand, cut short, and
+compared again. The share of a difference is the part of the path distance that this removes.
 """
 
 from __future__ import annotations
@@ -29,57 +28,55 @@ Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
     "tempo", "place", "size", "wrist", "unseen",
 ]  # fmt: skip
-"""In what way: left and right exchanged by the pose model; the other way round; with the other
-hand; as its mirror image; a part missing, or too much; another course; slower or quicker; elsewhere
-beside the body; larger or smaller; with the wrist bent otherwise; not seen for a while."""
+"""Kinds: left and right exchanged by the pose model; opposite direction; other hand; mirror image;
+a part missing or added; another shape; slower or quicker; another place beside the body; larger or
+smaller; another bend of the wrist; not seen for a while."""
 
 DIFFERENT = 2 * ALIKE
-"""Path distance from which a query's path is told to differ: twice what two people's takes of one
-figure differ by. Of plausible takes by another person a third lie beyond it."""
+"""Least path distance of a difference: twice that of two people's takes of one figure. A third of
+simulated takes by another person exceed it."""
 
 LEAST_SHARE = 0.5
-"""Share of the distance that undoing a difference must take away for it to be named: what it
-explains is then more than what remains."""
+"""Least share of the distance that a difference must explain to be reported."""
 
 CUTS = tuple(range(STEPS // 8, STEPS // 2 + 1, 2))
-"""Steps of 32 that may be missing or too many at either end: from an eighth, the least that is a
-stroke of its own, to a half, beyond which the rest is no longer most of the gesture."""
+"""Steps of 32 that may be missing or added at either end: from an eighth, the shortest stroke, to a
+half, beyond which the rest is no longer most of the gesture."""
 
 AS_GOOD = 1.15
-"""Factor on the least distance up to which a smaller cut is as good: a little less than the least
-difference that people see in a figure, a fifth."""
+"""Factor on the least distance up to which a smaller cut is preferred: a little less than a fifth,
+the least difference that people notice in a figure."""
 
 ELSEWHERE = 0.5
-"""Torso lengths between the mean places from which a gesture is shown elsewhere: raised or lowered
-by more than a forearm's half; where people show the same, they differ by half of that."""
+"""Torso lengths between the mean positions from which the place differs: half a forearm, twice the
+difference between two people's takes."""
 
 CLEARLY_LARGER = 1.0
-"""Doublings of the size from which it is told; two people differ by a third of one."""
+"""Doublings of the size from which it differs; two people differ by a third of one."""
 
 BENT_OTHERWISE = 1.5
-"""Distance by `WristBend` from which a wrist is told to be bent otherwise: about the threshold of
-that voter, three times what two people's takes of one gesture differ by."""
+"""Distance by `WristBend` from which the bend differs: about that voter's threshold, three times
+the difference between two people's takes of one gesture."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Difference:
-    """One way in which a query is not the expected gesture.
+    """One way in which a query differs from the expected gesture.
 
     Attributes
     ----------
     kind
         See `Kind`.
     share
-        In [0, 1]: of the distance between the paths, beyond what takes of one figure differ by,
-        what undoing it takes away; 0 for what is told beside it and changes no path: tempo,
-        place, size, the wrist, what was not seen.
+        In [0, 1]: the part of the path distance, beyond that between takes of one figure, that
+        undoing it removes; 0 for differences that change no path: tempo, place, size, the wrist,
+        not seen.
     landmark
-        The joint concerned most; None: all of them.
+        The landmark that differs most; None: all of them.
     start, end
-        Seconds of the query's clock between which it lies; None: throughout. What is missing lies
-        where `start` is `end`.
+        Seconds in the query's clock; None: throughout. For a missing part, `start` equals `end`.
     words
-        A clause for people.
+        The difference as a clause.
 
     """
 
@@ -96,35 +93,34 @@ class Difference:
 
 
 def find_differences(pairing: Pairing, *, sees_direction: bool) -> tuple[Difference, ...]:
-    """Tell in what ways a query is not a gesture, the most telling first.
+    """Find the differences between a query and a gesture, those with the largest share first.
 
     Parameters
     ----------
     pairing
-        The two.
+        The query and the gesture.
     sees_direction
-        Whether the voters can tell one way round from the other; to those that see drawings both
-        are the same.
+        Whether the voters distinguish directions; shape voters do not.
 
     """
     found: list[Difference] = []
     if pairing.base > DIFFERENT:
-        turned = _turned(pairing) if sees_direction else ()
-        undone = [*_exchanged(pairing), *turned, *_on_the_other_side(pairing), *_cut(pairing)]
+        turned = _try_reversal(pairing) if sees_direction else ()
+        undone = [*_try_side_swap(pairing), *turned, *_try_other_side(pairing), *_try_cuts(pairing)]
         found = [difference for difference in undone if difference.share >= LEAST_SHARE]
-        # A circle turned round is its mirror image too: of equals the first is the likeliest.
+        # A reversed circle is also its mirror image: of equal shares the first is most likely.
         found = sorted(found, key=lambda difference: -round(difference.share, 1))
-        found = found or [_bent(pairing)]
+        found = found or [_find_shape_difference(pairing)]
     if found and found[0].kind == "exchanged_sides":
-        return tuple(found)  # where and how large such a path is, says nothing of the gesture
-    beside = [*_unseen(pairing), *_elsewhere(pairing), *_otherwise_sized(pairing)]
+        return tuple(found)  # place and size of such a path are meaningless
+    beside = [*_find_unseen(pairing), *_compare_places(pairing), *_compare_sizes(pairing)]
     if sees_direction:
-        beside += [*_read_backwards(pairing), *_bent_otherwise(pairing)]
-    return (*found, *beside, *_paced(pairing))
+        beside += [*_check_traversal(pairing), *_compare_wrists(pairing)]
+    return (*found, *beside, *_compare_tempo(pairing))
 
 
-def _exchanged(pairing: Pairing) -> Iterator[Difference]:
-    """Put right what the pose model exchanged, unless it was already."""
+def _try_side_swap(pairing: Pairing) -> Iterator[Difference]:
+    """Undo side swaps of the pose model that were not repaired."""
     seen = pairing.trajectory
     changed = find_side_swaps(seen).exchanged
     if not changed.any():
@@ -140,97 +136,97 @@ def _exchanged(pairing: Pairing) -> Iterator[Difference]:
         start=float(times[0]),
         end=float(times[-1]),
         words=(
-            f"left and right were taken for each other in {changed.sum()} of {len(changed)} "
+            f"left and right were exchanged in {changed.sum()} of {len(changed)} "
             f"moments between {times[0]:.1f} and {times[-1]:.1f} s"
         ),
     )
 
 
-def _turned(pairing: Pairing) -> Iterator[Difference]:
-    """Turn the query round."""
+def _try_reversal(pairing: Pairing) -> Iterator[Difference]:
+    """Reverse the query."""
     backward = not pairing.example.traversal.backward
     left = pairing.distance(pairing.query.paths, pairing.paths_begun_anywhere(backward=backward))
-    yield _throughout(pairing, "direction", left, "it goes the other way round")
+    yield _make_difference(pairing, "direction", left, "it goes in the opposite direction")
 
 
-def _read_backwards(pairing: Pairing) -> Iterator[Difference]:
-    """Tell that the gesture fits only when read backwards."""
+def _check_traversal(pairing: Pairing) -> Iterator[Difference]:
+    """Yield a difference if the gesture is nearest when traversed backwards."""
     if pairing.example.traversal.backward:
-        words = "it goes the other way round, which costs half as much again"
-        yield _beside("direction", _busiest(pairing), None, None, words)
+        words = "it goes in the opposite direction, which multiplies the distance by 1.5"
+        yield _make_side_difference("direction", _find_busiest(pairing), None, None, words)
 
 
-def _on_the_other_side(pairing: Pairing) -> Iterator[Difference]:
-    """Show the query with the other hand, mirrored, or both."""
+def _try_other_side(pairing: Pairing) -> Iterator[Difference]:
+    """Exchange the query's hands, mirror it, or both."""
     counterparts = [other_side(name) for name in pairing.landmarks]
     paths, mirror = pairing.query.paths, np.array([-1.0, 1.0])
     examples = pairing.paths_begun_anywhere()
     left = pairing.distance(paths * mirror, examples)
-    yield _throughout(pairing, "side", left, "it is shown as its mirror image")
+    yield _make_difference(pairing, "side", left, "it is shown as its mirror image")
     if set(counterparts) == set(pairing.landmarks):
         swapped = paths[:, [pairing.landmarks.index(name) for name in counterparts]]
         left = pairing.distance(swapped, examples)
-        yield _throughout(pairing, "hand", left, "it is shown with the other hand")
+        yield _make_difference(pairing, "hand", left, "it is shown with the other hand")
         left = pairing.distance(swapped * mirror, examples)
         words = "it is shown with the other hand, as its mirror image"
-        yield _throughout(pairing, "hand", left, words)
+        yield _make_difference(pairing, "hand", left, words)
 
 
-def _throughout(pairing: Pairing, kind: Kind, left: float, words: str) -> Difference:
+def _make_difference(pairing: Pairing, kind: Kind, left: float, words: str) -> Difference:
     return Difference(
         kind=kind,
         share=pairing.share(left),
-        landmark=_busiest(pairing),
+        landmark=_find_busiest(pairing),
         start=pairing.seconds(0),
         end=pairing.seconds(-1),
         words=words,
     )
 
 
-def _cut(pairing: Pairing) -> Iterator[Difference]:
-    """Cut either end off the gesture, or off the query."""
+def _try_cuts(pairing: Pairing) -> Iterator[Difference]:
+    """Cut off either end of the gesture or of the query."""
     query, example = pairing.query.paths, pairing.example.movement.paths
     for at_end in (True, False):
-        steps, left = _best_cut(pairing, query, example, at_end)
+        steps, left = _find_best_cut(pairing, query, example, at_end)
         moment = pairing.seconds(-1 if at_end else 0)
         ends = pairing.example.time[[-steps, -1] if at_end else [0, steps - 1]]
         yield Difference(
             kind="missing",
             share=pairing.share(left),
-            landmark=_busiest(pairing),
+            landmark=_find_busiest(pairing),
             start=moment,
             end=moment,
             words=(
-                f"the {'last' if at_end else 'first'} {_percent(steps)} of "
+                f"the {'last' if at_end else 'first'} {_format_percent(steps)} of "
                 f"{pairing.example.label!r} ({min(ends):.1f} to {max(ends):.1f} s of its "
                 f"demonstration) is missing {'after' if at_end else 'before'} {moment:.1f} s"
             ),
         )
-        steps, left = _best_cut(pairing, example, query, at_end)
+        steps, left = _find_best_cut(pairing, example, query, at_end)
         span = (STEPS - steps, STEPS - 1) if at_end else (0, steps - 1)
         start, end = (pairing.seconds(step) for step in span)
         yield Difference(
             kind="extra",
             share=pairing.share(left),
-            landmark=_busiest(pairing),
+            landmark=_find_busiest(pairing),
             start=start,
             end=end,
             words=(
-                f"what is shown from {start:.1f} to {end:.1f} s is no part of "
+                f"the movement from {start:.1f} to {end:.1f} s is no part of "
                 f"{pairing.example.label!r}"
             ),
         )
 
 
-def _best_cut(
+def _find_best_cut(
     pairing: Pairing, whole: FloatArray, cut: FloatArray, at_end: bool
 ) -> tuple[int, float]:
-    """Find how many steps to cut off so that the rest is the whole of the other: with what left.
+    """Find how many steps to cut off so that the rest equals the other, and the distance left.
 
-    Where it leaves less to cut both, the one has something else there, not nothing: no cut is good.
+    No cut is returned if cutting both leaves less: then the parts differ, and none is missing.
     """
     rests, others = (
-        [_stretched(path[: STEPS - steps] if at_end else path[steps:]) for steps in CUTS]
+        [_stretch(path[: STEPS - steps] if at_end else path[steps:]) for steps in CUTS]
         for path in (cut, whole)
     )
     left = [
@@ -242,7 +238,7 @@ def _best_cut(
     return CUTS[first], left[first]
 
 
-def _stretched(paths: FloatArray) -> FloatArray:
+def _stretch(paths: FloatArray) -> FloatArray:
     """Resample ``(n, L, 2)`` equal steps to `STEPS` of them."""
     at = np.linspace(0, len(paths) - 1, STEPS)
     before = np.minimum(at.astype(np.intp), len(paths) - 2)
@@ -250,16 +246,16 @@ def _stretched(paths: FloatArray) -> FloatArray:
     return np.asarray(paths[before] * (1 - share) + paths[before + 1] * share)
 
 
-def _percent(steps: int) -> str:
+def _format_percent(steps: int) -> str:
     return f"{100 * steps / STEPS:.0f} %"
 
 
-def _bent(pairing: Pairing) -> Difference:
-    """Tell where the courses part: nothing that was undone explains it."""
+def _find_shape_difference(pairing: Pairing) -> Difference:
+    """Return where the paths differ most, if nothing that was undone explains the distance."""
     parted = find_divergence(pairing)
     where = f"where {pairing.example.label!r} {parted.expected}"
     if parted.shown == parted.expected:
-        where = f"as {pairing.example.label!r} does, but on another course"
+        where = f"as in {pairing.example.label!r}, but on another path"
     return Difference(
         kind="shape",
         share=parted.share,
@@ -273,14 +269,14 @@ def _bent(pairing: Pairing) -> Difference:
     )
 
 
-def _busiest(pairing: Pairing) -> str:
+def _find_busiest(pairing: Pairing) -> str:
     """Return the landmark that moves most in the gesture."""
     moved = (pairing.example.movement.paths**2).sum(axis=(0, 2))
     return pairing.landmarks[int(moved.argmax())]
 
 
-def _unseen(pairing: Pairing) -> Iterator[Difference]:
-    """Tell of salient joints that were not seen for longer than a gap that is bridged."""
+def _find_unseen(pairing: Pairing) -> Iterator[Difference]:
+    """Yield salient landmarks that were not seen for longer than a bridged gap."""
     trajectory = pairing.trajectory
     for name in pairing.landmarks:
         if name not in trajectory.landmarks:
@@ -291,18 +287,18 @@ def _unseen(pairing: Pairing) -> Iterator[Difference]:
         start, end = known[gap] + pairing.start, known[gap + 1] + pairing.start
         if end - start > MAX_GAP_SECONDS:
             words = f"the {humanize(name)} was not seen from {start:.1f} to {end:.1f} s"
-            yield _beside("unseen", name, float(start), float(end), words)
+            yield _make_side_difference("unseen", name, float(start), float(end), words)
 
 
-def _elsewhere(pairing: Pairing) -> Iterator[Difference]:
-    name = _busiest(pairing)
+def _compare_places(pairing: Pairing) -> Iterator[Difference]:
+    name = _find_busiest(pairing)
     units = {pairing.trajectory.unit, pairing.gesture.unit}
     here, there = (_mean_place(each, name) for each in (pairing.trajectory, pairing.gesture))
     apart = here - there
     if units != {"torso_length"} or not np.hypot(*apart) > ELSEWHERE:
         return
-    words = f"it is shown {np.hypot(*apart):.1f} torso lengths {_where(apart)}"
-    yield _beside("place", name, None, None, words)
+    words = f"it is shown {np.hypot(*apart):.1f} torso lengths {_describe_offset(apart)}"
+    yield _make_side_difference("place", name, None, None, words)
 
 
 def _mean_place(trajectory: Trajectory, name: str) -> FloatArray:
@@ -311,15 +307,15 @@ def _mean_place(trajectory: Trajectory, name: str) -> FloatArray:
     return np.asarray(known.mean(axis=0) if len(known) else np.full(2, np.nan))
 
 
-def _where(apart: FloatArray) -> str:
-    """Name the direction of ``(2,)`` in the image."""
+def _describe_offset(apart: FloatArray) -> str:
+    """Return the direction of ``(2,)`` in the image, in words."""
     x, y = apart
     if abs(y) >= abs(x):
         return "lower" if y > 0 else "higher"
     return "farther to the image's right" if x > 0 else "farther to the image's left"
 
 
-def _otherwise_sized(pairing: Pairing) -> Iterator[Difference]:
+def _compare_sizes(pairing: Pairing) -> Iterator[Difference]:
     sizes = [
         float(np.sqrt((paths**2).sum(axis=(1, 2)).mean()))
         for paths in (pairing.query.paths, pairing.example.movement.paths)
@@ -330,11 +326,11 @@ def _otherwise_sized(pairing: Pairing) -> Iterator[Difference]:
     doublings = float(np.log2(sizes[0] / sizes[1]))
     if abs(doublings) > CLEARLY_LARGER:
         how = f"{2 ** abs(doublings):.1f} times {'larger' if doublings > 0 else 'smaller'}"
-        yield _beside("size", None, None, None, f"it is shown {how}")
+        yield _make_side_difference("size", None, None, None, f"it is shown {how}")
 
 
-def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
-    """Tell which wrist is bent otherwise, and by how many degrees."""
+def _compare_wrists(pairing: Pairing) -> Iterator[Difference]:
+    """Return which wrist is bent otherwise, and by how many degrees."""
     voter = WristBend()
     shown, expected = (
         voter.describe(each).reshape(-1, 1, 3) for each in (pairing.query, pairing.example.movement)
@@ -344,7 +340,7 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
     for wrist, here, there in zip(wrists, shown, expected, strict=True):
         distance = float(voter.distances(here, there)[0])
         if np.isfinite(distance) and distance > BENT_OTHERWISE:
-            # The mean of a sine stays within 1; a rounding error need not.
+            # The mean of sines is within 1 except for rounding errors.
             bends = np.degrees(np.arcsin(np.clip([here[0, 0], there[0, 0]], -1, 1)))
             apart = float(bends[0] - bends[1])
             words = (
@@ -352,20 +348,20 @@ def _bent_otherwise(pairing: Pairing) -> Iterator[Difference]:
                 f"{'clockwise' if apart > 0 else 'counter-clockwise'} than for "
                 f"{pairing.example.label!r}"
             )
-            yield _beside("wrist", wrist, None, None, words)
+            yield _make_side_difference("wrist", wrist, None, None, words)
 
 
-def _paced(pairing: Pairing) -> Iterator[Difference]:
+def _compare_tempo(pairing: Pairing) -> Iterator[Difference]:
     shown, expected = pairing.query.duration, pairing.example.movement.duration
     if min(shown, expected) <= 0:
         return
     doublings = float(np.log2(shown / expected))
     if abs(doublings) > CLEARLY_SLOWER:
         how = f"{2 ** abs(doublings):.1f} times {'slower' if doublings > 0 else 'quicker'}"
-        yield _beside("tempo", None, None, None, f"it is shown {how} ({shown:.1f} s)")
+        yield _make_side_difference("tempo", None, None, None, f"it is shown {how} ({shown:.1f} s)")
 
 
-def _beside(
+def _make_side_difference(
     kind: Kind, landmark: str | None, start: float | None, end: float | None, words: str
 ) -> Difference:
     return Difference(kind=kind, share=0.0, landmark=landmark, start=start, end=end, words=words)

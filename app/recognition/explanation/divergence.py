@@ -1,4 +1,4 @@
-"""The course of a movement where it parts from another's: when, on which joint, and which way."""
+"""Divergence: the stretch and joint at which two aligned movements differ most."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ DIRECTIONS = (
     "up",
     "up and right",
 )
-"""Eighths of a turn in the image, x to the right, y down, from the x axis on."""
+"""Directions in steps of an eighth of a turn, from the x axis, x to the right, y down."""
 
 STANDS = 0.15
-"""Net way, as a share of the gesture's extent, below which a joint goes nowhere: a hand that turns
+"""Net displacement, as a share of the gesture's extent, below which a joint goes nowhere: it turns
 or rests; the shortest side of a figure is larger."""
 
 
 LEAST_STRETCH = STEPS // 8
-"""Steps, at least, of a stretch that is told: what is shorter is no stroke of its own."""
+"""Least steps of a stretch, the shortest stroke."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Divergence:
-    """Where a query and a gesture part most.
+    """The stretch at which a query differs most from a gesture.
 
     Attributes
     ----------
     landmark
-        The joint that costs most there.
+        The joint with the largest cost there.
     start, end
-        Seconds of the query's clock.
+        Seconds in the query's clock.
     share
-        Of the whole cost, what lies between the two.
+        Share of the whole cost between the two.
     shown, expected
-        What the joint does there, and what it does in the gesture: a verb and a direction.
+        Movement of the joint there in the query and in the gesture: a verb and a direction.
 
     """
 
@@ -58,14 +58,14 @@ class Divergence:
 
 
 def find_divergence(pairing: Pairing) -> Divergence:
-    """Find the stretch of a query where it parts most from a gesture."""
+    """Find the stretch at which a query differs most from a gesture."""
     alignment = align(pairing.query, pairing.example, pairing.landmarks, start=pairing.start)
     assert alignment is not None  # paths can always be compared
     return measure_divergence(alignment, pairing.query.paths, pairing.example.movement.paths)
 
 
 def measure_divergence(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> Divergence:
-    """Find it along an alignment of two paths ``(N, L, 2)``."""
+    """Find the divergence of two paths ``(N, L, 2)`` along their alignment."""
     costs = alignment.over_time
     first, last = find_costliest_stretch(costs.sum(axis=1))
     joint = int(costs[first : last + 1].sum(axis=0).argmax())
@@ -82,10 +82,10 @@ def measure_divergence(alignment: Alignment, query: FloatArray, gesture: FloatAr
 
 
 def find_costliest_stretch(costs: FloatArray) -> tuple[int, int]:
-    """Return the first and last step of the stretch that costs most above the average.
+    """Return the first and last step of the stretch whose costs most exceed the average.
 
-    The contiguous run with the largest sum of what exceeds the mean (Bentley 1984), widened to
-    `LEAST_STRETCH` where there are so many.
+    The contiguous run with the largest sum of costs minus their mean (Bentley 1984), widened to
+    `LEAST_STRETCH` if there are so many steps.
     """
     excess = costs - costs.mean()
     best, span = -np.inf, (0, len(costs) - 1)
@@ -101,8 +101,8 @@ def find_costliest_stretch(costs: FloatArray) -> tuple[int, int]:
 
 
 def _way(path: FloatArray, first: int, last: int) -> str:
-    """Say which way ``(N, 2)`` goes from one step to another, or that it goes nowhere."""
-    # One step on either side: a stretch of a single step has a direction too.
+    """Return the direction of a path ``(N, 2)`` between two steps in words."""
+    # One step more on either side: a stretch of a single step has a direction too.
     way = path[min(last + 1, len(path) - 1)] - path[max(first - 1, 0)]
     if np.hypot(*way) < STANDS * np.hypot(*np.ptp(path, axis=0)):
         return "goes nowhere"

@@ -1,10 +1,10 @@
-"""Explanations: why a recognition came out as it did, and what would have turned it right."""
+"""Explanations: what decided a recognition, and what would have corrected it."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,16 +14,16 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import Alignment, Example, align, find_nearest_example
+from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual import (
     NONE_NEEDED,
-    Counterfactuals,
     find_counterfactuals,
 )
 from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import write_sentence
-from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
+from app.recognition.explanation.vote_breakdown import break_down_votes
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.voters.motion.path import Path
@@ -31,71 +31,8 @@ from app.recognition.voters.motion.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Explanation:
-    """Why one recognition came out as it did.
-
-    Attributes
-    ----------
-    profile
-        The recogniser's.
-    expected
-        The gesture that should have been recognised.
-    label, nearest, confidence
-        The recogniser's answer.
-    other
-        What the expected gesture is held against: the nearest one, or the runner-up where the
-        expected one is nearest; None in a language of one gesture.
-    score, other_score
-        Of the expected gesture and of the other, see `ScoreTable.scores`; infinite where not
-        comparable.
-    novelty
-        How much farther than its thresholds allow the query lies from the expected gesture: above
-        1 it is rejected; NaN without thresholds, as in profile ``paper``.
-    fault
-        What makes the recording too poor to judge; None: nothing.
-    votes
-        Per label how many voters with weight took it.
-    verdicts
-        What every voter said, those that spoke most against the expected gesture first.
-    turned
-        What is added to `score` minus `other_score` for traversal one of the two backwards.
-    alignments
-        Of the query with the expected gesture and with the other: of the paths, and in profile
-        ``full`` of the postures.
-    differences
-        In what ways the query is not the expected gesture, the most telling first; empty where
-        the gesture has no demonstration.
-    counterfactuals
-        What would have turned it right.
-
-    """
-
-    profile: str
-    expected: str
-    label: str | None
-    nearest: str
-    confidence: float
-    other: str | None
-    score: float
-    other_score: float
-    novelty: float
-    fault: str | None
-    votes: Mapping[str, int]
-    verdicts: tuple[VoterBreakdown, ...]
-    turned: float
-    alignments: tuple[Alignment, ...]
-    differences: tuple[Difference, ...]
-    counterfactuals: Counterfactuals
-
-    @property
-    def right(self) -> bool:
-        """Whether the expected gesture was recognised."""
-        return self.label == self.expected
-
-    @property
-    def margin(self) -> float:
-        """How much nearer the expected gesture is than the other; negative: farther."""
-        return self.other_score - self.score
+class Explanation(Analysis):
+    """What decided one recognition, with a sentence; see `Analysis` for its attributes."""
 
     @property
     def sentence(self) -> str:
@@ -103,7 +40,7 @@ class Explanation:
         return write_sentence(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; what is infinite becomes None."""
+        """Return plain JSON types; infinite values become None."""
         return {
             "profile": self.profile,
             "expected": self.expected,
@@ -129,36 +66,36 @@ class Explanation:
 
 
 def explain(
-    situation: RecognitionContext, expected: str, *, with_counterfactuals: bool = True
+    context: RecognitionContext, expected: str, *, with_counterfactuals: bool = True
 ) -> Explanation:
     """Explain one recognition.
 
     Parameters
     ----------
-    situation
-        The language, the profile, the stroke, and what the stroke was cut out of.
+    context
+        The recogniser and the take.
     expected
         The label that should have been recognised.
     with_counterfactuals
-        Whether to look for what would have turned it right: by far the longest part.
+        Whether to search for counterfactuals, which takes most of the time.
 
     Raises
     ------
     OsgError
         When `expected` is no gesture of the language.
     PoseError
-        When the recording shows nothing that a gesture needs.
+        When no landmark that a gesture needs moves in the take.
 
     """
-    if expected not in situation.language.labels:
+    if expected not in context.language.labels:
         raise OsgError(
-            f"no gesture {expected!r} in {situation.language.name!r} to expect; it has "
-            f"{', '.join(situation.language.labels)}"
+            f"no gesture {expected!r} in {context.language.name!r}; it has "
+            f"{', '.join(context.language.labels)}"
         )
-    comparison, result = situation.comparison, situation.result
+    table, result = context.score_table, context.result
     at = result.gestures.index(expected)
-    other = _held_against(comparison, result, at)
-    pairings = _Pairings(situation)
+    other = _find_other(table, result, at)
+    pairings = _Pairings(context)
     wanted = with_counterfactuals and result.label != expected
     return Explanation(
         profile=result.profile,
@@ -167,15 +104,15 @@ def explain(
         nearest=result.nearest,
         confidence=result.confidence,
         other=None if other is None else result.gestures[other],
-        score=float(comparison.scores[at]),
-        other_score=math.inf if other is None else float(comparison.scores[other]),
-        novelty=float(comparison.novelty[at]),
+        score=float(table.scores[at]),
+        other_score=math.inf if other is None else float(table.scores[other]),
+        novelty=float(table.novelty[at]),
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
         verdicts=break_down_votes(
-            comparison, result, situation.language.gestures[at].thresholds, at, other
+            table, result, context.language.gestures[at].thresholds, at, other
         ),
-        turned=_difference(comparison, at, other),
+        turned=_difference(table, at, other),
         alignments=tuple(
             alignment
             for index in (at, other)
@@ -183,39 +120,39 @@ def explain(
             for alignment in pairings.alignments(index)
         ),
         differences=pairings.differences(at),
-        counterfactuals=find_counterfactuals(situation, expected) if wanted else NONE_NEEDED,
+        counterfactuals=find_counterfactuals(context, expected) if wanted else NONE_NEEDED,
     )
 
 
-def _held_against(comparison: ScoreTable, result: Recognition, expected: int) -> int | None:
+def _find_other(table: ScoreTable, result: Recognition, expected: int) -> int | None:
     """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
     nearest = result.gestures.index(result.nearest)
     if nearest != expected:
         return nearest
-    scores = comparison.scores
+    scores = table.scores
     scores[expected] = np.inf
     return int(scores.argmin()) if np.isfinite(scores).any() else None
 
 
-def _difference(comparison: ScoreTable, expected: int, other: int | None) -> float:
-    if other is None or not np.isfinite(comparison.scores[[expected, other]]).all():
+def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
+    if other is None or not np.isfinite(table.scores[[expected, other]]).all():
         return 0.0
-    return float(comparison.turned[expected] - comparison.turned[other])
+    return float(table.turned[expected] - table.turned[other])
 
 
 class _Pairings:
-    """The query of a situation beside its gestures, as the recogniser compared them."""
+    """Pairings of a context's query with its gestures, as the recogniser compared them."""
 
-    def __init__(self, situation: RecognitionContext) -> None:
-        self._gestures = situation.language.gestures
-        self._comparison = situation.comparison
-        self._full = PROFILES[situation.profile].compares_motion
-        self._start = float(situation.poses.time[0])
-        self._landmarks = situation.recognizer.landmarks
-        self._query = situation.trajectory
+    def __init__(self, context: RecognitionContext) -> None:
+        self._gestures = context.language.gestures
+        self._table = context.score_table
+        self._full = PROFILES[context.profile].compares_motion
+        self._start = float(context.poses.time[0])
+        self._landmarks = context.recognizer.landmarks
+        self._query = context.trajectory
 
     def alignments(self, index: int) -> Iterator[Alignment]:
-        """Align the query with a gesture, where both have a movement."""
+        """Yield alignments of the query with a gesture, if both have a movement."""
         example = self._example(index)
         if example is None or len(self._query) < 2:
             return
@@ -226,7 +163,7 @@ class _Pairings:
                 yield aligned
 
     def differences(self, index: int) -> tuple[Difference, ...]:
-        """Tell in what ways the query is not a gesture."""
+        """Return the differences between the query and a gesture."""
         example = self._example(index)
         if example is None:
             return ()
@@ -240,10 +177,10 @@ class _Pairings:
         return () if pairing is None else find_differences(pairing, sees_direction=self._full)
 
     def _example(self, index: int) -> Example | None:
-        gesture, traversal = self._gestures[index], self._comparison.traversals[index]
+        gesture, traversal = self._gestures[index], self._table.traversals[index]
         if traversal is None:
             return find_nearest_example(self._query, gesture, self._landmarks)
-        mirrored = bool(self._comparison.mirrored[index])
+        mirrored = bool(self._table.mirrored[index])
         return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
 
 

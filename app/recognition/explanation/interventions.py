@@ -1,7 +1,7 @@
-"""Changes: what might have been otherwise about a recognition, each a step that can be taken.
+"""Interventions: changes of a take or language for counterfactuals, which users can apply.
 
-A change turns one situation into another: another language, profile, tuning or stretch of the
-take. Whoever shows it can also apply it.
+An intervention turns one recognition context into another: with another language, profile, tuning
+or stretch of the take.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from app.recognition.text.wording import humanize_all, join_words
 SwitchName = Literal["direction", "tempo", "mirror"]
 
 Reach = Literal["take", "gesture", "language"]
-"""What a change touches: this take alone, one gesture, or how the whole language is recognised."""
+"""Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Intervention(ABC):
-    """One thing that might have been otherwise.
+    """Base of interventions.
 
     Attributes
     ----------
     size
-        In [0, 1]: how much of the thing that it touches it changes; see each kind.
+        In [0, 1]: share of its object that it changes; see each kind.
 
     """
 
@@ -44,28 +44,28 @@ class Intervention(ABC):
     @property
     @abstractmethod
     def words(self) -> str:
-        """A clause for people that follows "it would have been read so"."""
+        """The intervention as a clause after "it would have been recognised"."""
 
     @abstractmethod
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
-        """Return the situation with this change.
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
+        """Return the context with this intervention.
 
         Raises
         ------
         OsgError
-            When it cannot be made here.
+            When it cannot be applied.
 
         """
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types: the kind, what it touches, and the values to apply."""
+        """Return plain JSON types: the kind, the scope, and the values to apply."""
         values = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(self).items()}
         return {"kind": self.kind, "reach": self.reach, **values, "words": self.words}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trim(Intervention):
-    """Another stretch of the clip; its size is the share of the stroke added or taken away."""
+    """Another stretch of the clip; its size is the share of the stroke added or removed."""
 
     kind = "trim"
     reach = "take"
@@ -77,16 +77,16 @@ class Trim(Intervention):
         """See `Change`."""
         return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        # The ends are moments of frames; a rounding error must not lose them.
-        poses = situation.whole.between(self.start - 1e-6, self.end + 1e-6)
-        return replace(situation, poses=poses)
+        # The ends are times of frames; a rounding error must not drop these.
+        poses = context.whole.between(self.start - 1e-6, self.end + 1e-6)
+        return replace(context, poses=poses)
 
 
 @dataclass(frozen=True, kw_only=True)
 class VoterWeight(Intervention):
-    """Another weight for a voter, 0: off; its size is the share of all say that moves."""
+    """Another weight factor of a voter, 0: off; its size is the weight that moves."""
 
     kind = "voter_weight"
     reach = "language"
@@ -98,11 +98,11 @@ class VoterWeight(Intervention):
         """See `Change`."""
         return describe_weight(self.voter, self.factor)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        weights = {**situation.tuning.weights}
+        weights = {**context.tuning.weights}
         weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
-        return situation.with_tuning(replace(situation.tuning, weights=weights))
+        return context.with_tuning(replace(context.tuning, weights=weights))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,14 +118,14 @@ class Simplification(Intervention):
         """See `Change`."""
         return describe_simplification(self.tolerance)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_tuning(replace(situation.tuning, simplification=self.tolerance))
+        return context.with_tuning(replace(context.tuning, simplification=self.tolerance))
 
 
 @dataclass(frozen=True, kw_only=True)
 class KeypointRepair(Intervention):
-    """Bad keypoints repaired, or left as they are; its size is the share of such moments."""
+    """Keypoints repaired or not; its size is the share of moments that a repair changes."""
 
     kind = "keypoint_repair"
     reach = "language"
@@ -136,14 +136,14 @@ class KeypointRepair(Intervention):
         """See `Change`."""
         return describe_repair(self.on)
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_tuning(replace(situation.tuning, keypoints_repaired=self.on))
+        return context.with_tuning(replace(context.tuning, keypoints_repaired=self.on))
 
 
 @dataclass(frozen=True, kw_only=True)
 class OtherProfile(Intervention):
-    """Another set of voters: all is changed, its size is 1."""
+    """Another profile; its size is 1."""
 
     kind = "profile"
     reach = "language"
@@ -154,14 +154,14 @@ class OtherProfile(Intervention):
         """See `Change`."""
         return f"with the profile {self.profile}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        return situation.with_profile(self.profile)
+        return context.with_profile(self.profile)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SalientKeypoints(Intervention):
-    """Other salient keypoints of a gesture; its size is the share of either that is not both."""
+    """Other salient keypoints of a gesture; its size is the share not common to both choices."""
 
     kind = "salient"
     reach = "gesture"
@@ -174,15 +174,15 @@ class SalientKeypoints(Intervention):
         followed = join_words(humanize_all(self.salient))
         return f"with {followed} as the salient keypoints of {self.label!r}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        gesture = situation.language.gesture(self.label)
-        return situation.with_gesture(gesture.with_salient(self.salient))
+        gesture = context.language.gesture(self.label)
+        return context.with_gesture(gesture.with_salient(self.salient))
 
 
 @dataclass(frozen=True, kw_only=True)
 class SwitchPosition(Intervention):
-    """Another position of one of a gesture's three switches: its size is a third."""
+    """Another position of one of a gesture's three switches; its size is a third."""
 
     kind = "switch"
     reach = "gesture"
@@ -195,16 +195,16 @@ class SwitchPosition(Intervention):
         """See `Change`."""
         return f"with the switch {self.switch} of {self.label!r} {self.position}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        gesture = situation.language.gesture(self.label)
+        gesture = context.language.gesture(self.label)
         switches = replace(gesture.switches, **{self.switch: self.position})
-        return situation.with_gesture(replace(gesture, switches=switches))
+        return context.with_gesture(replace(gesture, switches=switches))
 
 
 @dataclass(frozen=True, kw_only=True)
 class NewDemonstration(Intervention):
-    """The take as the gesture's demonstration: the gesture is another, its size is 1."""
+    """The take as the gesture's demonstration; its size is 1."""
 
     kind = "demonstration"
     reach = "gesture"
@@ -215,13 +215,13 @@ class NewDemonstration(Intervention):
         """See `Change`."""
         return f"with this take as the demonstration of {self.label!r}"
 
-    def apply(self, situation: RecognitionContext) -> RecognitionContext:
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
-        before = situation.language.gesture(self.label)
+        before = context.language.gesture(self.label)
         made = Gesture.from_demonstration(
             self.label,
-            situation.poses,
+            context.poses,
             description=before.description,
             command=before.command,
         )
-        return situation.with_gesture(replace(made, switches=before.switches))
+        return context.with_gesture(replace(made, switches=before.switches))

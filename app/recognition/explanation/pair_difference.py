@@ -1,4 +1,4 @@
-"""A contrast: in what two demonstrations of a language differ, and when."""
+"""Pair difference: how and when the demonstrations of two gestures differ."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from app.recognition.text.wording import humanize
 
 @dataclass(frozen=True, eq=False)
 class PairDifference:
-    """How one demonstration differs from another.
+    """The difference of one demonstration from another.
 
     Attributes
     ----------
     words
-        A clause for people, to be read after "differs in this: ".
+        The difference as a clause, in which "it" is the first demonstration.
     stroke
-        Seconds of the first demonstration's clock between which the two part most.
+        Seconds in the first demonstration's clock between which the two differ most.
     alignment
-        Which moment of the first corresponds to which of the other, by their paths.
+        DTW alignment of the two demonstrations' paths.
 
     """
 
@@ -34,7 +34,7 @@ class PairDifference:
 
 
 def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference | None:
-    """Tell how the demonstration of one gesture differs from that of another.
+    """Compare the demonstrations of two gestures.
 
     Parameters
     ----------
@@ -63,9 +63,9 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     assert alignment is not None  # paths can always be compared
     parted = measure_divergence(alignment, pairing.query.paths, pairing.example.movement.paths)
     named = find_differences(pairing, sees_direction=True)
-    little = (
-        f"little, and most from {parted.start:.1f} to {parted.end:.1f} s, when the "
-        f"{humanize(parted.landmark)} {parted.shown}"
+    slightly = (
+        f"it is almost the same movement and differs most from {parted.start:.1f} to "
+        f"{parted.end:.1f} s, when the {humanize(parted.landmark)} {parted.shown}"
     )
-    words = named[0].words if named else little
+    words = named[0].words if named else slightly
     return PairDifference(words, (parted.start, parted.end), alignment)

@@ -1,4 +1,4 @@
-"""A pairing: a query and one gesture brought together, to find out how they differ."""
+"""Pairing: a query and one gesture on the same landmarks, the input of `differences`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.path import Path
 
 ALIKE = Path.within
-"""Path distance between two people's takes of one figure, the mean."""
+"""Mean path distance between two people's takes of one figure."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,15 +30,15 @@ class Pairing:
     landmarks
         L landmarks: the gesture's salient ones and their counterparts on the other side.
     trajectory
-        The query as the voters see it, with all of its landmarks.
+        The query as the voters compare it, with all of its landmarks.
     query
         Its movement.
     example
         The gesture as the query was compared with it.
     gesture
-        The gesture's trajectory, from the same side.
+        The gesture's trajectory, mirrored if the example is.
     starts
-        Readings in the direction shown: where else the figure may begin.
+        Traversals in the demonstrated direction: other starting points of the figure.
     start
         Second of the query's clock at which its movement begins.
 
@@ -62,8 +62,8 @@ class Pairing:
         mirrored: bool = False,
         start: float = 0.0,
     ) -> Pairing | None:
-        """Bring a condensed query and a gesture together; None where one has no movement."""
-        side = gesture.mirrored() if mirrored and gesture.trajectory is not None else gesture
+        """Return the pairing of a condensed query and a gesture; None where one has no movement."""
+        side = gesture.mirror() if mirrored and gesture.trajectory is not None else gesture
         if side.trajectory is None or len(side.trajectory) < 2 or len(trajectory) < 2:
             return None
         both = {*side.salient, *(other_side(name) for name in side.salient)}
@@ -84,7 +84,7 @@ class Pairing:
 
     @cached_property
     def base(self) -> float:
-        """The path distance between the two as they were compared."""
+        """The path distance of the two as they were compared."""
         return self.distance(self.query.paths, [self.example.movement.paths])
 
     def distance(self, paths: FloatArray, others: Sequence[FloatArray]) -> float:
@@ -94,25 +94,25 @@ class Pairing:
         return float(voter.distances(described[0], np.stack(described[1:])).min())
 
     def share(self, left: float) -> float:
-        """Return what share of the distance between takes of other figures is gone.
+        """Return the share of the path distance that undoing a difference removes.
 
         Parameters
         ----------
         left
-            The distance after something has been undone. What two people's takes of one figure
-            differ by is no fault, and is left out of it as of the distance before.
+            The distance after undoing it. The distance between two people's takes of one figure
+            is subtracted from both distances.
 
         """
         fault = self.base - ALIKE
         return min(1.0, max(0.0, 1.0 - max(0.0, left - ALIKE) / fault)) if fault > 0 else 0.0
 
     def paths_begun_anywhere(self, *, backward: bool = False) -> list[FloatArray]:
-        """Return the gesture's paths from each of its starts, as shown or the other way round."""
+        """Return the gesture's paths from each starting point, forwards or backwards."""
         shown = np.empty_like(self.example.movement.paths)
         shown[self.example.traversal.order] = self.example.movement.paths
         step = -1 if backward else 1
         return [shown[traversal.order[::step]] for traversal in self.starts]
 
     def seconds(self, step: int) -> float:
-        """Return the second of the query's clock at which it reached a step."""
+        """Return the time of a step in the query's clock, in seconds."""
         return self.start + float(self.query.reached[step])

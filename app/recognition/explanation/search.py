@@ -1,4 +1,4 @@
-"""Candidates: changes worth trying, in series of which the smallest that helps is wanted."""
+"""Counterfactual search: lists interventions to try, in series of increasing size."""
 
 from __future__ import annotations
 
@@ -27,48 +27,46 @@ from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import find_salient_landmarks
 
 TRIM_STEP = 0.1
-"""Share of the stroke by which it is trimmed earlier or later, step by step."""
+"""Step of trimming, as a share of the stroke."""
 
 TRIM_STEPS = 4
-"""Steps at either end: what is cut by more than that at one end is hardly a gesture's transit."""
+"""Most steps at either end; a longer part is hardly a transit."""
 
 WEIGHTS = (0.5, 0.0, 2.0, 4.0)
-"""Factors on a voter's weight: halved, off, doubled, and once more."""
+"""Weight factors that are tried."""
 
 TOLERANCES = (0.5, 2.0, 4.0)
-"""Factors on the tolerance of the drawings: finer than a pixel's half, up to a small stroke."""
+"""Factors on the drawings' simplification tolerance that are tried."""
 
 Series = list[Intervention]
 
 
-def list_interventions(situation: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Give all changes worth trying.
+def list_interventions(context: RecognitionContext, expected: str) -> Iterator[Series]:
+    """Yield all interventions to try.
 
     Parameters
     ----------
-    situation
-        In which `expected` was not recognised.
+    context
+        A context in which `expected` was not recognised.
     expected
         A label of its language.
 
     Returns
     -------
-    Series of changes of one kind; of each the smallest that helps is wanted.
+    Series of interventions of one kind, in the order in which to try them.
 
     """
-    yield from _trims(situation)
-    yield from _weights(situation, expected)
-    yield from _drawings(situation)
-    yield from _repairs(situation)
-    yield from _gestures(situation, expected)
-    yield [
-        OtherProfile(size=1.0, profile=other) for other in PROFILES if other != situation.profile
-    ]
+    yield from _trims(context)
+    yield from _weights(context, expected)
+    yield from _drawings(context)
+    yield from _repairs(context)
+    yield from _gestures(context, expected)
+    yield [OtherProfile(size=1.0, profile=other) for other in PROFILES if other != context.profile]
 
 
-def _trims(situation: RecognitionContext) -> Iterator[Series]:
-    """Move the start, the end, or both, within what the stroke was cut out of."""
-    time, whole = situation.poses.time, situation.whole.time
+def _trims(context: RecognitionContext) -> Iterator[Series]:
+    """Move the start, the end, or both, within the take."""
+    time, whole = context.poses.time, context.whole.time
     start, end = float(time[0]), float(time[-1])
     duration = end - start
     shifts = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * duration
@@ -90,27 +88,29 @@ def _trims(situation: RecognitionContext) -> Iterator[Series]:
         ]
 
 
-def _weights(situation: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Weigh each voter that has a say less, and more, where that promises to help."""
-    gesture = situation.language.labels.index(expected)
-    vote = situation.recognizer.vote
-    for voter, share in situation.result.weights.items():
+def _weights(context: RecognitionContext, expected: str) -> Iterator[Series]:
+    """Decrease and increase the weight of each voter if that may make the expected gesture win."""
+    gesture = context.language.labels.index(expected)
+    vote = context.recognizer.vote
+    for voter, share in context.result.weights.items():
         if 0 < share < 1:
             for factors in (WEIGHTS[:2], WEIGHTS[2:]):
                 yield [
-                    VoterWeight(size=_moved(share, factor), voter=voter, factor=factor)
+                    VoterWeight(
+                        size=_measure_moved_weight(share, factor), voter=voter, factor=factor
+                    )
                     for factor in factors
-                    if vote.may_win(situation.comparison, situation.result, gesture, voter, factor)
+                    if vote.may_win(context.score_table, context.result, gesture, voter, factor)
                 ]
 
 
-def _moved(share: float, factor: float) -> float:
-    """Return what share of all say changes hands when one voter's share is multiplied."""
+def _measure_moved_weight(share: float, factor: float) -> float:
+    """Return the total weight that moves when one voter's weight is multiplied."""
     return abs(share * factor / (1 - share + share * factor) - share)
 
 
-def _drawings(situation: RecognitionContext) -> Iterator[Series]:
-    now = situation.tuning.simplification
+def _drawings(context: RecognitionContext) -> Iterator[Series]:
+    now = context.tuning.simplification
     if now > 0:
         for factors in (TOLERANCES[:1], TOLERANCES[1:]):
             yield [
@@ -119,28 +119,28 @@ def _drawings(situation: RecognitionContext) -> Iterator[Series]:
             ]
 
 
-def _repairs(situation: RecognitionContext) -> Iterator[Series]:
-    """Repair bad keypoints, or leave them, where there are any."""
-    share = float(repair_poses(situation.poses).touched.mean())
+def _repairs(context: RecognitionContext) -> Iterator[Series]:
+    """Switch the repair of keypoints on or off, if it changes any."""
+    share = float(repair_poses(context.poses).touched.mean())
     if share > 0:
-        yield [KeypointRepair(size=share, on=not situation.recognizer.repairs)]
+        yield [KeypointRepair(size=share, on=not context.recognizer.repairs)]
 
 
-def _gestures(situation: RecognitionContext, expected: str) -> Iterator[Series]:
-    """Change the expected gesture, or the one it was taken for."""
-    moved = find_salient_landmarks(situation.trajectory)
-    for label in dict.fromkeys((expected, situation.result.nearest)):
-        gesture = situation.language.gesture(label)
+def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
+    """Change the expected gesture, or the one that was recognised."""
+    moved = find_salient_landmarks(context.trajectory)
+    for label in dict.fromkeys((expected, context.result.nearest)):
+        gesture = context.language.gesture(label)
         if gesture.trajectory is None:
             continue
         yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
-        if PROFILES[situation.profile].compares_motion:
-            yield from _switches(situation, label, expected=label == expected)
+        if PROFILES[context.profile].compares_motion:
+            yield from _switches(context, label, expected=label == expected)
     yield [NewDemonstration(size=1.0, label=expected)]
 
 
 def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
-    """Follow one keypoint less, one that the query moves more, or just those that it moves."""
+    """Drop one salient landmark, add one that the query moves, or use just those that it moves."""
     now = {*gesture.salient}
     others = [now - {name} for name in now] + [now | {name} for name in moved] + [moved]
     return [
@@ -154,21 +154,21 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
     ]
 
 
-def _switches(situation: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
-    """Let less count of the expected gesture, and more of the one it was taken for.
+def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
+    """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
-    Only where it can matter: which way round, from which side or how fast the other one was read.
+    Only switches that affect this recognition: direction, mirror image or tempo.
     """
-    comparison, at = situation.comparison, situation.language.labels.index(label)
-    traversal = comparison.traversals[at]
-    slower = comparison.distances[comparison.voters.index("tempo"), at] > CLEARLY_SLOWER
+    table, at = context.score_table, context.language.labels.index(label)
+    traversal = table.traversals[at]
+    slower = table.distances[table.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
     positions: dict[SwitchName, tuple[Switch, bool]] = {
         "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
-        "mirror": ("on" if expected else "off", bool(comparison.mirrored[at]) != expected),
+        "mirror": ("on" if expected else "off", bool(table.mirrored[at]) != expected),
     }
-    switches = situation.language.gesture(label).switches
+    switches = context.language.gesture(label).switches
     for switch, (position, matters) in positions.items():
         if matters and getattr(switches, switch) != position:
             yield [SwitchPosition(size=1 / 3, label=label, switch=switch, position=position)]

@@ -1,4 +1,4 @@
-"""Verdicts: what each voter said about the gesture that was expected and another one."""
+"""Vote breakdown: each voter's distances to, and contributions for, two gestures."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ class VoterBreakdown:
     voter, unit
         Its name, and what a distance of 1 means.
     weight
-        Its share in the decision, see `Recognition.weights`.
+        Its weight, see `Recognition.weights`.
     vote
-        The gesture it takes; None where it can compare nothing.
+        Its nearest gesture; None where it can compare nothing.
     wrong
-        Whether it takes another gesture than the expected one, and has weight.
+        Whether it has weight and votes for another gesture than the expected one.
     distance, other_distance
         To the expected gesture and to the other, in its unit; infinite where not comparable.
     limit
         Its threshold for the expected gesture, in its unit (`rejection`); None where it has none.
     against
-        What it adds to the expected gesture's score minus what it adds to the other's: positive
-        where it speaks against the expected one. Over all voters, with `Explanation.turned`,
-        these add up to the difference of the scores.
+        Its contribution to the expected gesture's score minus that to the other's: positive if it
+        is against the expected one. Summed over all voters, with `Explanation.turned`, this is the
+        difference of the scores.
 
     """
 
@@ -48,7 +48,7 @@ class VoterBreakdown:
     against: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; what is infinite becomes None."""
+        """Return plain JSON types; infinite values become None."""
         return {
             name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in vars(self).items()
@@ -56,29 +56,29 @@ class VoterBreakdown:
 
 
 def break_down_votes(
-    comparison: ScoreTable,
+    table: ScoreTable,
     result: Recognition,
     thresholds: Mapping[str, float],
     expected: int,
     other: int | None,
 ) -> tuple[VoterBreakdown, ...]:
-    """Gather what every voter said, those that spoke most against the expected gesture first.
+    """Break a recognition down by voter, those most against the expected gesture first.
 
     Parameters
     ----------
-    comparison, result
-        What was compared, and what was decided.
+    table, result
+        Score table and result of the recognition.
     thresholds
         Of the expected gesture, see `Gesture.thresholds`.
     expected, other
-        Indices of the two gestures; without another one nothing speaks against the expected.
+        Indices of the two gestures; without another one `against` is 0.
 
     """
     units = {voter.name: voter.unit for voter in PROFILES[result.profile].voters}
     label = result.gestures[expected]
     given = []
     for row, voter in enumerate(result.voters):
-        distances, shares = comparison.distances[row], comparison.contributions[row]
+        distances, shares = table.distances[row], table.contributions[row]
         vote = result.votes.get(voter)
         against = 0.0 if other is None else float(shares[expected]) - float(shares[other])
         given.append(

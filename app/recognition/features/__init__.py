@@ -1,1 +1,1 @@
-"""Features of a movement: its trajectory image and contour, its motion, its traversals."""
+"""Features: trajectory images and their contours, movements and their traversals."""

@@ -1,4 +1,4 @@
-"""The outline of a drawing: the outer contours that four of the paper's voters measure."""
+"""Contours: the outer contours of a trajectory image, which four of the paper's voters measure."""
 
 from __future__ import annotations
 
@@ -12,13 +12,10 @@ import numpy.typing as npt
 from app.recognition.features.morphology import close_image
 
 CLOSING_DIAMETER = 28
-"""Diameter in pixels of the disc that closes gaps between strokes before the outline is taken.
+"""Diameter in pixels of the disc that closes gaps between strokes before contours are taken.
 
-Nobody ends a circle exactly where it began. Without closing, the outline of an almost closed
-circle runs along the inside of its stroke as well, and its area falls to that of the stroke. This
-disc bridges ends of strokes up to 20 pixels apart, a tenth of the drawing, about the closing error
-of figures drawn freely in the air. On air-drawn digits (`benchmarks/shared_sets.py`,
-user-independent) closing gains 12 points.
+A circle that is not quite closed would have the area of its stroke only. The disc bridges 20
+pixels, a tenth of the drawing; on air-drawn digits of other people closing gains 12 points.
 """
 
 
@@ -48,7 +45,7 @@ class Contour:
     def of(cls, image: BinaryImage) -> Contour:
         """Close gaps and follow the outer contours (Suzuki and Abe 1985).
 
-        The closer the image is cut around the strokes, the less there is to do.
+        The cost grows with the area of the image, so crop it to the strokes first.
         """
         height, width = image.shape
         border = CLOSING_DIAMETER // 2 + 1

@@ -1,4 +1,4 @@
-"""The median of a few numbers."""
+"""Median of a few numbers, faster than NumPy's."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from app.recognition.poses.sequence import FloatArray
 def median(values: FloatArray) -> float:
     """Return the median of ``(N,)`` finite numbers, N > 0.
 
-    The value is numpy's. Of a hundred numbers `numpy.median` needs ten times as long, for it first
-    finds out about axes, masks and NaN, and recognition asks for several.
+    The same value as `numpy.median`, which takes ten times as long for a hundred numbers because
+    it handles axes, masks and NaN.
     """
     ordered, half = np.sort(values), len(values) // 2
     return float((ordered[half] + ordered[-half - 1]) / 2)

@@ -1,7 +1,7 @@
-"""Moments of a drawing's strokes, for all voters that measure them.
+"""Image moments of a drawing's strokes, shared by all voters that use them.
 
 Strokes are runs of pixels, a few in each row of the image. The sum of a power of x over a run is
-the difference of two entries of a table, so that only the runs' ends are looked at.
+the difference of two entries of a table, so that only the ends of runs are read.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy.typing as npt
 from app.recognition.poses.sequence import FloatArray
 
 HIGHEST_POWER = 8
-"""Of x and of y: the highest degree that a voter asks for."""
+"""Highest power of x and of y, the highest degree that a voter needs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +39,9 @@ class StrokeMoments:
 
     @classmethod
     def of(cls, image: npt.NDArray[np.uint8]) -> StrokeMoments:
-        """Measure an image ``(height, width)`` with strokes, where it is not 0.
+        """Measure an image ``(height, width)``, whose strokes are not 0.
 
-        The closer it is cut around them, the less there is to do.
+        The cost grows with the area of the image, so crop it to the strokes first.
         """
         height, width = image.shape
         # A column of background on the right ends every run within its row.

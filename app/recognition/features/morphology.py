@@ -1,7 +1,7 @@
-"""Morphological closing of binary images by a disc, all pixels at once.
+"""Morphological closing of binary images by a disc, on all pixels at once.
 
-The image is one large integer, a bit a pixel, row after row; shifting it moves the whole image, and
-``or`` unites images. The result is that of ``cv2.morphologyEx``, with which the check of a language
+The image is one large integer with a bit a pixel, row after row: a shift moves the whole image, and
+``or`` unites two images. The result equals ``cv2.morphologyEx``, with which the check of a language
 of eight gestures takes 1.5 to 2 times as long.
 """
 
@@ -16,16 +16,16 @@ import numpy.typing as npt
 
 
 def close_image(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.uint8]:
-    """Dilate by a disc, then erode by it: gaps that the disc does not fit into are filled.
+    """Close an image: dilate by a disc, then erode by it, which fills gaps narrower than the disc.
 
     Parameters
     ----------
     image
         ``(height, width)``, 0 for background, with a border of more than half of `diameter` empty
-        pixels on all sides: what is moved out of a row at one end comes in at the other. The width
-        is a multiple of 8, so that a row ends with a byte.
+        pixels on all sides, because a shift moves pixels across the ends of rows. The width is a
+        multiple of 8, so that rows end at bytes.
     diameter
-        Of OpenCV's ellipse, pixels; even, so that the disc has a pixel in its middle; at least 4.
+        Of OpenCV's ellipse, pixels; even, so that the disc has a central pixel; at least 4.
 
     Returns
     -------
@@ -34,23 +34,23 @@ def close_image(image: npt.NDArray[np.uint8], diameter: int) -> npt.NDArray[np.u
     """
     row = image.shape[1]
     everything = (1 << image.size) - 1
-    bits = _dilated(int.from_bytes(np.packbits(image).tobytes(), "big"), row, diameter)
-    bits = everything ^ (_dilated(everything ^ (bits & everything), row, diameter) & everything)
+    bits = _dilate(int.from_bytes(np.packbits(image).tobytes(), "big"), row, diameter)
+    bits = everything ^ (_dilate(everything ^ (bits & everything), row, diameter) & everything)
     unpacked = np.frombuffer(bits.to_bytes(image.size // 8, "big"), dtype=np.uint8)
     return np.unpackbits(unpacked).reshape(image.shape) * np.uint8(255)
 
 
-def _dilated(bits: int, row: int, diameter: int) -> int:
-    """Unite an image with itself moved by every pixel of the disc; `row`: bits in a row.
+def _dilate(bits: int, row: int, diameter: int) -> int:
+    """Dilate an image: unite it with itself moved by every pixel of the disc; `row`: bits in a row.
 
     The disc is a union of rectangles, from high and narrow to low and wide. All of them are at
-    least three rows high: moving the image down by one row once spares every one of them a move.
-    What is united lies `up` rows and `aside` pixels farther on, which is taken back at the end.
+    least three rows high, so the image moved down by one row is computed once for all of them.
+    The union is offset by `up` rows and `aside` pixels until the last shift.
     """
     stages = _stages(diameter)
     up = sum(stage.lower for stage in stages if stage.by_moving)
     reached, united, height, aside = 0, 0, diameter // 2, diameter // 2
-    strip = _moved(bits, 0, 1, row)
+    strip = _extend_union(bits, 0, 1, row)
     for stage in stages:
         height -= stage.lower
         if stage.by_moving:
@@ -59,14 +59,14 @@ def _dilated(bits: int, row: int, diameter: int) -> int:
             aside += stage.wider
             continue
         up += stage.lower
-        united = _moved(united, 1, 1 + 2 * stage.lower, row)
-        strip, reached = _moved(strip, 2 * reached, 2 * stage.reach, 1), stage.reach
+        united = _extend_union(united, 1, 1 + 2 * stage.lower, row)
+        strip, reached = _extend_union(strip, 2 * reached, 2 * stage.reach, 1), stage.reach
         united |= strip << up * row + aside - reached
-    return _moved(united, 1, 2 * height, row) >> (up + height) * row + aside
+    return _extend_union(united, 1, 2 * height, row) >> (up + height) * row + aside
 
 
-def _moved(bits: int, done: int, wanted: int, step: int) -> int:
-    """Unite what was moved by 0 to `done` steps to what is moved by 0 to `wanted`."""
+def _extend_union(bits: int, done: int, wanted: int, step: int) -> int:
+    """Extend the union of an image moved by 0 to `done` steps to 0 to `wanted` steps."""
     while done < wanted:
         more = min(done + 1, wanted - done)
         bits |= bits << more * step
@@ -76,17 +76,17 @@ def _moved(bits: int, done: int, wanted: int, step: int) -> int:
 
 @dataclass(frozen=True)
 class _Stage:
-    """The next of the disc's rectangles.
+    """One of the disc's rectangles, relative to the one before.
 
     Attributes
     ----------
     reach
         Pixels to either side.
     wider, lower
-        By how much, to either side and up and down, than the one before.
+        Pixels by which it extends farther to either side, and less up and down.
     by_moving
-        Whether moving what is united to either side, and up and down, adds just this one. That
-        takes two moves, where making and adding it takes three or more.
+        Whether moving the union so far to either side, and up and down, adds exactly this
+        rectangle. That takes two shifts; drawing the rectangle takes three or more.
 
     """
 
@@ -115,7 +115,7 @@ def _stages(diameter: int) -> tuple[_Stage, ...]:
 
 
 def _pixels(rectangles: list[tuple[int, int]], less: int) -> set[tuple[int, int]]:
-    """Return the pixels of some rectangles around the origin, each `less` high up and down."""
+    """Return the pixels of rectangles around the origin, each made `less` lower up and down."""
     return {
         (x, y)
         for reach, down in rectangles

@@ -1,8 +1,7 @@
-"""A movement: what the trajectory voters see of a recording.
+"""Movements: trajectories resampled to equal steps, the input of the motion voters.
 
-Gestures are compared step by step, so all recordings are brought to the same number of steps and
-the same landmarks: those that are salient in any gesture of the language, and the limbs of the
-arms they belong to.
+Gestures are compared step by step, so all trajectories get the same number of steps and the same
+landmarks: those that are salient in any gesture of the language, and the limbs of their arms.
 """
 
 from __future__ import annotations
@@ -21,25 +20,25 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
 STEPS = 32
-"""Steps that a movement is resampled to.
+"""Steps of a movement: a figure of ten strokes has three points a stroke.
 
-A figure of ten strokes still has three points a stroke. 64 steps cost four times as much and
-changed no result by more than sampling error; $1 uses 64 for single strokes, Jackknife 16.
+64 steps cost four times as much and changed no result by more than sampling error; $1 uses 64 for
+single strokes, Jackknife 16.
 """
 
 SMOOTHING_SECONDS = 0.065
 """Standard deviation of the Gaussian that smooths paths: two frames of a 30 Hz camera.
 
-Strokes of an arm last several tenths of a second; a pose model's jitter lives from frame to frame.
+Strokes of an arm last several tenths of a second; a pose model's jitter changes every frame.
 """
 
 SMOOTHING_SHARE = 0.03
-"""Most of the duration that the smoothing's standard deviation may be: a quick gesture, or a clock
-that does not run in seconds, keeps its shape."""
+"""Largest standard deviation as a share of the duration, so that a quick gesture, or one whose
+clock is not in seconds, keeps its shape."""
 
 FARTHEST = 40.0
-"""Exponent of the Gaussian beyond which moments weigh alike: next to nothing, for ``exp(-40)`` is
-below the rounding of 1. Numbers so small that a double loses digits take four times as long.
+"""Largest exponent of the Gaussian: ``exp(-40)`` is below the rounding of 1, and numbers so small
+that a double is denormal take four times as long.
 """
 
 LIMBS = (
@@ -63,8 +62,8 @@ class Movement:
     Attributes
     ----------
     paths
-        ``(N, L, 2)``: the followed landmarks, each relative to its own mean place. A landmark
-        that was never seen stays at its place: what is not seen does not move.
+        ``(N, L, 2)``: the followed landmarks, each relative to its own mean position. A landmark
+        that was never seen is 0 throughout, as if it did not move.
     limbs
         ``(N, B, 2)``: vectors along the arms' bones; NaN where an end was not seen.
     reached
@@ -78,9 +77,10 @@ class Movement:
 
     @cached_property
     def figure(self) -> FloatArray:
-        """`paths` about their mean places, in sizes: divided by the root of the mean square.
+        """`paths` in sizes: divided by the root of the mean square.
 
-        The mean over the steps of the summed squares of all landmarks; what does not move stays.
+        The mean over the steps of the squares summed over all landmarks; paths without motion
+        are unchanged.
         """
         return normalize_size(self.paths - np.add.reduce(self.paths) / len(self.paths))
 
@@ -96,12 +96,12 @@ class Movement:
         """Seconds from the first to the last step."""
         return float(self.reached[-1] - self.reached[0])
 
-    def reordered(self, order: npt.NDArray[np.intp]) -> Movement:
-        """Take the steps in another order, each as long as before."""
+    def reorder(self, order: npt.NDArray[np.intp]) -> Movement:
+        """Return the movement with its steps in another order, each as long as before."""
         return replace(self, paths=self.paths[order], limbs=self.limbs[order])
 
     def with_sides_exchanged(self, landmarks: Sequence[str]) -> Movement:
-        """Take what each landmark and limb of the left does for the right one's, and vice versa.
+        """Return the movement with the left and right landmarks and limbs exchanged.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class Movement:
 def normalize_size(vectors: FloatArray) -> FloatArray:
     """Divide ``(N, K, 2)`` by the root of the mean over the steps of the summed squares.
 
-    NaN adds nothing; what has no size stays as it is.
+    NaN adds nothing; vectors of size 0 are unchanged.
     """
     coordinates = vectors.reshape(-1)
     total = float(coordinates @ coordinates)
@@ -141,7 +141,7 @@ def find_followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]
 
 
 def list_limbs(landmarks: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the bones of the arms that the landmarks belong to, by the parts at their ends."""
+    """Return the bones of the arms that the landmarks belong to, as pairs of their ends' names."""
     sides = _sides_of([parse_body_part(name) for name in landmarks])
     return tuple((side + inner, side + outer) for side in sides for inner, outer in LIMBS)
 
@@ -151,14 +151,14 @@ def _sides_of(parts: Sequence[str]) -> tuple[str, ...]:
 
 
 def _index_across(names: Sequence[str], name: str) -> int:
-    """Return where the counterpart on the other side stands, or the name itself without one."""
+    """Return the index of a name's counterpart on the other side, or its own without one."""
     other = other_side(name)
     return names.index(other if other in names else name)
 
 
 @lru_cache(maxsize=1024)
 def parse_body_part(landmark: str) -> str:
-    """Name the part of the body as MediaPipe does: ``WristRight`` is ``right_wrist``."""
+    """Return the name of a landmark in MediaPipe's form: ``WristRight`` as ``right_wrist``."""
     words = re.findall(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])", landmark)
     lower = [word.lower() for word in words]
     side = [word for word in lower if word + "_" in SIDES]
@@ -166,30 +166,30 @@ def parse_body_part(landmark: str) -> str:
 
 
 def find_hands(landmarks: Sequence[str]) -> int:
-    """Count the bodies' parts that move by themselves: all landmarks of one arm are one."""
+    """Count the parts of the body that move independently: all landmarks of one arm are one."""
     parts = [parse_body_part(name) for name in landmarks]
     return len({next((side for side in SIDES if part.startswith(side)), part) for part in parts})
 
 
 def uses_both_sides(landmarks: Sequence[str]) -> bool:
-    """Tell whether every landmark's counterpart on the other side is among them."""
+    """Return whether every landmark's counterpart on the other side is among them."""
     parts = {parse_body_part(name) for name in landmarks}
     return all(other_side(part) in parts for part in parts)
 
 
 def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement:
-    """Smooth a trajectory, and resample it along the joint path of the landmarks it shows.
+    """Build a movement: smooth a trajectory and resample it along the landmarks' joint path.
 
     Parameters
     ----------
     trajectory
         With at least two moments.
     landmarks
-        To follow, see `find_followed_landmarks`; those that were never seen stay still.
+        The followed ones, see `find_followed_landmarks`; those never seen do not move.
 
     """
     places = _places(trajectory.landmarks, tuple(landmarks))
-    smooth = _smoothed(
+    smooth = _smooth(
         replace(trajectory, landmarks=places.needed, xy=trajectory.xy.take(places.columns, axis=1))
     )
     followed, path = places.followed, places.paths
@@ -198,7 +198,7 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
         followed, path = followed[seen], path[seen]
     if len(followed):
         shown = replace(smooth, xy=smooth.xy.take(followed, axis=1))
-        reached = shown.moments_in_arc_length(STEPS)
+        reached = shown.find_arc_length_moments(STEPS)
     else:
         reached = np.full(STEPS, smooth.time[0])
     even = smooth.at(reached).xy
@@ -212,18 +212,19 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Where the landmarks of a trajectory belong in a movement.
+    """Indices that map the landmarks of a trajectory to a movement.
 
     Attributes
     ----------
     needed, columns
-        The landmarks that are followed or at an end of a bone, and where the trajectory has them.
+        Names of the landmarks that are followed or end a bone, and their columns in the trajectory.
     followed, paths
-        Of the landmarks followed that the trajectory has, the places in `needed` and in the paths.
+        Of the followed landmarks in the trajectory: indices in `needed`, and in the paths.
     shown, inner, outer
-        Of the bones that it has both ends of, the places in the limbs, and of the ends in `needed`.
+        Of the bones with both ends in the trajectory: indices in the limbs, and of both ends in
+        `needed`.
     bones
-        How many there are in all.
+        Number of all bones.
 
     """
 
@@ -263,8 +264,8 @@ def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
     )
 
 
-def _smoothed(trajectory: Trajectory) -> Trajectory:
-    """Average over neighbouring moments; a gap is bridged by what lies on either side."""
+def _smooth(trajectory: Trajectory) -> Trajectory:
+    """Smooth with a Gaussian in time; gaps are bridged by straight lines."""
     time = trajectory.time
     width = min(SMOOTHING_SECONDS, SMOOTHING_SHARE * float(time[-1] - time[0]))
     scaled = time / (np.sqrt(2.0) * max(width, 1e-9))
@@ -272,16 +273,16 @@ def _smoothed(trajectory: Trajectory) -> Trajectory:
     np.multiply(weights, weights, out=weights)
     np.minimum(weights, FARTHEST, out=weights)
     np.exp(np.negative(weights, out=weights), out=weights)
-    # Beside the coordinates a column of ones, whose average is the sum of the weights.
+    # A column of ones beside the coordinates: its average is the sum of the weights.
     beside = np.ones((len(time), 2 * len(trajectory.landmarks) + 1))
-    beside[:, :-1] = _bridged(trajectory).reshape(len(time), -1)
+    beside[:, :-1] = _bridge_gaps(trajectory).reshape(len(time), -1)
     averaged = weights @ beside
     xy = averaged[:, :-1] / averaged[:, -1:]
     return replace(trajectory, xy=xy.reshape(trajectory.xy.shape))
 
 
-def _bridged(trajectory: Trajectory) -> FloatArray:
-    """Return the places ``(T, K, 2)`` without gaps; NaN for landmarks that were never seen."""
+def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
+    """Return ``(T, K, 2)`` without gaps; NaN for landmarks that were never seen."""
     xy, time = trajectory.xy, trajectory.time
     finite = np.isfinite(xy)
     if finite.all():

@@ -1,4 +1,4 @@
-"""PNG of two-tone images, the same bytes on every machine."""
+"""PNG images in two tones, with the same bytes on every machine."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _HEADER = struct.Struct(">IIBBBBB")
 
 
 def encode_png(image: BinaryImage) -> bytes:
-    """Write an image of 0 and 255, at most 65 535 bytes at a bit a pixel, as PNG.
+    """Return an image of 0 and 255, at most 65 535 bytes at a bit a pixel, as PNG.
 
-    One bit a pixel, and deflate without compression: compressed bytes differ between builds of
-    zlib, and a language file must come out the same everywhere.
+    Stored with one bit a pixel and without compression: compressed bytes differ between builds
+    of zlib, and a language file must have the same bytes everywhere.
     """
     height, width = image.shape
     rows = np.packbits(image > 0, axis=1)
@@ -31,12 +31,12 @@ def encode_png(image: BinaryImage) -> bytes:
 
 
 def decode_png(content: bytes, size: tuple[int, int]) -> BinaryImage:
-    """Read a PNG of the given height and width; what is brighter than half becomes 255.
+    """Read a PNG of the given height and width; pixels brighter than half become 255.
 
     Raises
     ------
     ValueError
-        When it is no PNG or of another size; nothing is decoded before the size is known.
+        When it is no PNG or of another size; the size is checked before decoding.
 
     """
     if content[:8] != _SIGNATURE or content[12:16] != b"IHDR" or len(content) < 33:

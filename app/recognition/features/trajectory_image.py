@@ -1,4 +1,4 @@
-"""The trajectory image: a gesture's salient paths as white strokes on black, 224 x 224."""
+"""Trajectory images: a gesture's salient paths as white strokes on black, 224 x 224."""
 
 from __future__ import annotations
 
@@ -19,21 +19,20 @@ SIZE = 224
 """Width and height in pixels: the published implementation's, so that its files can be read."""
 
 MARGIN = 16
-"""Border in pixels around the paths: room for half a stroke, and for people to see a frame."""
+"""Border in pixels around the paths: room for half a stroke, and a visible frame."""
 
 STROKE_WIDTH = 9
-"""Pixels. A twentieth of the drawing, the wobble of a hand in free air: two drawings of one figure
-then overlap, and moments of area vary less. Wider strokes would run together in small loops."""
+"""Pixels. A twentieth of the drawing, as much as a free hand wobbles, so that two drawings of one
+figure overlap. Wider strokes would close small loops."""
 
 SIMPLIFICATION = 4.0
-"""Tolerance of Ramer-Douglas-Peucker in pixels: just below half a stroke, so that no corner that
-can be seen is lost, and jitter within the stroke is."""
+"""Tolerance of Ramer-Douglas-Peucker in pixels: just below half a stroke, so that visible corners
+are kept and jitter within the stroke is removed."""
 
 MIN_EXTENT = 0.1
 """Least extent, in the trajectory's unit, that is drawn.
 
-The drawing fills its frame, so anything smaller, 5 cm of a diver's sway, would be blown up to
-look like a gesture.
+Drawings are scaled to fill the image: 5 cm of a diver's sway would look like a gesture.
 """
 
 _SUBPIXEL_BITS = 4
@@ -41,14 +40,14 @@ _SUBPIXEL_BITS = 4
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What a gesture looks like: the paths of its salient keypoints, and their image.
+    """The drawing of a gesture: the paths of its salient landmarks, and their image.
 
     Attributes
     ----------
     image
         The ``(224, 224)`` trajectory image; all zero when nothing moved.
     trajectory
-        The salient keypoints' trajectory, or None for a gesture of which only the image is
+        The salient landmarks' trajectory, or None for a gesture of which only the image is
         known (imported from the published implementation's files).
 
     """
@@ -58,38 +57,37 @@ class Drawing:
 
     @cached_property
     def strokes(self) -> BinaryImage:
-        """The part of the image that has strokes, ``(0, 0)`` where none has."""
+        """The image cropped to its strokes; ``(0, 0)`` without strokes."""
         left, top, width, height = cv2.boundingRect(self.image)
         return self.image[top : top + height, left : left + width]
 
     @cached_property
     def contour(self) -> Contour:
-        """The outer contours of the strokes, followed once for all voters that measure them."""
+        """The outer contours of the strokes, computed once for all voters."""
         return Contour.of(self.strokes)
 
     @cached_property
     def moments(self) -> StrokeMoments:
-        """The moments of the strokes, measured once for all voters that are made of them."""
+        """The image moments of the strokes, computed once for all voters."""
         return StrokeMoments.of(self.strokes)
 
     @property
     def empty(self) -> bool:
-        """Tell whether there is no stroke in the image."""
+        """Whether the image has no stroke."""
         return self.strokes.size == 0
 
 
 def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Drawing:
     """Draw the paths of a trajectory's landmarks into one image.
 
-    The one way an image comes about, for reference and query alike: all landmarks share one
-    frame, which is scaled to fill the image with its aspect kept; each unbroken stretch of a
-    path is simplified by Ramer-Douglas-Peucker (Ramer 1972, Douglas and Peucker 1973) and drawn
-    as one stroke.
+    References and queries are drawn alike: all landmarks share one scale, which fills the image
+    and keeps the aspect; each stretch of a path without gaps is simplified by
+    Ramer-Douglas-Peucker (Ramer 1972, Douglas and Peucker 1973) and drawn as one stroke.
 
     Parameters
     ----------
     trajectory
-        Of the salient keypoints only.
+        Of the salient landmarks only.
     simplification
         Tolerance of Ramer-Douglas-Peucker in pixels.
 
@@ -120,7 +118,7 @@ def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Draw
 
 
 def _strokes(path: FloatArray, known: npt.NDArray[np.bool_]) -> list[FloatArray]:
-    """Split ``(T, 2)`` where it is not known, ``(T,)``, into unbroken stretches."""
+    """Split a path ``(T, 2)`` into stretches without gaps, by where it is known, ``(T,)``."""
     ends = np.flatnonzero(np.diff(known, prepend=False, append=False))
     return [path[start:end] for start, end in ends.reshape(-1, 2)]
 
@@ -133,17 +131,17 @@ def _draw_stroke(image: BinaryImage, corners: FloatArray) -> None:
 
 
 def simplify(path: FloatArray, tolerance: float) -> FloatArray:
-    """Keep the corners of a path (Ramer 1972, Douglas and Peucker 1973).
+    """Simplify a path to its corners (Ramer 1972, Douglas and Peucker 1973).
 
-    OpenCV's `approxPolyDP` is not used: of an open path that ends near where it began, it loses
-    the last side.
+    OpenCV's `approxPolyDP` is not used: it loses the last side of an open path that ends near its
+    start.
 
     Parameters
     ----------
     path
         ``(T, 2)`` without NaN.
     tolerance
-        Largest distance of a point left out from the line that replaces it, in the path's unit.
+        Largest distance of a removed point from the line that replaces it, in the path's unit.
 
     Returns
     -------
@@ -152,7 +150,7 @@ def simplify(path: FloatArray, tolerance: float) -> FloatArray:
     """
     kept = [0, len(path) - 1]
     open_stretches = [(0, len(path) - 1)]
-    # Most stretches have a dozen points, for which plain numbers are faster than arrays.
+    # Most stretches have a dozen points: plain numbers are faster than arrays.
     points = path.tolist()
     while open_stretches:
         first, last = open_stretches.pop()
@@ -164,14 +162,14 @@ def simplify(path: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _farthest_from_line(points: list[list[float]], first: int, last: int) -> tuple[int, float]:
-    """Return which point between two lies farthest from the segment that joins them, and how far.
+    """Return the point between two that is farthest from the segment joining them, and how far.
 
-    Of equally far ones the first; where there is none between, `first` and 0.
+    Of equally far points the first; without points between, `first` and 0.
     """
     (start_x, start_y), (end_x, end_y) = points[first], points[last]
     along_x, along_y = end_x - start_x, end_y - start_y
-    # What is the same for all points is taken out of the loop, where most of the time goes: their
-    # products with the segment are not counted from its start, and all squares have this factor.
+    # Most time goes into this loop, so constants are moved out of it: the products are not taken
+    # from the segment's start, and all squares keep the common factor.
     length = along_x * along_x + along_y * along_y or 1.0
     passed_start = start_x * along_x + start_y * along_y
     passed_end = end_x * along_x + end_y * along_y
@@ -184,7 +182,7 @@ def _farthest_from_line(points: list[list[float]], first: int, last: int) -> tup
             area = x * along_y - y * along_x - beside_start
             square = area * area
         else:
-            # Before the start the segment's nearest place is its start, beyond the end its end.
+            # Before its start or beyond its end, the segment's nearest point is that end.
             if passed <= passed_start:
                 x -= start_x
                 y -= start_y

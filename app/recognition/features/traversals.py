@@ -1,9 +1,8 @@
-"""Readings: the ways in which the same figure may be drawn, or seen.
+"""Traversals: the ways to run through one figure, by direction, starting point or exchanged sides.
 
-Asked for a circle, people begin at the top or at the side, and go round either way; a line is
-drawn from either end. Of a figure of both hands, a tracker may take the left for the right from
-the first frame to the last. Unless the language needs the difference, all of them are the same
-gesture.
+People begin a circle at the top or at the side and draw it either way round; a line is drawn from
+either end. A pose model may exchange left and right throughout a take. Unless the language needs
+the difference, all traversals are the same gesture.
 """
 
 from __future__ import annotations
@@ -17,46 +16,44 @@ import numpy.typing as npt
 from app.recognition.features.motion import STEPS, Movement
 
 BACKWARD_PENALTY = 1.5
-"""Factor on the distances to a gesture read backwards.
+"""Factor on the distances to a gesture traversed backwards.
 
-People repeat the way they were shown more often than they turn it round, so among two gestures
-about as near the one in its own direction wins. On other people's digits and commands the
-accuracy is flat from 1.2 to 2 and falls beyond.
+People keep the demonstrated direction more often than they reverse it. On other people's digits
+and commands the accuracy is flat from 1.2 to 2 and falls beyond.
 """
 
 EXCHANGED_PENALTY = 2.0
-"""Factor on the distances to a gesture whose sides are read as exchanged.
+"""Factor on the distances to a gesture with exchanged sides.
 
-Of two-handed figures on file, one in fourteen has left and right exchanged throughout. From 1.5 to
-2 they are named right either way; below, spreading wings begins to look like folding them.
+One in fourteen recorded two-handed figures has left and right exchanged throughout. They are
+recognised with factors from 1.5 to 2; below, spreading wings begins to look like folding them.
 """
 
 STARTS = 8
-"""Places at which a closed figure may begin: every eighth of its way; the elastic band of a
-quarter covers what lies between."""
+"""Starting points of a closed figure: every eighth of its path; the DTW band of a quarter covers
+what lies between."""
 
 MAX_OPENING = 0.3
-"""Widest gap between start and end of a closed figure, as a share of its extent: people miss
-the start of a circle drawn in the air by up to a fifth of its diameter, that of a 9 or a 6 by
-half."""
+"""Widest gap between start and end of a closed figure, as a share of its extent: people end a
+circle in the air up to a fifth of its diameter from its start, a 9 or a 6 up to half."""
 
 MIN_BREADTH = 0.25
-"""Least mean distance between the way out and the way back of a closed figure, as a share of its
+"""Least mean distance between the first and second half of a closed figure, as a share of its
 extent: a line drawn to and fro ends where it began and is no loop."""
 
 
 @dataclass(frozen=True, eq=False)
 class Traversal:
-    """One way in which a movement may be read.
+    """One way to run through a movement.
 
     Attributes
     ----------
     order
         ``(STEPS,)`` indices of the steps.
     backward
-        Whether the direction is turned round.
+        Whether the direction is reversed.
     exchanged
-        Whether what the left hand does is taken for the right one's, and the other way round.
+        Whether left and right are exchanged.
 
     """
 
@@ -72,8 +69,8 @@ class Traversal:
         )
 
     def of(self, movement: Movement, landmarks: Sequence[str]) -> Movement:
-        """Read a movement, whose paths are of the named landmarks, in this way."""
-        ordered = movement.reordered(self.order)
+        """Return a movement in this traversal; `landmarks` are the names of its paths."""
+        ordered = movement.reorder(self.order)
         return ordered.with_sides_exchanged(landmarks) if self.exchanged else ordered
 
 
@@ -84,17 +81,17 @@ SIDES_EXCHANGED = Traversal(AS_SHOWN.order, exchanged=True)
 def list_traversals(
     movement: Movement, *, hands: int, both_ways: bool, either_side: bool = False
 ) -> tuple[Traversal, ...]:
-    """Return the traversals of a gesture: as shown first.
+    """Return the traversals of a gesture, first the one that was demonstrated.
 
     Parameters
     ----------
     movement
         The demonstration.
     hands
-        How many parts of the body move by themselves, see `find_hands`. Only a figure of one is
-        read in another order: with two hands, opening is the reverse of closing.
+        How many parts of the body move independently, see `find_hands`. Only figures of one are
+        reordered: with two hands, opening is the reverse of closing.
     both_ways
-        Whether it may be read backwards.
+        Whether it may be traversed backwards.
     either_side
         Whether left and right may have been exchanged.
 
@@ -109,7 +106,7 @@ def list_traversals(
 
 
 def is_closed(movement: Movement) -> bool:
-    """Tell whether a movement ends where it began, and encloses something."""
+    """Return whether a movement ends near its start and encloses an area."""
     paths = movement.paths
     extent = float(np.linalg.norm(np.ptp(paths, axis=0)))
     opening = float(np.linalg.norm(paths[0] - paths[-1]))

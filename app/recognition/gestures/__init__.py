@@ -1,1 +1,1 @@
-"""A gesture and its options: switches, the profile, the tuning."""
+"""Gestures: demonstrations and their options (switches), profiles and tuning."""

@@ -1,4 +1,4 @@
-"""A gesture: one demonstration, and what recognition compares with."""
+"""Gestures: one demonstration, with the image, descriptors and thresholds derived from it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from app.recognition.voters.shape.shape_voter import describe_drawing
 from app.recognition.voters.shape.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
-"""Characters: more than fits on a gesture's card, far less than breaks a layout or a log line."""
+"""Characters: more than fits on a gesture's card, and still one line of a log."""
 
 MAX_TEXT_LENGTH = 2000
 """Characters of a description or of a command in words: a card, not a manual."""
@@ -50,16 +50,16 @@ MAX_COMMAND_BYTES = 4000
 """Size of a command object as JSON: parameters of an action, within the 40 kB of a gesture."""
 
 MAX_COMMAND_DEPTH = 16
-"""Nesting of a command object; with the file around it, still below what the reader admits."""
+"""Nesting of a command object: within a language file, below the JSON reader's limit."""
 
 MIN_FRAMES = 3
-"""Two points are a straight line whatever was shown; a shape needs a third."""
+"""Least frames of a demonstration: two points are always a straight line."""
 
 MAX_MOMENTS = 100
 """Most moments kept of a demonstration; longer ones are resampled evenly in time.
 
-With `MAX_LANDMARKS` it keeps a gesture's file entry below 40 kB whatever its length. Ten moments
-a second still follow the arm in a gesture of ten seconds.
+With `MAX_LANDMARKS` it keeps a gesture's file entry below 40 kB. In a gesture of ten seconds, ten
+moments a second are left, enough to follow the arm.
 """
 
 MAX_LANDMARKS = 16
@@ -83,20 +83,20 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
         "fourier_harmonics": HARMONICS,
     }
 )
-"""What images and descriptors in a language file were made with; where a file's differ, they are
-made anew."""
+"""Settings that images and descriptors in a language file depend on; where a file's differ, they
+are computed again."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rates:
-    """How often a gesture's thresholds are expected to err.
+    """Estimated error rates of a gesture's thresholds.
 
     Attributes
     ----------
     miss
-        Share of other people's takes of the gesture that are refused.
+        Share of other people's takes of the gesture that are rejected.
     false_alarm
-        Share of the movements that mean nothing (`foreign`) that are taken for the gesture.
+        Share of out-of-vocabulary movements (`negatives`) that are recognised as the gesture.
 
     """
 
@@ -106,33 +106,33 @@ class Rates:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Gesture:
-    """A labelled gesture as it stands in a language.
+    """A labelled gesture of a language.
 
     Attributes
     ----------
     label
-        What recognition answers.
+        The label of recognitions.
     salient
-        The salient keypoints in alphabetical order; empty only in imported gestures, which then
+        The salient landmarks in alphabetical order; empty only in imported gestures, which then
         match nothing.
     image
-        ``(224, 224)``: the salient keypoints' paths, 255 on black.
+        ``(224, 224)``: the salient landmarks' paths, 255 on black.
     trajectory
         The demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None when
         the gesture was imported from a file that has only images.
     descriptors
-        Per voter's name its description of the image; empty when the image is.
+        Per voter's name its descriptor of the image; empty when the image is.
     thresholds
-        Per voter's name the distance at which the gesture is rejected, the others being as far
-        beyond theirs (`rejection`); empty until its language is calibrated.
+        Per voter's name the distance at which the gesture is rejected, if the others exceed theirs
+        by the same factor (`rejection`); empty until its language is calibrated.
     rates
-        How often the thresholds are expected to err; None where that is not known.
+        Estimated error rates of the thresholds; None where not known.
     description
-        What the gesture looks like or means, for people.
+        What the gesture looks like or means, in words.
     command
         What the robot should do: free text, a JSON object, or None.
     switches
-        What about the gesture counts: its direction, tempo and side.
+        Whether the gesture's direction, tempo and mirror image count.
 
     Raises
     ------
@@ -153,7 +153,7 @@ class Gesture:
     switches: Switches = AUTOMATIC
 
     def __post_init__(self) -> None:
-        """Check texts, command and image, and freeze what could be changed."""
+        """Validate texts, command and image, and freeze mutable fields."""
         object.__setattr__(self, "label", check_label(self.label))
         object.__setattr__(self, "description", check_text(self.description))
         object.__setattr__(self, "command", check_command(self.command))
@@ -182,23 +182,23 @@ class Gesture:
         description: str = "",
         command: str | dict[str, Any] | None = None,
     ) -> Gesture:
-        """Make a gesture of one demonstration.
+        """Create a gesture from one demonstration.
 
         Parameters
         ----------
         label
-            What recognition shall answer.
+            The label of recognitions.
         poses
-            The demonstration, without the salutes around it; bad keypoints are repaired first.
+            The demonstration, without the salutes around it; it is repaired first.
         salient
-            Landmarks to follow in place of those that `find_salient_landmarks` would choose.
+            Landmarks to use instead of those chosen by `find_salient_landmarks`.
         description, command
             See the class.
 
         Raises
         ------
         GestureError
-            When the recording is too short, nothing moves in it, or `salient` does not fit it.
+            When the demonstration is too short, nothing moves in it, or `salient` does not fit it.
 
         """
         label = check_label(label)
@@ -218,13 +218,13 @@ class Gesture:
             names = choose_landmarks(trajectory, salient)
         if poor := find_fault(seen, names):
             raise GestureError(
-                f"the demonstration of {label!r} is too poor to learn from: {poor}; show the "
+                f"the demonstration of {label!r} is too poor to use: {poor}; show the "
                 f"gesture again in view of the camera, or choose another range of the clip"
             )
-        kept = condense(trajectory).select(_kept_landmarks(trajectory, names))
+        kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
-            raise GestureError(_nothing_moves(label, trajectory, names))
+            raise GestureError(_explain_nothing_moves(label, trajectory, names))
         return cls(
             label=label,
             salient=names,
@@ -237,12 +237,12 @@ class Gesture:
 
     @property
     def drawing(self) -> Drawing:
-        """The gesture as voters see it."""
+        """The gesture's drawing, which shape voters compare."""
         seen = None if self.trajectory is None else self.trajectory.select(self.salient)
         return Drawing(self.image, seen)
 
-    def mirrored(self) -> Gesture:
-        """Return the mirror image, shown with the other hand.
+    def mirror(self) -> Gesture:
+        """Return the mirror image, as if shown with the other hand.
 
         Raises
         ------
@@ -255,7 +255,7 @@ class Gesture:
                 f"{self.label!r} was imported without its demonstration and cannot be mirrored: "
                 f"define it again from a clip"
             )
-        trajectory = self.trajectory.once("mirrored", self.trajectory.mirrored)
+        trajectory = self.trajectory.compute_once("mirrored", self.trajectory.mirror)
         salient = tuple(other_side(name) for name in self.salient)
         drawing = draw(trajectory.select(sorted(salient)))
         return replace(
@@ -267,7 +267,7 @@ class Gesture:
         )
 
     def with_salient(self, salient: Sequence[str]) -> Gesture:
-        """Return the gesture with other salient keypoints, drawn and described anew.
+        """Return the gesture with other salient landmarks, with image and descriptors recomputed.
 
         Raises
         ------
@@ -280,12 +280,12 @@ class Gesture:
                 f"the gesture {self.label!r} was imported without its demonstration, so its "
                 f"salient keypoints cannot be changed; save it again from a clip"
             )
-        return replace(self, salient=choose_landmarks(self.trajectory, salient)).redrawn()
+        return replace(self, salient=choose_landmarks(self.trajectory, salient)).redraw()
 
-    def redrawn(self, simplification: float = SIMPLIFICATION) -> Gesture:
-        """Make image and descriptors anew from the demonstration, see `draw`.
+    def redraw(self, simplification: float = SIMPLIFICATION) -> Gesture:
+        """Return the gesture with image and descriptors recomputed from its demonstration.
 
-        Where only an image is known, it stays, and the descriptors are made from it.
+        Where only an image is known, it is kept, and the descriptors are computed from it.
         """
         drawing = self.drawing
         if drawing.trajectory is not None and self.salient:
@@ -295,29 +295,30 @@ class Gesture:
 
 
 def condense(trajectory: Trajectory) -> Trajectory:
-    """Bridge gaps, bound the number of moments and round, the same for reference and query.
+    """Condense a trajectory: bridge gaps, limit the number of moments, and round.
 
-    Recognition from a saved file then equals recognition before saving, to the last bit.
+    Applied to references and queries, so that recognition with a saved file equals recognition
+    before saving, to the last bit.
 
     Returns
     -------
     A trajectory of at most `MAX_MOMENTS` moments, rounded to `DIGITS` decimals.
 
     """
-    bounded = trajectory.filled()
+    bounded = trajectory.fill_gaps()
     if len(bounded) > MAX_MOMENTS:
-        bounded = bounded.resampled_in_time(MAX_MOMENTS)
-    # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
+        bounded = bounded.resample_in_time(MAX_MOMENTS)
+    # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
     return replace(
         bounded, xy=np.round(bounded.xy, DIGITS) + 0.0, time=np.round(bounded.time, DIGITS) + 0.0
     )
 
 
-def _kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
-    """Choose the landmarks worth keeping, in the trajectory's order."""
+def _choose_kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
+    """Choose the landmarks to keep, in the trajectory's order."""
     names = trajectory.landmarks
     upper = [name for name in names if name in UPPER_BODY and name not in salient]
-    # Of a set with legs and a face only the arms count; names of other sets may all be arms.
+    # Of MediaPipe's set only the upper body is kept; names of other sets may all be arms.
     known = frozenset(POSE_LANDMARKS) if upper else frozenset()
     others = [name for name in names if name not in salient and name not in known]
     kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
@@ -361,7 +362,7 @@ def check_text(text: Any) -> str:
 
 
 def check_command(command: Any) -> str | dict[str, Any] | None:
-    """Return a command; an object is copied, so that nobody changes it later.
+    """Return a command; an object is copied, so that later changes do not affect it.
 
     Raises
     ------
@@ -382,7 +383,7 @@ def check_command(command: Any) -> str | dict[str, Any] | None:
     return read
 
 
-def _nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
+def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
     moved = measure_displacements(trajectory)
     most = max(salient or moved, key=lambda name: moved[name])
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"

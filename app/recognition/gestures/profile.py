@@ -1,4 +1,4 @@
-"""Profiles: which voters decide together, and how."""
+"""Profiles: sets of voters with a decision rule."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ProfileName = Literal["paper", "full"]
 
 @dataclass(frozen=True)
 class Profile:
-    """What distinguishes a profile from the others.
+    """The properties of a profile.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Profile:
     voters
         In the order of results.
     rejects
-        Whether it rejects what is no gesture, by thresholds of the language.
+        Whether it rejects movements that are no gesture, by thresholds of the language.
     compares_motion
         Whether it compares movements, not drawings alone.
     repairs_keypoints
@@ -48,7 +48,7 @@ PROFILES: Final[dict[str, Profile]] = {
 """By name. ``paper``: the seven voters of the paper, majority vote. ``full``: all voters, fused."""
 
 DEFAULT_PROFILE: Final[ProfileName] = "full"
-"""Profile of a language whose author chose none: it rejects what is no gesture."""
+"""Profile of a language whose author chose none: it rejects movements that are no gesture."""
 
 
 def find_profile(name: str) -> Profile:

@@ -1,4 +1,4 @@
-"""Switches: what about a gesture counts, where the author knows better than the recogniser."""
+"""Switches: whether a gesture's direction, tempo and mirror image count, as its author chooses."""
 
 from __future__ import annotations
 
@@ -12,21 +12,20 @@ Switch = Literal["auto", "on", "off"]
 
 @dataclass(frozen=True, kw_only=True)
 class Switches:
-    """What about one gesture counts, in profile ``full``.
+    """The switches of one gesture, used by profile ``full``.
 
     Attributes
     ----------
     direction
-        Whether the way it is drawn counts. ``auto``: where another gesture of the language is
-        the same figure turned round.
+        Whether the direction counts. ``auto``: if another gesture of the language is the same
+        figure in the opposite direction.
     tempo
-        Whether its duration counts. ``auto``: where another gesture of the language is the same
+        Whether its duration counts. ``auto``: if another gesture of the language is the same
         movement, clearly slower or quicker.
     mirror
         ``on``: its mirror image, with the other hand, is the same gesture. ``auto``, ``off``: it
-        is not; what one hand means, the other does not mean unless the author says so. ``off``
-        also insists on the sides of a two-handed gesture, which are otherwise read as exchanged
-        where nothing else in the language is meant by it.
+        is not. ``off`` also refuses two-handed gestures with exchanged sides, which ``auto``
+        accepts where no other gesture of the language is meant by that.
 
     Raises
     ------
@@ -40,7 +39,7 @@ class Switches:
     mirror: Switch = "auto"
 
     def __post_init__(self) -> None:
-        """Check the words."""
+        """Validate the values."""
         for name, value in vars(self).items():
             if value not in get_args(Switch):
                 raise GestureError(f"{name} must be auto, on or off, got {value!r}")
@@ -51,16 +50,16 @@ AUTOMATIC = Switches()
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:
-    """What about a gesture counts in its language, the automatic switches decided.
+    """Whether a gesture's direction, tempo and sides count in its language, with `auto` resolved.
 
     Attributes
     ----------
     direction
-        Whether it is read only the way round it was shown.
+        Whether only the demonstrated direction is accepted.
     tempo
         Whether its duration counts.
     sides
-        Whether its left and right are never read as exchanged.
+        Whether exchanged left and right are refused.
 
     """
 

@@ -1,4 +1,4 @@
-"""Tuning: what can be turned on a recogniser without touching the language."""
+"""Tuning: changes to a profile that are stored with a language, such as weight factors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
 
 MAX_FACTOR = 100.0
-"""Most that a voter's say is multiplied by: beside it, the others have none left."""
+"""Largest weight factor: with it, the other voters no longer matter."""
 
 MAX_SIMPLIFICATION = 50.0
 """Pixels of 224: beyond it every drawing is a line or two."""
@@ -23,17 +23,17 @@ MAX_SIMPLIFICATION = 50.0
 
 @dataclass(frozen=True, kw_only=True)
 class Tuning:
-    """How a recogniser deviates from its profile; nothing, unless told otherwise.
+    """Changes to a recogniser's profile; none by default.
 
     Attributes
     ----------
     weights
-        Factor per voter's name on what it has to say, 0: off. Voters not named keep 1.
+        Weight factor per voter's name, 0: off. Voters not named have 1.
     simplification
         Tolerance of Ramer-Douglas-Peucker, in pixels of the trajectory image, for references and
         queries alike.
     keypoints_repaired
-        Whether bad keypoints of a query are repaired (`repair`); None: as the profile does,
+        Whether the landmarks of queries are repaired (`repair`); None: as the profile, of which
         ``full`` does and ``paper`` does not.
 
     Raises
@@ -49,7 +49,7 @@ class Tuning:
     keypoints_repaired: bool | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers, and freeze the weights."""
+        """Validate the numbers, and freeze the weights."""
         limits = [(name, value, MAX_FACTOR) for name, value in self.weights.items()]
         for name, value, most in (
             *limits,
@@ -61,10 +61,7 @@ class Tuning:
 
     @property
     def words(self) -> str:
-        """A clause for people that follows "recognised".
-
-        Of a voter that keeps its weight there is nothing to say.
-        """
+        """The tuning as a clause after "recognised"; weight factors of 1 are not mentioned."""
         words = [describe_weight(*each) for each in self.weights.items() if each[1] != 1]
         if self.simplification != SIMPLIFICATION:
             words.append(describe_simplification(self.simplification))
@@ -73,12 +70,12 @@ class Tuning:
         return join_words(words) or "as the profile does"
 
     def weights_of(self, voters: Sequence[str]) -> FloatArray:
-        """Return the ``(V,)`` factors of the voters.
+        """Return the voters' weight factors, ``(V,)``.
 
         Raises
         ------
         OsgError
-            When a weight is for none of them, or all of them are off.
+            When a factor is for another voter, or all of them are 0.
 
         """
         unknown = sorted(set(self.weights) - set(voters))
@@ -96,7 +93,7 @@ AS_THE_PROFILE = Tuning()
 
 
 def describe_weight(voter: str, factor: float) -> str:
-    """Say what a factor on a voter's weight means."""
+    """Return a weight factor in words."""
     name = humanize(voter)
     if factor == 0:
         return f"without the voter {name}"
@@ -104,12 +101,12 @@ def describe_weight(voter: str, factor: float) -> str:
 
 
 def describe_simplification(tolerance: float) -> str:
-    """Say how coarse drawings are, by their tolerance in pixels."""
+    """Return a simplification tolerance in words."""
     return f"with drawings simplified by {tolerance:g} pixels"
 
 
 def describe_repair(repaired: bool) -> str:
-    """Say what happens to bad keypoints."""
+    """Return in words whether keypoints are repaired."""
     if repaired:
         return "with exchanged sides put right and jumps left out"
     return "with the keypoints left as the pose model saw them"

@@ -1,1 +1,1 @@
-"""The check of a language before the dive: simulated trials, findings, remedies."""
+"""Health check of a language: simulated trials, findings and remedies."""

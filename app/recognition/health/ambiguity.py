@@ -1,8 +1,8 @@
-"""Ambiguities of a grammar, each with the shortest message that shows it.
+"""Ambiguities: messages of a grammar with two meanings, each with the shortest example.
 
-They are found exactly: two walks over the automaton read the same gestures side by side, and what
-one of them has said beyond the other is carried along (Weber and Klemm 1995 do the same to tell
-whether a transducer is a function). Without an ambiguity here, every message has one meaning.
+The search is exact: two walks over the automaton read the same gestures, and the difference of
+their parses is tracked (as Weber and Klemm 1995 decide whether a transducer is a function). A
+grammar without ambiguities here gives every message one meaning.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from app.recognition.health.finding import Finding
-from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.text.wording import join_words
 
@@ -22,19 +22,19 @@ AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "u
 
 @dataclass(frozen=True)
 class Ambiguity:
-    """Something that the robot could understand in two ways.
+    """An ambiguity of a grammar.
 
     Attributes
     ----------
     kind
-        ``same_sequence``: two phrases are shown alike. ``overlap``: a gesture of one phrase may be
-        a slot's value or something else. ``run_together``: where one phrase of a message ends and
-        the next begins cannot be told. ``prefix``: a message is over, and might go on.
+        ``same_sequence``: two phrases have the same gestures. ``overlap``: a gesture of one phrase
+        may be a slot's value or something else. ``run_together``: the boundary between two phrases
+        of a message is ambiguous. ``prefix``: a complete message could continue.
         ``unreachable``: every sequence of a phrase is ambiguous, so that it is never understood.
     phrases
-        Names of the phrases it is about, each once.
+        Names of the phrases concerned, each once.
     gestures
-        The message that shows it.
+        An example message.
     message
         What is wrong and what to do, in a sentence.
 
@@ -46,15 +46,15 @@ class Ambiguity:
     message: str
 
     def finding(self) -> Finding:
-        """Return it as a warning of the health report."""
+        """Return the ambiguity as a finding of the health report."""
         return Finding(f"phrases_{self.kind}", (), self.message, below_bar=True)
 
 
 class _Lead(NamedTuple):
     """What each of two walks has said that the other has not, of which one at least is nothing."""
 
-    one: Reading
-    other: Reading
+    one: Parse
+    other: Parse
 
 
 _DIFFERENT = None
@@ -64,11 +64,11 @@ _Pair = tuple[int, int, _Lead | None]
 """Two positions reached by the same gestures, and how their parses differ."""
 
 _Walk = tuple[int, frozenset[tuple[int, _Lead | None]]]
-"""A position, and every other way to read the gestures that led there."""
+"""A position, and every other parse of the gestures that led there."""
 
 
 def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
-    """Find what is ambiguous about a grammar, with one message for each pair of phrases."""
+    """Find the ambiguities of a grammar, with one example for each pair of phrases."""
     single = PhraseAutomaton(grammar, most_phrases=1)
     search = _PairSearch(single)
     double = [_of_two_parses(single, *found) for found in search.two_parses()]
@@ -86,10 +86,10 @@ def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
 
 
 def _may_run_together(grammar: Grammar) -> bool:
-    """Tell whether several phrases can be more ambiguous than one.
+    """Return whether messages of several phrases can be ambiguous where single phrases are not.
 
-    They cannot where the start gesture divides them and neither it nor the end gesture occurs in a
-    phrase: then a message falls into its phrases in one way only.
+    They cannot if the start gesture separates them and neither it nor the end gesture occurs in a
+    phrase: then a message is split into phrases in one way only.
     """
     if grammar.most_phrases == 1:
         return False
@@ -100,7 +100,7 @@ def _may_run_together(grammar: Grammar) -> bool:
 
 
 class _PairSearch:
-    """Walks through all pairs of positions that the same gestures lead to, the shortest first."""
+    """Search of all pairs of positions that the same gestures lead to, the shortest first."""
 
     def __init__(self, automaton: PhraseAutomaton) -> None:
         self._automaton = automaton
@@ -109,29 +109,29 @@ class _PairSearch:
         self._explore()
 
     def two_parses(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
-        """Give messages with two parses: the gestures, and at which positions they end."""
-        told: set[frozenset[int | None]] = set()
+        """Yield messages with two parses: the gestures, and the positions at which they end."""
+        reported: set[frozenset[int | None]] = set()
         accepting, positions = self._automaton.accepting, self._automaton.positions
         for pair in self._visited:
             one, other, lead = pair
             if not {one, other} <= accepting or lead == _Lead((), ()):
                 continue
             phrases = frozenset({positions[one].phrase, positions[other].phrase})
-            if phrases not in told:
-                told.add(phrases)
+            if phrases not in reported:
+                reported.add(phrases)
                 yield self._gestures(pair), one, other
 
     def prefixes(self) -> Iterator[tuple[tuple[str, ...], int, int]]:
-        """Give messages that are over at one position and go on at another."""
-        told: set[tuple[int | None, int | None]] = set()
+        """Yield messages that end at one position and continue at another."""
+        reported: set[tuple[int | None, int | None]] = set()
         positions = self._automaton.positions
         for pair in self._visited:
             for over, goes_on in (pair[:2], pair[1::-1]):
                 if over not in self._automaton.accepting or not self._automaton.following(goes_on):
                     continue
                 phrases = (positions[over].phrase, positions[goes_on].phrase)
-                if phrases not in told:
-                    told.add(phrases)
+                if phrases not in reported:
+                    reported.add(phrases)
                     yield self._gestures(pair), over, goes_on
 
     def _explore(self) -> None:
@@ -150,9 +150,9 @@ class _PairSearch:
         one, other, lead = pair
         theirs = self._automaton.moves(other)
         for label, mine in self._automaton.moves(one).items():
-            for target, said in mine:
-                for their_target, their_said in theirs.get(label, ()):
-                    yield label, (target, their_target, _compared(lead, said, their_said))
+            for target, added in mine:
+                for their_target, their_added in theirs.get(label, ()):
+                    yield label, (target, their_target, _extend_lead(lead, added, their_added))
 
     def _gestures(self, pair: _Pair) -> tuple[str, ...]:
         gestures = []
@@ -164,11 +164,11 @@ class _PairSearch:
         return tuple(reversed(gestures))
 
 
-def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead | None:
+def _extend_lead(lead: _Lead | None, added: Parse, their_added: Parse) -> _Lead | None:
     """Return how two parses differ after one more gesture."""
     if lead is _DIFFERENT:
         return _DIFFERENT
-    one, other = lead.one + said, lead.other + their_said
+    one, other = lead.one + added, lead.other + their_added
     common = min(len(one), len(other))
     if one[:common] != other[:common]:
         return _DIFFERENT
@@ -176,9 +176,9 @@ def _compared(lead: _Lead | None, said: Reading, their_said: Reading) -> _Lead |
 
 
 def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
-    """Tell whether every sequence of a phrase has a second parse.
+    """Return whether every sequence of a phrase has a second parse.
 
-    Walks through the sequences of the phrase with all that could be read otherwise beside it.
+    Searches the sequences of the phrase together with all their other parses.
     """
     begin: _Walk = (BEFORE, frozenset({(BEFORE, _Lead((), ()))}))
     waiting, known = deque([begin]), {begin}
@@ -189,13 +189,13 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
         ):
             return False
         for label, moves in automaton.moves(position).items():
-            for target, said in moves:
+            for target, added in moves:
                 if automaton.positions[target].phrase not in (None, phrase):
                     continue
                 beside = frozenset(
-                    (their_target, _compared(lead, said, their_said))
+                    (their_target, _extend_lead(lead, added, their_added))
                     for other, lead in others
-                    for their_target, their_said in automaton.moves(other).get(label, ())
+                    for their_target, their_added in automaton.moves(other).get(label, ())
                 )
                 following: _Walk = (target, beside)
                 if following not in known:
@@ -221,8 +221,8 @@ def _of_two_parses(
         "same_sequence",
         names,
         gestures,
-        f"the phrases {names[0]!r} and {names[1]!r} are both shown as {shown}: neither is obeyed; "
-        "let them differ in a gesture",
+        f"the phrases {names[0]!r} and {names[1]!r} are both shown as {shown}, so neither is "
+        "obeyed; let them differ in a gesture",
     )
 
 
@@ -233,8 +233,8 @@ def _run_together(
         "run_together",
         _names(automaton, one, other),
         gestures,
-        f"{', '.join(gestures)} falls into phrases in two ways: choose a start and an end gesture "
-        "that no phrase uses",
+        f"{', '.join(gestures)} can be split into phrases in two ways: choose a start and an end "
+        "gesture that no phrase uses",
     )
 
 
@@ -246,7 +246,7 @@ def _prefix(
         "prefix",
         _names(automaton, over, goes_on),
         gestures,
-        f"after {', '.join(gestures)} the message is over, and it might go on with "
+        f"after {', '.join(gestures)} the message is complete, but may continue with "
         f"{join_words(next_labels, last='or')}: the robot waits "
         f"{automaton.grammar.timeout:g} s, and what it does depends on how fast "
         "the diver is; choose an end gesture that no phrase uses",
@@ -259,8 +259,8 @@ def _unreachable(grammar: Grammar, index: int) -> Ambiguity:
         "unreachable",
         (phrase.name,),
         grammar.example(phrase),
-        f"the phrase {phrase.name!r} is never understood: whatever way it is shown, it also means "
-        "something else",
+        f"the phrase {phrase.name!r} is never understood: each of its sequences has another "
+        "meaning, too; give it a gesture of its own",
     )
 
 

@@ -1,4 +1,4 @@
-"""Health of a language: before the dive, what will be confused, missed or set off by accident."""
+"""Health check: predicts confusions, misses and false alarms of a language by simulated trials."""
 
 from __future__ import annotations
 
@@ -33,26 +33,25 @@ from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 MOST_ALARMS = 0.1
-"""Share of the library of accidental movements from which a warning is given. It is no bar: between
-two salutes people seldom reach for something."""
+"""Share of background motion from which a warning is given. It is no error, because background
+motion is rare between two salutes."""
 
 DUPLICATE = 0.05
-"""Fused distance of two demonstrations, where 1 is two typical gestures: nearer than two takes of
-one gesture by the same careful person."""
+"""Fused distance of two demonstrations below which they are duplicates: less than between two takes
+of one gesture by the same person; 1 is two typical gestures."""
 
 TAKES = 16
-"""Takes of each gesture: a rate of 5 % is then forecast to within about 2 and 12 %."""
+"""Simulated takes of each gesture: the interval of a rate of 5 % is then about 2 to 12 %."""
 
 EXAMPLES = 2
-"""Of each kind of accidental movement."""
+"""Examples of each kind of background motion."""
 
 MOST_REMEDIED = 3
-"""Findings for which remedies are computed, the worst first: with those mended, the next check sees
-to the others."""
+"""Findings for which remedies are computed, the worst first; a next check computes the others'."""
 
 Progress = Callable[[str, int, int], None]
-"""Called with the stage, what is done of it and of how much (0: not known beforehand); what it
-raises ends the check."""
+"""Called with the stage, the steps done and their number (0: unknown); an exception that it raises
+ends the check."""
 
 
 def check_health(
@@ -70,15 +69,15 @@ def check_health(
     Parameters
     ----------
     language
-        With its tuning, by profile ``full`` whatever its own: `paper` rejects nothing.
+        The language, with its tuning, but always by profile ``full``: `paper` rejects nothing.
     person
-        Who will dive: the person who demonstrated, or somebody else.
+        The diver: the demonstrator, or another person.
     takes
         Of each gesture, at least 2.
     seed
-        Of all that is drawn at random.
+        Of all random numbers.
     progress
-        Told the stage, how much of it is done and of how much; may raise to cancel.
+        Called with stage, steps done and their number; may raise to cancel.
 
     """
     if not language.gestures:
@@ -95,11 +94,11 @@ def check_health(
         )
     recognizer = Recognizer(language, "full")
     shown = sum(gesture.trajectory is not None for gesture in language.gestures)
-    advance = _counted(progress, "rehearsing", shown * takes)
+    advance = _count_steps(progress, "rehearsing", shown * takes)
     run_trials = TrialRunner(takes=takes, seed=seed, person=person, advance=advance)
     trials = run_trials(recognizer)
     read = find_false_alarms(
-        recognizer, EXAMPLES, seed=seed, advance=_counted(progress, "accidental movements", 0)
+        recognizer, EXAMPLES, seed=seed, advance=_count_steps(progress, "accidental movements", 0)
     )
     distances = _demonstrated_distances(recognizer)
     gestures = tuple(
@@ -111,7 +110,7 @@ def check_health(
         for pair in combinations(range(len(gestures)), 2)
     ]
     pairs.sort(key=_confusion_rate, reverse=True)
-    searching = replace(run_trials, advance=_counted(progress, "remedies", 0))
+    searching = replace(run_trials, advance=_count_steps(progress, "remedies", 0))
     findings = [
         *_pair_findings(recognizer, pairs, trials, searching),
     ]
@@ -132,8 +131,8 @@ def check_health(
     )
 
 
-def _counted(progress: Progress, stage: str, total: int) -> Callable[[], None]:
-    """Return what is called after each piece of work; a total of 0 is not known beforehand."""
+def _count_steps(progress: Progress, stage: str, total: int) -> Callable[[], None]:
+    """Return a function that reports one more step of a stage; a total of 0 is unknown."""
     done = 0
 
     def advance() -> None:
@@ -145,7 +144,7 @@ def _counted(progress: Progress, stage: str, total: int) -> Callable[[], None]:
 
 
 def _demonstrated_distances(recognizer: Recognizer) -> FloatArray:
-    """Compare every demonstration with every gesture: ``(G, G)``; infinite where there is none."""
+    """Compute the distances of demonstrations to gestures: ``(G, G)``; infinite without one."""
     gestures = recognizer.language.gestures
     distances = np.full((len(gestures), len(gestures)), np.inf)
     for index, gesture in enumerate(gestures):
@@ -184,7 +183,7 @@ def _gesture_health(
 def check_pairs(
     language: Language, pair: tuple[int, int], trials: SimulatedTrials, distances: FloatArray
 ) -> PairHealth:
-    """Say how well two gestures are told apart.
+    """Estimate the confusion of two gestures.
 
     Parameters
     ----------
@@ -193,14 +192,14 @@ def check_pairs(
     pair
         Indices of the two.
     trials
-        Of both; what was not rehearsed is not forecast.
+        Trials of both; directions without trials get no estimate.
     distances
         ``(G, G)``: fused distance of each demonstration, a row, to every gesture; infinite where
         they were not compared.
 
     """
 
-    def forecast(one: int, other: int) -> RateEstimate | None:
+    def estimate(one: int, other: int) -> RateEstimate | None:
         performer = _performer(trials, one)
         return None if performer is None else trials.confusion(performer, other)
 
@@ -208,8 +207,8 @@ def check_pairs(
     between = [each for each in (distances[pair], distances[second, first]) if np.isfinite(each)]
     return PairHealth(
         gestures=(language.labels[first], language.labels[second]),
-        first_as_second=forecast(first, second),
-        second_as_first=forecast(second, first),
+        first_as_second=estimate(first, second),
+        second_as_first=estimate(second, first),
         distance=float(np.mean(between)) if between else None,
     )
 
@@ -225,7 +224,7 @@ def _pair_findings(
     trials: SimulatedTrials,
     run_trials: TrialRunner,
 ) -> list[Finding]:
-    """Warn of pairs that will be confused; `pairs` are sorted, the worst first."""
+    """Return the findings about confused pairs; `pairs` are sorted, the worst first."""
     language = recognizer.language
     findings: list[Finding] = []
     for pair in pairs:
@@ -233,17 +232,20 @@ def _pair_findings(
         if confusion is None or confusion.rate <= MOST_CONFUSION:
             break
         first, second = (language.labels.index(label) for label in pair.gestures)
-        contrasts = compare_pair(recognizer, first, second), compare_pair(recognizer, second, first)
+        differences = (
+            compare_pair(recognizer, first, second),
+            compare_pair(recognizer, second, first),
+        )
         remedies: tuple[Remedy, ...] = ()
         both_shown = pair.first_as_second is not None and pair.second_as_first is not None
         if len(findings) < MOST_REMEDIED and both_shown:
-            strokes = tuple(None if each is None else each.stroke for each in contrasts)
+            strokes = tuple(None if each is None else each.stroke for each in differences)
             remedies = find_pair_remedies(language, (first, second), trials, run_trials, strokes)
         findings.append(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
                 pair.gestures,
-                _confusion_message(pair, contrasts),
+                _confusion_message(pair, differences),
                 below_bar=True,
                 remedies=remedies,
             )
@@ -256,33 +258,30 @@ def _is_duplicate(pair: PairHealth) -> bool:
 
 
 def _confusion_message(
-    pair: PairHealth, contrasts: tuple[PairDifference | None, PairDifference | None]
+    pair: PairHealth, differences: tuple[PairDifference | None, PairDifference | None]
 ) -> str:
     first, second = pair.gestures
     if _is_duplicate(pair):
         return (
-            f"{first} and {second} are the same movement: the robot can only guess which is meant"
+            f"{first} and {second} are the same movement, so the robot cannot distinguish them: "
+            f"change or remove one of them"
         )
     confusion, forth = pair.confusion, pair.confusion is pair.first_as_second
-    assert confusion is not None  # asked before
+    assert confusion is not None  # the caller checks it
     one, other = (first, second) if forth else (second, first)
-    differing = contrasts[0 if forth else 1]
+    differing = differences[0 if forth else 1]
     where = ""
     if differing is not None:
-        where = f"; the demonstration of {one} differs in this: {differing.words}"
-    return (
-        f"{confusion.rate:.0%} of all takes of {one} ({confusion.low:.0%} to {confusion.high:.0%}) "
-        f"would be nearer to {other}{where}"
-    )
+        where = f": compared with {other}, {differing.words}"
+    return f"{one} is read as {other} in {confusion.words}{where}"
 
 
 def _profile_findings(language: Language) -> list[Finding]:
     if PROFILES[language.profile].rejects:
         return []
     message = (
-        f"the language is recognised by the profile {language.profile}, which gives every movement "
-        "a label and rejects none, and the forecasts here are by the profile full: choose that one "
-        "before a dive"
+        f"the language uses the profile {language.profile}, which rejects nothing, while this "
+        "report is for the profile full: choose the profile full before a dive"
     )
     return [Finding("unrejecting", (), message, below_bar=True)]
 
@@ -290,21 +289,18 @@ def _profile_findings(language: Language) -> list[Finding]:
 def _gesture_findings(
     language: Language, gestures: Sequence[GestureHealth], explained: Collection[str]
 ) -> list[Finding]:
-    """Warn of gestures by themselves; those `explained` by a pair are not told as missed again."""
+    """Return the findings about single gestures; `explained` ones have a finding as a pair."""
     findings: list[Finding] = []
     for gesture, health in zip(language.gestures, gestures, strict=True):
         findings += check_demonstration(gesture)
-        told = health.label in explained
-        if not told and health.missed is not None and health.missed.rate > MOST_MISSED:
-            message = (
-                f"{health.missed.rate:.0%} of all takes of {health.label} "
-                f"({health.missed.low:.0%} to {health.missed.high:.0%}) would not be read as it"
-            )
+        explained_by_pair = health.label in explained
+        if not explained_by_pair and health.missed is not None and health.missed.rate > MOST_MISSED:
+            message = f"{health.label} is not recognised in {health.missed.words}"
             findings.append(Finding("missed", (health.label,), message, below_bar=True))
         if health.false_alarms is not None and health.false_alarms.rate > MOST_ALARMS:
             message = (
-                f"{health.label} may be set off by {', '.join(health.set_off_by)}: "
-                f"{health.false_alarms.rate:.0%} of the accidental movements are taken for it"
+                f"{health.label} has false alarms in {health.false_alarms.rate:.0%} of simulated "
+                f"background motion: {', '.join(health.set_off_by)}"
             )
             findings.append(Finding("accidental", (health.label,), message))
     return findings

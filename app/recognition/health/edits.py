@@ -1,7 +1,7 @@
-"""Alterations that may set a gesture apart from another one: shown otherwise, or read otherwise.
+"""Gesture edits: changes of a gesture that may separate it from another one.
 
-Each is applied to the demonstration itself, as a person would show it anew, so that its effect can
-be computed before anybody does.
+Each is applied to the demonstration, so that its effect can be computed before the gesture is shown
+again.
 """
 
 from __future__ import annotations
@@ -18,31 +18,30 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
 LARGER = 1.5
-"""Factor of size: half as large again is seen at once, and within an arm's reach for any gesture
-that spans less than a metre."""
+"""Factor of size: clearly larger, and within an arm's reach for gestures of less than a metre."""
 
 SLOWER = 2.0
-"""Factor of duration: the least whole number that the tempo voter tells apart for sure (1.75)."""
+"""Factor of duration: the least whole number above the limit of the tempo voter (1.75)."""
 
 Applied = Callable[[Gesture], Gesture | None]
 
 
 @dataclass(frozen=True)
 class GestureEdit:
-    """What a person may do about one gesture.
+    """A change of one gesture that its author can make.
 
     Attributes
     ----------
     kind
-        One word or two, for programs.
+        Identifier for programs.
     label
         Of the gesture.
     text
         What to do, as an imperative.
     apply
-        Makes the changed gesture; None where the change does not apply.
+        Returns the changed gesture; None where the edit does not apply.
     both
-        Makes a switch of the other gesture count as well, where it takes two.
+        Changes a switch of the other gesture as well, where both are needed.
 
     """
 
@@ -54,14 +53,14 @@ class GestureEdit:
 
 
 def list_edits(gesture: Gesture, *, stroke: tuple[float, float] | None = None) -> list[GestureEdit]:
-    """List what may be tried with a gesture.
+    """Return the edits to try with a gesture.
 
     Parameters
     ----------
     gesture
         With a demonstration.
     stroke
-        Seconds in which it differs from the one it is confused with, where that is known.
+        Seconds in which it differs from the one it is confused with, if known.
 
     """
     label = gesture.label
@@ -101,7 +100,7 @@ def list_edits(gesture: Gesture, *, stroke: tuple[float, float] | None = None) -
 
 
 def list_switch_edits(first: Gesture, second: Gesture) -> list[GestureEdit]:
-    """List the switches that may set two gestures apart as they are."""
+    """Return the switches that may separate two gestures without changing their movements."""
     both = f"{first.label} and {second.label}"
     return [
         GestureEdit(
@@ -122,55 +121,55 @@ def list_switch_edits(first: Gesture, second: Gesture) -> list[GestureEdit]:
 
 
 def swap_hands(gesture: Gesture) -> Gesture | None:
-    """Mirror a gesture of one hand; None for one that uses both, or none."""
+    """Return the mirror image of a one-handed gesture; None for others."""
     one_hand = find_hands(gesture.salient) == 1
     if not one_hand or tuple(map(other_side, gesture.salient)) == gesture.salient:
         return None
-    return gesture.mirrored()
+    return gesture.mirror()
 
 
 def use_both_hands(gesture: Gesture) -> Gesture | None:
-    """Let the idle arm do the mirror image of the other one at the same time."""
+    """Return a one-handed gesture shown with both arms, mirrored; None for others."""
     shown = gesture.trajectory
     others = tuple(other_side(name) for name in gesture.salient)
     if shown is None or swap_hands(gesture) is None or not set(others) <= set(shown.landmarks):
         return None
     side = next(side for side in SIDES if parse_body_part(others[0]).startswith(side))
-    mirrored = shown.mirrored()
+    mirrored = shown.mirror()
     xy = shown.xy.copy()
     for index, name in enumerate(shown.landmarks):
         if parse_body_part(name).startswith(side) and name in mirrored.landmarks:
             xy[:, index] = mirrored.xy[:, mirrored.landmarks.index(name)]
     return replace(
         gesture, salient=(*gesture.salient, *others), trajectory=replace(shown, xy=xy)
-    ).redrawn()
+    ).redraw()
 
 
 def widen(gesture: Gesture) -> Gesture | None:
-    """Stretch what moves horizontally."""
-    return _reshown(gesture, lambda shown: _stretched(shown, (LARGER, 1.0)))
+    """Return the gesture stretched horizontally."""
+    return _change_demonstration(gesture, lambda shown: _stretch(shown, (LARGER, 1.0)))
 
 
 def heighten(gesture: Gesture) -> Gesture | None:
-    """Stretch what moves vertically."""
-    return _reshown(gesture, lambda shown: _stretched(shown, (1.0, LARGER)))
+    """Return the gesture stretched vertically."""
+    return _change_demonstration(gesture, lambda shown: _stretch(shown, (1.0, LARGER)))
 
 
 def slow_down(gesture: Gesture) -> Gesture | None:
-    """Let it take twice as long."""
-    return _reshown(gesture, lambda shown: replace(shown, time=SLOWER * shown.time))
+    """Return the gesture with twice the duration."""
+    return _change_demonstration(gesture, lambda shown: replace(shown, time=SLOWER * shown.time))
 
 
 def reverse(gesture: Gesture) -> Gesture | None:
-    """Show it from its end to its start."""
-    return _reshown(
+    """Return the gesture in the opposite direction, from its end to its start."""
+    return _change_demonstration(
         gesture,
         lambda shown: replace(shown, xy=shown.xy[::-1], time=shown.time[-1] - shown.time[::-1]),
     )
 
 
 def lengthen_stroke(gesture: Gesture, start: float, end: float) -> Gesture | None:
-    """Enlarge what happens between two moments, in seconds of the demonstration."""
+    """Return the gesture with the stroke between two moments enlarged, seconds."""
 
     def changed(shown: Trajectory) -> Trajectory:
         steps = np.diff(shown.xy, axis=0)
@@ -180,13 +179,13 @@ def lengthen_stroke(gesture: Gesture, start: float, end: float) -> Gesture | Non
         added = np.concatenate([np.zeros_like(shown.xy[:1]), np.cumsum(more, axis=0)])
         return replace(shown, xy=shown.xy + added * _moving(shown))
 
-    return _reshown(gesture, changed)
+    return _change_demonstration(gesture, changed)
 
 
 def set_switch(
     gesture: Gesture | None, *, direction: bool = False, tempo: bool = False
 ) -> Gesture | None:
-    """Let the direction or the tempo count; None where there is no gesture."""
+    """Return a gesture whose direction or tempo counts; None for None."""
     if gesture is None:
         return None
     switches = gesture.switches
@@ -198,15 +197,17 @@ def set_switch(
     return replace(gesture, switches=wanted)
 
 
-def _reshown(gesture: Gesture, change: Callable[[Trajectory], Trajectory]) -> Gesture | None:
-    """Apply a change to the demonstration, and draw it anew; None without a demonstration."""
+def _change_demonstration(
+    gesture: Gesture, change: Callable[[Trajectory], Trajectory]
+) -> Gesture | None:
+    """Apply a change to the demonstration and redraw it; None without a demonstration."""
     if gesture.trajectory is None or not gesture.salient:
         return None
-    return replace(gesture, trajectory=change(gesture.trajectory)).redrawn()
+    return replace(gesture, trajectory=change(gesture.trajectory)).redraw()
 
 
-def _stretched(shown: Trajectory, factors: tuple[float, float]) -> Trajectory:
-    """Stretch every arm's landmarks about their mean places; the trunk stays."""
+def _stretch(shown: Trajectory, factors: tuple[float, float]) -> Trajectory:
+    """Stretch the arms' landmarks about their mean positions; the trunk is unchanged."""
     with np.errstate(invalid="ignore"):
         seen = np.isfinite(shown.xy).any(axis=(0, 2))
     centre = np.zeros(shown.xy.shape[1:])

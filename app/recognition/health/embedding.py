@@ -1,4 +1,4 @@
-"""A map of a language: its gestures as points in a plane, near gestures near each other."""
+"""Embedding: a map of a language's gestures in the plane, with similar gestures close together."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.recognition.poses.sequence import FloatArray
 
 
 def embed_gestures(distances: FloatArray) -> FloatArray:
-    """Place gestures by classical multidimensional scaling (Torgerson 1952).
+    """Embed gestures in the plane by classical multidimensional scaling (Torgerson 1952).
 
     Parameters
     ----------
@@ -18,9 +18,9 @@ def embed_gestures(distances: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ``(G, 2)`` in the unit of the distances, centred at 0, the wider spread along x. Where two
-    dimensions do not suffice the points are the nearest that do. An axis points where the gesture
-    farthest out on it is positive, so that the same distances give the same map.
+    ``(G, 2)`` in the unit of the distances, centred at 0, the wider spread along x; the best
+    approximation in two dimensions. The sign of an axis is such that its farthest gesture is
+    positive, so that the same distances give the same map.
 
     """
     finite = np.isfinite(distances)

@@ -1,4 +1,4 @@
-"""Alarms: accidental movements that the recogniser takes for a gesture."""
+"""False alarms: simulated background motion that is recognised as a gesture."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from app.recognition.simulation.background_motion import simulate_background_mot
 
 @dataclass(frozen=True)
 class FalseAlarm:
-    """How one accidental movement was read.
+    """The recognition of one example of background motion.
 
     Attributes
     ----------
     kind
         Of the movement, in words.
     nearest
-        Index of the nearest gesture; None where nothing that a gesture needs moved.
+        Index of the nearest gesture; None where no landmark that a gesture needs moves.
     taken
-        Whether it was taken for that gesture.
+        Whether it was recognised as that gesture.
 
     """
 
@@ -38,15 +38,15 @@ def find_false_alarms(
     seed: int = 0,
     advance: Callable[[], None] = lambda: None,
 ) -> tuple[FalseAlarm, ...]:
-    """Let the recogniser read accidental movements, `count` of each kind.
+    """Recognise simulated background motion, `count` examples of each kind.
 
-    `advance` is called after each; what it raises ends the reading.
+    `advance` is called after each; an exception that it raises ends the work.
     """
     found = []
     for movement in simulate_background_motion(count, seed=seed):
         try:
             result = recognizer.recognize_trajectory(condense(movement.trajectory))
-        except PoseError:  # nothing that any gesture needs moves in it
+        except PoseError:  # no landmark that a gesture needs moves
             found.append(FalseAlarm(movement.kind, None, taken=False))
         else:
             nearest = recognizer.language.labels.index(result.nearest)

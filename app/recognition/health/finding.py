@@ -1,4 +1,4 @@
-"""Findings: what about a language deserves its author's attention, and what to do about it."""
+"""Findings: errors, warnings and notes of a health report, with remedies."""
 
 from __future__ import annotations
 
@@ -15,27 +15,26 @@ from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_dis
 from app.recognition.recording.salute import HOLD_SECONDS
 
 SHORTEST_SECONDS = 0.5
-"""A single reach takes half a second (Flash and Hogan 1985); what is shorter is a twitch of which
-a 25 Hz camera sees a dozen frames."""
+"""Least duration of a demonstration: a single reach takes half a second (Flash and Hogan 1985)."""
 
 LONGEST_SECONDS = MAX_MOMENTS / 10
-"""Beyond it fewer than ten moments a second are kept, and details of a stroke are lost."""
+"""Longest demonstration; of longer ones fewer than ten moments a second are kept."""
 
 SMALLEST = 1.5 * MIN_DISPLACEMENT
-"""Displacement, in torso lengths, below which sway is a large part of what is seen: idle hands
-stray up to 0.2, and people differ in size by a third of a doubling."""
+"""Least displacement, torso lengths: idle hands move up to 0.2, and people's takes differ in size
+by a third of a doubling."""
 
 LEAST_SEEN = 0.8
-"""Share of the moments in which a salient landmark should be seen. Gaps of up to half a second were
-bridged before; what is missing after that are whole strokes."""
+"""Least share of moments in which a salient landmark is seen, after bridging gaps of half a second;
+what is still missing are whole strokes."""
 
 HELD_STILL = 0.2
-"""Torso lengths a second, about 10 cm, below which a hand is held: a salute is shown like that."""
+"""Torso lengths a second, about 10 cm, below which a hand is held still, as in a salute."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One warning.
+    """One entry of a health report.
 
     Attributes
     ----------
@@ -45,13 +44,13 @@ class Finding:
         ``unrejecting``, ``empty``, and of the grammar ``phrases_`` with one of
         `ambiguity.AmbiguityKind`.
     gestures
-        Labels of the gestures it is about; none where it is about phrases.
+        Labels of the gestures concerned; none for phrases.
     message
         What is wrong and why that matters, in one sentence or two.
     below_bar
-        Whether the language should not go to sea like that.
+        Whether it is an error (beyond a threshold) and not a warning.
     remedies
-        What would help, the most effective first; each was computed to help.
+        Edits that reduce it in simulation, the most effective first.
 
     """
 
@@ -68,14 +67,14 @@ class Finding:
 
 
 def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
-    """Judge how a gesture was demonstrated, by itself."""
+    """Yield the findings about one gesture's demonstration."""
     shown, label = gesture.trajectory, (gesture.label,)
     if shown is None or not gesture.salient:
         yield Finding(
             "no_demonstration",
             label,
-            f"{gesture.label} came without its demonstration: how it will be read cannot be "
-            "predicted; define it again from a clip",
+            f"{gesture.label} came without its demonstration, so its recognition cannot be "
+            "predicted: define it again from a clip",
         )
         return
     seconds = float(shown.time[-1] - shown.time[0])
@@ -90,8 +89,8 @@ def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
         yield Finding(
             "too_small",
             label,
-            f"{gesture.label} spans {size:.2f} torso lengths, and even an idle hand strays up to "
-            "0.2: show it larger",
+            f"{gesture.label} spans only {size:.2f} torso lengths, and even an idle hand moves up "
+            "to 0.2: show it larger",
         )
     for name in gesture.salient:
         if (seen := measure_visible_share(shown, name)) < LEAST_SEEN:
@@ -116,7 +115,7 @@ def measure_visible_share(shown: Trajectory, landmark: str) -> float:
 
 
 def find_longest_held_up(shown: Trajectory) -> float:
-    """Return for how many seconds, at most, an upright hand is held above its elbow."""
+    """Return the longest time that an upright hand is held still above its elbow, in seconds."""
     longest = 0.0
     for side in ("left", "right"):
         names = [f"{side}_{part}" for part in ("elbow", "wrist", "index")]

@@ -1,4 +1,4 @@
-"""Outlook of one gesture in its language: quick enough to be asked while the gesture is edited."""
+"""Gesture estimate: predicted rates of one gesture, fast enough to update while it is edited."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from app.recognition.recognizer import Recognizer
 from app.recognition.simulation.rate_estimate import RateEstimate
 
 MOST_NEIGHBOURS = 3
-"""Gestures rehearsed beside the one in question, the nearest: farther ones are hardly ever confused
-with it, and all of a language would take as long as its whole health report."""
+"""Number of nearest gestures that are simulated with it; farther ones are hardly ever confused with
+it, and all would take as long as the whole check."""
 
 
 @dataclass(frozen=True)
 class GestureEstimate:
-    """What is to be expected of one gesture.
+    """Estimated rates of one gesture.
 
     Attributes
     ----------
     pairs
         It and each of its nearest gestures, the nearest first.
     missed
-        How often a take of it is read as another gesture, or refused.
+        Rate of its takes that are confused or rejected.
     refused
-        How often it is read as no gesture at all.
+        Rate of its takes that are rejected.
 
     """
 
@@ -39,7 +39,7 @@ class GestureEstimate:
 
 
 def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | None:
-    """Rehearse one gesture and its nearest ones, as `check_health` rehearses all by default.
+    """Simulate trials of one gesture and its nearest ones, as `check_health` does for all.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | No
 
     Returns
     -------
-    Its forecasts are those of the health report; None for a gesture without a demonstration.
+    The estimates equal those of the health report; None for a gesture without a demonstration.
 
     Raises
     ------

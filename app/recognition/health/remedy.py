@@ -1,7 +1,7 @@
-"""Remedies: what would keep two gestures apart, each with its effect computed.
+"""Remedies: edits that reduce the confusion of two gestures, with their simulated effect.
 
-Every change is first tried on the two gestures by themselves, with few takes; the most promising
-ones are then rehearsed within the whole language, and proposed only where they help there.
+Every edit is first tried on the two gestures alone, with few takes; the best ones are then
+simulated within the whole language, and proposed only if they help there.
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 TRIAL_TAKES = 5
-"""Takes of each of the two gestures with which a change is tried: enough to order changes whose
-effects differ by a spread of the margins or more."""
+"""Takes of each of the two gestures with which an edit is first tried: enough to rank edits whose
+effects differ by the margins' spread or more."""
 
 MOST_PROPOSED = 4
-"""Changes rehearsed within the whole language, each of another kind: a choice that can be surveyed,
-for the most effective one (mostly the other hand) may not suit the diver."""
+"""Edits simulated within the whole language, each of another kind: a short choice, because the most
+effective one (mostly the other hand) may not suit the diver."""
 
 HELPS = 0.5
-"""A remedy is proposed where it at least halves what it is against: smaller effects are within the
-forecasts' intervals."""
+"""Largest ratio of the rates after and before a proposed remedy; smaller effects are within the
+estimates' intervals."""
 
 
 @dataclass(frozen=True)
 class Remedy:
-    """One thing to do, and what it was computed to achieve.
+    """One edit to make, with its simulated effect.
 
     Attributes
     ----------
     kind
         For programs, see `GestureEdit`.
     gesture
-        Label of the gesture to show or to read otherwise.
+        Label of the gesture to edit.
     text
         What to do, as an imperative.
     before, after
-        The predicted rate that it is against, without and with it.
+        The predicted rate of confusion without and with it.
 
     """
 
@@ -62,7 +62,7 @@ class Remedy:
 
 @dataclass(frozen=True, kw_only=True)
 class TrialRunner:
-    """How takes are rehearsed; the same for a language and for its changed versions.
+    """Runs simulated trials with the same settings for a language and for its edited versions.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class TrialRunner:
     person
         Who performs.
     advance
-        Called after each take; what it raises ends everything.
+        Called after each take; an exception that it raises ends the trials.
 
     """
 
@@ -85,7 +85,7 @@ class TrialRunner:
     def __call__(
         self, recognizer: Recognizer, gestures: tuple[int, ...] | None = None, takes: int = 0
     ) -> SimulatedTrials:
-        """Rehearse gestures by their indices; all when not given."""
+        """Simulate trials of gestures by their indices; all when not given."""
         return simulate_trials(
             recognizer,
             takes or self.takes,
@@ -97,7 +97,7 @@ class TrialRunner:
 
 
 def is_worse(one: RateEstimate, other: RateEstimate) -> RateEstimate:
-    """Return the forecast with the higher rate."""
+    """Return the estimate with the higher rate."""
     return max(one, other, key=lambda each: (each.rate, each.high))
 
 
@@ -108,20 +108,20 @@ def find_pair_remedies(
     run_trials: TrialRunner,
     strokes: Sequence[tuple[float, float] | None] = (None, None),
 ) -> tuple[Remedy, ...]:
-    """Find what keeps two gestures apart, the most effective first.
+    """Find edits that reduce the confusion of two gestures, the most effective first.
 
     Parameters
     ----------
     language
-        As it is.
+        The language before any edit.
     pair
         Indices of two gestures with demonstrations.
     before
         The trials of the whole language.
     run_trials
-        How it was made.
+        The settings that `before` was made with.
     strokes
-        Seconds in which each of the two differs from the other one, where that is known.
+        Seconds in which each of the two differs from the other one, if known.
 
     """
     two = [language.gestures[index] for index in pair]
@@ -131,7 +131,8 @@ def find_pair_remedies(
     )
     missed = sum(before.missed(performer).rate for performer in performers)
     tried = [
-        (_tried(changed, run_trials), edit, changed) for edit, changed in _changed(two, strokes)
+        (_try_edit(changed, run_trials), edit, changed)
+        for edit, changed in _apply_edits(two, strokes)
     ]
     tried.sort(key=lambda trial: (trial[0].rate, trial[0].high))
     best_of_kind = {edit.kind: (edit, changed) for _, edit, changed in reversed(tried)}
@@ -146,11 +147,11 @@ def find_pair_remedies(
     return tuple(sorted(proposed, key=lambda remedy: (remedy.after.rate, remedy.after.high)))
 
 
-def _changed(
+def _apply_edits(
     two: list[Gesture],
     strokes: Sequence[tuple[float, float] | None],
 ) -> Iterator[tuple[GestureEdit, list[Gesture]]]:
-    """Apply every change that applies to either of the two."""
+    """Yield every edit that applies to either of the two, with the edited gestures."""
     changes = [(0, change) for change in list_switch_edits(*two)]
     for which, stroke in enumerate(strokes):
         changes += [(which, change) for change in list_edits(two[which], stroke=stroke)]
@@ -161,9 +162,9 @@ def _changed(
             yield change, [changed, other] if which == 0 else [other, changed]
 
 
-def _tried(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
+def _try_edit(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     language = Language("two", two)
-    # Only scores are compared: thresholds are not made for a language that nobody will speak.
+    # Only scores are compared, so thresholds are not calibrated.
     uncalibrated = replace(language, thresholds_for=language.fingerprint)
     trials = run_trials(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
     return is_worse(trials.confusion(0, 1), trials.confusion(1, 0))

@@ -1,4 +1,4 @@
-"""The health report: what is to be expected of a language under water."""
+"""Health report: the result of a check, with estimated rates and findings."""
 
 from __future__ import annotations
 
@@ -14,24 +14,23 @@ from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
 from app.recognition.simulation.variation import Person
 
 MOST_CONFUSION = 0.05
-"""Bar for a pair of gestures: a robot that does the wrong thing once in twenty commands is trusted
-with none."""
+"""Threshold for the confusion of a pair: one wrong action in twenty commands."""
 
 MOST_MISSED = 0.1
-"""Bar for a gesture: a refused command costs the diver a repetition, which is cheaper than a wrong
-deed. Rejection aims at refusing one true gesture in twenty; twice as many is its own fault."""
+"""Threshold for missed takes of a gesture, which cost a repetition only. Rejection is calibrated to
+one take in twenty; twice as many is the gesture's problem."""
 
 
 @dataclass(frozen=True)
 class LandmarkHealth:
-    """A landmark that a gesture depends on.
+    """A salient landmark of a gesture.
 
     Attributes
     ----------
     landmark
         Its name.
     displacement
-        How far it moves, peak to peak, in the demonstration's unit.
+        Its displacement, peak to peak, in the demonstration's unit.
     visible
         Share of the demonstration's moments in which it is seen.
 
@@ -52,25 +51,25 @@ class LandmarkHealth:
 
 @dataclass(frozen=True)
 class GestureHealth:
-    """What is to be expected of one gesture.
+    """Estimated rates of one gesture.
 
     Attributes
     ----------
     label
         Its label.
     seconds
-        Of its demonstration; None without one.
+        Duration of its demonstration; None without one.
     landmarks
-        What it depends on.
+        Its salient landmarks.
     missed
-        How often a take of it is read as another gesture, or refused; None without demonstration.
+        Rate of its takes that are confused or rejected; None without demonstration.
     refused
-        How often it is read as no gesture at all.
+        Rate of its takes that are rejected.
     false_alarms
-        How often an accidental movement is taken for it; None where the library does not show what
-        it depends on.
+        Rate of background motion that is recognised as it; None where the simulated movements lack
+        its landmarks.
     set_off_by
-        The kinds of movements that are, in words.
+        Kinds of background motion that are recognised as it, in words.
 
     """
 
@@ -97,14 +96,14 @@ class GestureHealth:
 
 @dataclass(frozen=True)
 class PairHealth:
-    """How well two gestures are told apart.
+    """Estimated confusion of two gestures.
 
     Attributes
     ----------
     gestures
         The two labels.
     first_as_second, second_as_first
-        How often a take of the one is nearer to the other; None without its demonstration.
+        Rate of takes of the one that are nearer to the other; None without its demonstration.
     distance
         Fused distance of the two demonstrations, 1 = as different as two typical gestures; None
         where they cannot be compared.
@@ -137,24 +136,24 @@ class PairHealth:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HealthReport:
-    """The whole report.
+    """The result of a check.
 
     Attributes
     ----------
     language, revision
-        What was checked.
+        Name and revision of the checked language.
     person
-        For whom: whoever demonstrated the gestures, or somebody else.
+        The diver: the demonstrator (``same``), or another person.
     takes
-        How often each gesture was rehearsed.
+        Number of simulated takes of each gesture.
     gestures
         In the language's order.
     pairs
         All of them, the most confused first.
     findings
-        Those below the bar first.
+        Errors first, then warnings.
     places
-        ``(G, 2)``: the gestures on a map, near ones near each other, see `language_map.placed`.
+        ``(G, 2)``: the gestures on a map, see `embedding.embed_gestures`.
 
     """
 
@@ -169,7 +168,7 @@ class HealthReport:
 
     @property
     def ok(self) -> bool:
-        """Whether nothing is below the bar."""
+        """Whether there is no error."""
         return not any(finding.below_bar for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:

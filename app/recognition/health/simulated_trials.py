@@ -1,6 +1,6 @@
-"""A trials: every gesture of a language performed many times before anybody dives.
+"""Simulated trials: recognises variants of every demonstration, to estimate error rates.
 
-The performances are variants of the demonstrations (`variation`), read by the recogniser itself.
+The variants come from `variation` and are recognised by the recogniser itself.
 """
 
 from __future__ import annotations
@@ -22,69 +22,68 @@ from app.recognition.simulation.variant_bias import VARIANT_BIASES, VariantBias
 from app.recognition.simulation.variation import Person, draw_variants
 
 WIDEST_MARGIN = 4.0
-"""Margins beyond it are cut: exp(4) is fifty times as far, further than a take that cannot be
-compared at all needs to be."""
+"""Largest margin; exp(4) is fifty times as far, also used for takes that cannot be compared."""
 
 MOST_REMEMBERED = 32
-"""Gestures whose takes are remembered: remedies rehearse the same gestures over and over, beside
-one that is changed, and a preview its neighbours. Each is up to half a megabyte."""
+"""Gestures whose takes are cached, half a megabyte each: remedies and previews simulate the same
+gestures repeatedly beside an edited one."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SimulatedTrials:
-    """How takes of some gestures were read.
+    """Scores and novelties of simulated takes.
 
     Attributes
     ----------
     gestures
-        ``(P,)`` indices of the gestures that were performed.
+        ``(P,)`` indices of the simulated gestures.
     scores
         ``(P, N, G)``: of N takes each the score of every gesture, smaller = more alike; infinite
         where not comparable.
     novelty
-        ``(P, N)``: how much farther than its thresholds allow each take lies from its own gesture;
-        above 1 it is refused. NaN for a gesture without thresholds.
-    unforeseen
-        Of `VARIANT_BIASES` the one of whoever performed.
+        ``(P, N)``: novelty of each take for its own gesture; above 1 it is rejected. NaN for a
+        gesture without thresholds.
+    bias
+        The performer's entry of `VARIANT_BIASES`.
 
     """
 
     gestures: npt.NDArray[np.intp]
     scores: FloatArray
     novelty: FloatArray
-    unforeseen: VariantBias
+    bias: VariantBias
 
     @property
     def margins(self) -> FloatArray:
-        """``(P, N, G)``: how much nearer a take is to its own gesture than to each other one.
+        """``(P, N, G)``: margin of a take between its own gesture and each other one.
 
-        The logarithm of the quotient of the scores; below 0 where the other one is nearer.
+        The logarithm of the ratio of the scores; below 0 where the other one is nearer.
         """
         logarithms = np.log(np.minimum(self.scores, 1e9) + SCORE_FLOOR)
         own = np.take_along_axis(logarithms, self.gestures[:, None, None], axis=2)
         return np.asarray(np.clip(logarithms - own, -WIDEST_MARGIN, WIDEST_MARGIN))
 
     def confusion(self, performer: int, other: int) -> RateEstimate:
-        """Forecast how often a gesture is nearer to another one than to itself.
+        """Estimate the rate of takes that are nearer to another given gesture.
 
-        A take that is not what was shown is as near to any gesture.
+        A take that shows something else is as near to any gesture.
         """
         astray = 1 / self.scores.shape[2]
-        return RateEstimate.of_margins(self.margins[performer, :, other], self.unforeseen, astray)
+        return RateEstimate.of_margins(self.margins[performer, :, other], self.bias, astray)
 
     def misread(self, performer: int) -> RateEstimate:
-        """Forecast how often a gesture is nearer to any other one than to itself."""
+        """Estimate the rate of takes that are nearer to any other gesture."""
         astray = 1 - 1 / self.scores.shape[2]
-        return RateEstimate.of_margins(self._to_rivals(performer), self.unforeseen, astray)
+        return RateEstimate.of_margins(self._to_rivals(performer), self.bias, astray)
 
     def refused(self, performer: int) -> RateEstimate:
-        """Forecast how often a gesture is too far from itself to be recognised at all."""
-        return RateEstimate.of_margins(self._to_refusal(performer), self.unforeseen)
+        """Estimate the rate of takes that are rejected."""
+        return RateEstimate.of_margins(self._to_refusal(performer), self.bias)
 
     def missed(self, performer: int) -> RateEstimate:
-        """Forecast how often a gesture is misread, or refused."""
+        """Estimate the rate of takes that are confused or rejected."""
         margins = np.minimum(self._to_rivals(performer), self._to_refusal(performer))
-        return RateEstimate.of_margins(margins, self.unforeseen)
+        return RateEstimate.of_margins(margins, self.bias)
 
     def _to_rivals(self, performer: int) -> FloatArray:
         """Return ``(N,)`` margins to the nearest other gesture."""
@@ -92,7 +91,7 @@ class SimulatedTrials:
         return np.asarray(rivals.min(axis=1, initial=WIDEST_MARGIN))
 
     def _to_refusal(self, performer: int) -> FloatArray:
-        """Return ``(N,)`` margins to the thresholds, as logarithms like those to the rivals."""
+        """Return ``(N,)`` margins to the thresholds, as logarithms."""
         novelty = np.nan_to_num(self.novelty[performer], nan=0.0)
         margins = -np.log(np.maximum(novelty, np.exp(-WIDEST_MARGIN)))
         return np.asarray(np.maximum(margins, -WIDEST_MARGIN))
@@ -107,7 +106,7 @@ def simulate_trials(
     person: Person = "another",
     advance: Callable[[], None] = lambda: None,
 ) -> SimulatedTrials:
-    """Perform gestures and read them.
+    """Simulate takes of gestures and recognise them.
 
     Parameters
     ----------
@@ -116,13 +115,13 @@ def simulate_trials(
     count
         Takes of each gesture, at least 2.
     gestures
-        Indices of those to perform; all that have a demonstration when not given.
+        Indices of the gestures; all that have a demonstration when not given.
     seed
-        Of the variants. The n-th take of a gesture varies the same way in every language.
+        Of the variants. The n-th take of a gesture is the same in every language.
     person
-        Who performs: whoever demonstrated it, or somebody else.
+        Who performs: the demonstrator, or another person.
     advance
-        Called after each take; what it raises ends the trials.
+        Called after each take; an exception that it raises ends the trials.
 
     """
     language = recognizer.language
@@ -135,8 +134,8 @@ def simulate_trials(
     novelty = np.full((len(performed), count), np.nan)
     for row, index in enumerate(performed):
         demonstration = language.gestures[index].trajectory
-        assert demonstration is not None  # chosen above
-        for take, performed_take in enumerate(_performed(demonstration, count, seed, person)):
+        assert demonstration is not None  # gestures without one are left out above
+        for take, performed_take in enumerate(_perform(demonstration, count, seed, person)):
             compared = recognizer.compare(performed_take)
             scores[row, take] = compared.scores
             novelty[row, take] = compared.novelty[index]
@@ -145,14 +144,14 @@ def simulate_trials(
         gestures=np.array(performed, dtype=np.intp),
         scores=scores,
         novelty=novelty,
-        unforeseen=VARIANT_BIASES[person],
+        bias=VARIANT_BIASES[person],
     )
 
 
 @lru_cache(maxsize=MOST_REMEMBERED)
-def _performed(
+def _perform(
     demonstration: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
-    """Perform a demonstration, as the voters see it."""
+    """Return simulated takes of a demonstration, condensed."""
     takes = draw_variants(demonstration, count, seed=seed, person=person)
     return tuple(condense(take) for take in takes)

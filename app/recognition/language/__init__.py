@@ -1,1 +1,1 @@
-"""The gesture language and its file formats."""
+"""Language: gesture languages, their file format and conversions to other formats."""

@@ -1,4 +1,4 @@
-"""The language file as text: read strictly, written the same for the same content, sealed."""
+"""Language file: strict reading, deterministic writing, and the SHA-256 seal."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from app.recognition.text.strict_json import (
 )
 
 _LISTED = frozenset({"gestures", "phrases", "slot_types"})
-"""Keys whose entries take a line each."""
+"""Keys whose entries are written one per line."""
 
 
 def write_document(document: LanguageDocument) -> str:
-    """Write a document and its seal, one line a key, a gesture and a phrase.
+    """Return the text of a document with its seal, one line per key, gesture and phrase.
 
-    Lines keep differences between revisions readable in version control.
+    The lines keep diffs between revisions readable.
     """
     content = document.model_dump(mode="json", exclude={"sha256"}, exclude_defaults=True)
     content["sha256"] = seal(content)
@@ -42,7 +42,7 @@ def write_document(document: LanguageDocument) -> str:
 
 
 def read_content(path: str | Path) -> bytes:
-    """Read a file that may be a language file, and no more of it than one can hold.
+    """Read a file up to one byte more than the largest language file.
 
     Raises
     ------
@@ -52,20 +52,20 @@ def read_content(path: str | Path) -> bytes:
     """
     try:
         with Path(path).open("rb") as file:
-            # One byte more than is admitted tells that there is more, however much it is.
+            # One byte more than allowed is enough to detect a file that is too large.
             return file.read(MAX_FILE_BYTES + 1)
     except OSError as error:
         raise LanguageError(f"cannot read {path}: {error.strerror}") from error
 
 
 def read_document(text: str | bytes) -> LanguageDocument:
-    """Read and check a language file's text, as far as the schema goes.
+    """Read a language file's text and validate it against the schema.
 
     Raises
     ------
     LanguageError
-        When it is no language file of this version, breaks the schema, or was changed since it
-        was sealed.
+        When it is no language file of this version, violates the schema, or does not match its
+        seal.
 
     """
     content = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
@@ -94,7 +94,7 @@ def seal(content: dict[str, Any]) -> str:
 
 
 def _check_kind(read: Any) -> None:
-    """Refuse other files and other versions in words, before the schema's many complaints."""
+    """Refuse other files and versions with one clear message, before validating the schema."""
     if not isinstance(read, dict) or read.get("format") != FORMAT:
         raise LanguageError(
             f'not a language file: its "format" must be "{FORMAT}". A file of the published '
@@ -122,10 +122,7 @@ def _faults(error: ValidationError) -> list[Fault]:
 
 
 def list_document_steps(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """Return where in a document pydantic found a fault.
-
-    What it adds for the branches of a union is not in the document.
-    """
+    """Return the place of a pydantic error in the document, without the branches of unions."""
     branches = {
         *("constrained-str", "str", "int", "float", "dict[str,any]", "constrained-float"),
         *("gestures-part", "slot-part", "group-part"),
@@ -134,7 +131,7 @@ def list_document_steps(location: tuple[int | str, ...]) -> tuple[int | str, ...
 
 
 def _language_error(faults: list[Fault]) -> LanguageError:
-    """Make one error of several faults: the first one's pointer, and all of them in one line."""
+    """Return one error for several faults, with the first pointer and all messages in one line."""
     first, *others = faults[:MAX_FAULTS]
     message = first.message + "".join(f"; {fault.pointer}: {fault.message}" for fault in others)
     if len(faults) > MAX_FAULTS:

@@ -1,4 +1,4 @@
-"""Gestures to and from their entries in the language file."""
+"""Gesture entries: conversion of gestures to and from their entries in the language file."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
     Parameters
     ----------
     entry
-        As it stands in the file.
+        The entry in the file.
     pointer
         JSON pointer to it, for errors.
 
     Raises
     ------
     LanguageError
-        When its parts do not fit each other.
+        When its parts are inconsistent.
 
     """
     image = _image(entry.image, pointer + "/image")
@@ -127,7 +127,7 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
 
 
 def _check_words(entry: GestureEntry, pointer: str) -> None:
-    """Check what the schema cannot say, so that the fault has its own pointer."""
+    """Check rules that the schema cannot express, each with its own pointer."""
     for key, check in (("label", check_label), ("command", check_command)):
         try:
             check(getattr(entry, key))
@@ -152,7 +152,7 @@ def _image(text: str, pointer: str) -> BinaryImage:
 
 
 def _descriptors(entry: GestureEntry, image: BinaryImage, pointer: str) -> dict[str, FloatArray]:
-    """Check the lengths of known voters' descriptors; others are kept as they are."""
+    """Check the lengths of known voters' descriptors; others are kept unchanged."""
     lengths = {voter.name: voter.length(len(entry.salient)) for voter in PAPER_VOTERS}
     for name, values in entry.descriptors.items():
         if len(values) != lengths.get(name, len(values)):

@@ -1,4 +1,4 @@
-"""Grammars to and from their entry in the language file."""
+"""Grammar entry: conversion of grammars to and from their entry in the language file."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def entry_to_grammar(entry: GrammarEntry) -> Grammar:
     Raises
     ------
     LanguageError
-        When it contradicts itself; its pointer is that of the language file.
+        When it is inconsistent; its pointer is that of the language file.
 
     """
     return Grammar(

@@ -1,4 +1,4 @@
-"""The key ``grammar`` of the language file, as models; see `grammar` for what they mean."""
+"""Grammar schema: pydantic models of the language file's key ``grammar``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.phrases.phrase import MAX_REPEAT
 
 MAX_ENTRIES = 100
-"""Of every list: what is longer is refused before it is looked at."""
+"""Longest list; longer ones are refused before their entries are validated."""
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
@@ -63,7 +63,7 @@ class SlotEntry(_Model):
 
 
 def _kind_of_member(entry: Any) -> str | None:
-    """Tell the kinds of parts apart by the key that only one of them has."""
+    """Return the kind of a part by the key that only this kind has."""
     for key in ("gestures", "slot"):
         if (key in entry) if isinstance(entry, dict) else hasattr(entry, key):
             return f"{key}-part"

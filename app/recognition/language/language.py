@@ -1,4 +1,4 @@
-"""A gesture language: the gestures one diver and one robot agree on, and its file."""
+"""Gesture language: a named set of gestures, with grammar, profile, tuning and file format."""
 
 from __future__ import annotations
 
@@ -46,27 +46,25 @@ class Language:
     Attributes
     ----------
     name
-        For people.
+        Its name.
     gestures
-        In the author's order; any sequence is accepted, a tuple is kept. May be empty while a
-        language is being made.
+        In the author's order; any sequence is accepted and stored as a tuple. May be empty.
     author
-        Who made it.
+        Its author.
     created
-        When, in UTC to the second; now when not given.
+        Time of creation, in UTC to the second; now when not given.
     revision
-        Counts the edits, from 1.
+        Number of the revision, from 1.
     skeleton
         Pairs of landmarks joined by a bone, for drawing.
     thresholds_for
-        The `fingerprint` of the gestures that the thresholds were made for; empty: for none.
+        The `fingerprint` of the gestures that the thresholds were calibrated for; empty: none.
     grammar
-        Its phrases; None where every gesture stands for itself.
+        Its phrases; None if every gesture is a command of its own.
     profile
-        Voters that recognise it, one of `profile.PROFILES`.
+        The profile that recognises it, one of `profile.PROFILES`.
     tuning
-        How recognition deviates from that profile: what its author kept after trying it on a take.
-        Thresholds do not follow; they are the gestures'.
+        The author's changes to that profile. Thresholds do not depend on it.
 
     Raises
     ------
@@ -87,7 +85,7 @@ class Language:
     tuning: Tuning = AS_THE_PROFILE
 
     def __post_init__(self) -> None:
-        """Validate, and bring the fields to their kept form."""
+        """Validate and normalise the fields."""
         if not isinstance(self.name, str) or not self.name.strip():
             raise LanguageError(f"a language needs a name, got {self.name!r}", "/name")
         _check_text(self.name, MAX_NAME_LENGTH, "/name")
@@ -133,11 +131,11 @@ class Language:
 
     @property
     def fingerprint(self) -> str:
-        """What the thresholds depend on, in eight hexadecimal digits (CRC-32)."""
+        """CRC-32 of everything that the thresholds depend on, in eight hexadecimal digits."""
         checksum = crc32(RULE.encode())
         for gesture in self.gestures:
-            said = (gesture.salient, gesture.switches, gesture.image.any())
-            checksum = crc32(repr(said).encode("utf-8", "surrogatepass"), checksum)
+            relevant = (gesture.salient, gesture.switches, gesture.image.any())
+            checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
             if gesture.trajectory is not None:
                 shown = gesture.trajectory
                 checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
@@ -145,10 +143,9 @@ class Language:
         return f"{checksum:08x}"
 
     def calibrated(self) -> Language:
-        """Return the same revision with thresholds for exactly these gestures.
+        """Return the same revision with thresholds for its gestures.
 
-        That is the language itself where it has them. It takes about as long as a dozen
-        recognitions.
+        Returns the language itself if it has them. Takes about as long as a dozen recognitions.
         """
         fingerprint = self.fingerprint
         if not self.gestures or self.thresholds_for == fingerprint:
@@ -156,7 +153,7 @@ class Language:
         return replace(self, gestures=calibrate(self.gestures), thresholds_for=fingerprint)
 
     def tuning_with(self, profile: str) -> Tuning:
-        """Return how recognition by a profile is tuned: weights are for the language's own."""
+        """Return the tuning for a profile; weight factors apply to the language's own only."""
         return self.tuning if profile == self.profile else replace(self.tuning, weights={})
 
     def with_gesture(self, gesture: Gesture) -> Language:
@@ -182,7 +179,7 @@ class Language:
         unwanted = self.gesture(label)
         if self.grammar is not None and (users := self.grammar.users_of(label)):
             raise LanguageError(
-                f"{label!r} cannot be taken out, it is needed by {join_words(users)}: change the "
+                f"{label!r} cannot be removed, it is needed by {join_words(users)}: change the "
                 "phrases first",
                 "/grammar",
             )
@@ -204,7 +201,7 @@ class Language:
         return replace(self, gestures=gestures, grammar=grammar)
 
     def to_json(self) -> str:
-        """Write the language file's text; the same language gives the same text."""
+        """Return the language file's text; the same language gives the same text."""
         assert self.created is not None  # set in __post_init__
         document = LanguageDocument(
             format=FORMAT,
@@ -230,8 +227,8 @@ class Language:
         Raises
         ------
         LanguageError
-            When anything in it is not as the schema and this class say; it lists the JSON
-            pointers to the faults and carries the first.
+            When it violates the schema or the rules of this class; the message lists the JSON
+            pointers of the errors, and `pointer` is the first.
 
         """
         document = read_document(text)
@@ -239,7 +236,7 @@ class Language:
         gestures = []
         for index, entry in enumerate(document.gestures):
             gesture = entry_to_gesture(entry, build_pointer("gestures", index))
-            gestures.append(gesture if current else gesture.redrawn())
+            gestures.append(gesture if current else gesture.redraw())
         return cls(
             name=document.name,
             gestures=gestures,
@@ -254,7 +251,7 @@ class Language:
         )
 
     def save(self, path: str | Path) -> None:
-        """Write the language file in one step: a reader sees the old file or the new one."""
+        """Write the language file atomically: readers see the old file or the new one."""
         target = Path(path)
         partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
         try:

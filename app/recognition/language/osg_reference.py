@@ -1,4 +1,4 @@
-"""The published implementation's language files (IRVLab/One-Shot-Gesture-Recognition, 2025).
+"""osg-reference: the published implementation's files (IRVLab/One-Shot-Gesture-Recognition, 2025).
 
 One JSON object: per label ``{"image": 224 lists of 224 integers, "salient_keypoints": upper-case
 MediaPipe names}``. It has no trajectory, author, units or versions, so reading one is lossy.
@@ -25,22 +25,22 @@ MAX_FILE_BYTES = 100_000_000
 """Over a hundred gestures: the published files take 850 kB each, the largest a few megabytes."""
 
 BACKGROUND_TOLERANCE = 25
-"""Grey levels, a tenth of the range as in the published code: closer to the background is
-background, which absorbs the soft edges of its strokes."""
+"""Grey levels by which strokes differ from the background: a tenth of the range, as in the
+published code, so that the soft edges of strokes are background."""
 
 
 def is_reference(content: bytes) -> bool:
-    """Tell the published implementation's file from ours, before any of it is parsed."""
+    """Return whether a file is the published implementation's, without parsing it."""
     return b'"salient_keypoints"' in content and b'"osg-studio/' not in content
 
 
 def to_reference(language: Language) -> str:
-    """Write a language as the published implementation reads it.
+    """Return a language as the published implementation's file.
 
     Raises
     ------
     LanguageError
-        When a salient keypoint is not one of MediaPipe's, the only ones it knows.
+        When a salient landmark is not one of MediaPipe's, the only ones it supports.
 
     """
     content = {}
@@ -48,8 +48,8 @@ def to_reference(language: Language) -> str:
         for name in gesture.salient:
             if name not in POSE_LANDMARKS:
                 raise LanguageError(
-                    f"gesture {gesture.label!r} follows {name!r}, and osg-reference files know "
-                    f"MediaPipe's landmarks only: keep this language as osg-studio",
+                    f"gesture {gesture.label!r} uses the keypoint {name!r}, and osg-reference "
+                    f"files support MediaPipe's only: keep this language as osg-studio",
                     build_pointer("gestures", index, "salient"),
                 )
         content[gesture.label] = {
@@ -62,9 +62,9 @@ def to_reference(language: Language) -> str:
 def from_reference(text: str | bytes, name: str) -> Language:
     """Read a language of the published implementation.
 
-    Strokes are what differs from the background, the commonest colour on the border; that reads
-    white or coloured strokes on black as well as the older red on white. Gestures have no
-    trajectory. One without a salient keypoint or stroke is kept and matches nothing.
+    The background is the commonest colour on the border, so that white or coloured strokes on
+    black are read as well as the older red on white. Gestures have no trajectory. One without a
+    salient keypoint or stroke is kept and matches nothing.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def _gesture(label: str, entry: Any) -> Gesture:
     salient = _salient(entry["salient_keypoints"], pointer + "/salient_keypoints")
     image = _image(entry["image"], pointer + "/image")
     try:
-        return Gesture(label=label, salient=salient, image=image).redrawn()
+        return Gesture(label=label, salient=salient, image=image).redraw()
     except GestureError as error:
         raise LanguageError(str(error), pointer) from error
 

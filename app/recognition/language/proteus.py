@@ -1,13 +1,13 @@
-"""Language definition files of PROTEUS (``.ldf``; Fulton, Edge and Sattar, IRVLab/proteus).
+"""PROTEUS export: language definition files (``.ldf``; Fulton, Edge and Sattar, IRVLab/proteus).
 
-What is known comes from that package's files and reader: an XML element ``language`` with ``meta``
-(name, robot, description, directory, read by their place), then ``input`` and ``output``, each with
-symbols, vectors and actions, then ``state``, ``context`` and ``actions``. A symbol has the
-attributes name, id, call_type (trigger, directional or quantity), description and tags, parted by
-commas. In all published files ``input`` is empty, and the reader skips it.
+By that package's files and reader: an XML element ``language`` with ``meta`` (name, robot,
+description, directory, read by their order), then ``input`` and ``output``, each with symbols,
+vectors and actions, then ``state``, ``context`` and ``actions``. A symbol has the attributes name,
+id, call_type (trigger, directional or quantity), description and tags, separated by commas. In all
+published files ``input`` is empty, and the reader skips it.
 
-So what an input symbol looks like is assumed to be what an output symbol looks like: both lists are
-made of the same class there. Demonstrations, phrases and commands have no place in the format.
+Input symbols are therefore assumed to have the form of output symbols, which are of the same class
+there. The format cannot hold demonstrations, phrases and commands.
 """
 
 from __future__ import annotations
@@ -20,37 +20,37 @@ from xml.etree import ElementTree
 
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.language import Language
-from app.recognition.phrases.grammar import FRAME
+from app.recognition.phrases.grammar_parts import FRAME
 
 SUFFIX = ".ldf"
 
 CallType = Literal["trigger", "directional", "quantity"]
 
 _DIRECTION = re.compile(r"\b(direction|heading|bearing|way|side)s?\b", re.IGNORECASE)
-"""What a slot type that is a direction is called."""
+"""Names of slot types that are directions."""
 
 
 def to_proteus(language: Language, robot: str = "") -> str:
-    """Write a language's gestures as the input symbols of a PROTEUS language.
+    """Return a language's gestures as the input symbols of a PROTEUS language.
 
     Parameters
     ----------
     language
-        Whose gestures.
+        The language.
     robot
-        Name of the robot it is for; empty: none.
+        Name of its robot; empty: none.
 
     """
     root = ElementTree.Element("language")
     meta = ElementTree.SubElement(root, "meta")
-    said = f"Arm gestures, revision {language.revision}" + (
+    description = f"Arm gestures, revision {language.revision}" + (
         f", by {language.author}" if language.author else ""
     )
-    # Their reader takes these four by their place.
+    # PROTEUS reads these four by their order.
     for tag, text in (
         ("name", language.name),
         ("robot", robot or "any"),
-        ("description", said),
+        ("description", description),
         ("directory", "."),
     ):
         ElementTree.SubElement(meta, tag).text = text
@@ -69,7 +69,7 @@ def to_proteus(language: Language, robot: str = "") -> str:
 
 
 def find_call_type(language: Language, label: str) -> CallType:
-    """Tell what a gesture gives the robot: a number, a direction, or no more than itself."""
+    """Return the kind of a gesture: ``quantity`` (a number), ``directional``, or ``trigger``."""
     slot_types = () if language.grammar is None else language.grammar.slot_types
     for slot_type in slot_types:
         if label in slot_type.values:
@@ -99,7 +99,7 @@ def _add_symbols(symbols: ElementTree.Element, language: Language) -> None:
 
 
 def _identifier(label: str, taken: Collection[str]) -> str:
-    """Return a name of a ROS parameter, which their server makes of every id."""
+    """Return an id that is a valid ROS parameter name, as PROTEUS' server requires."""
     plain = unicodedata.normalize("NFKD", label).encode("ascii", "ignore").decode().lower()
     stem = re.sub(r"[^a-z0-9]+", "_", plain).strip("_") or "gesture"
     if not stem[0].isalpha():
@@ -116,7 +116,7 @@ def _description(gesture: Gesture) -> str:
 
 
 def _tags(language: Language, gesture: Gesture) -> list[str]:
-    """Return the published files' own words: what frames a message controls the conversation."""
+    """Return the tags of the published files; start, end and cancel gestures get their own."""
     grammar = language.grammar
     tags = []
     if grammar is not None and gesture.label in {getattr(grammar, role) for role in FRAME}:

@@ -1,4 +1,4 @@
-"""What a robot needs to understand a language: landmarks to follow, and models to find them."""
+"""Requirements of a language: the landmarks it uses, and the models that find them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from app.recognition.poses.landmarks import HIPS, SHOULDERS
 
 @dataclass(frozen=True)
 class Requirements:
-    """What recognising a language takes.
+    """The requirements of recognising a language.
 
     Attributes
     ----------
     salient
-        Landmarks that carry a gesture, in alphabetical order: without one of them the gestures
-        that follow it are never recognised.
+        The gestures' salient landmarks, in alphabetical order: without one of them its gestures
+        are never recognised.
     limbs
-        Landmarks that make recognition surer where they are seen: the arms those belong to.
+        Landmarks of the arms of those, which make recognition more certain where seen.
     torso
-        Landmarks that distance and drift are taken out by; without them the recording's own
-        extent is the unit.
+        Landmarks that normalise distance and drift; without them the unit is the extent of the
+        movement.
     models
         Names of the models that find them, see ``osg-studio models``.
 
@@ -39,7 +39,7 @@ class Requirements:
 
 
 def find_requirements(language: Language) -> Requirements:
-    """Tell what recognising a language takes."""
+    """Return the requirements of a language."""
     salient = find_followed_landmarks([gesture.salient for gesture in language.gestures])
     known = {
         name
@@ -54,21 +54,21 @@ def find_requirements(language: Language) -> Requirements:
 
 
 def require_landmarks(language: Language, landmarks: Collection[str], source: str) -> None:
-    """Refuse a source of poses that lacks what a language's gestures follow.
+    """Check that a source of poses has the salient landmarks of a language.
 
     Parameters
     ----------
     language
         The language to recognise.
     landmarks
-        Names of the landmarks that the source gives, seen or not.
+        Names of the source's landmarks, seen or not.
     source
-        What it is called, for the message.
+        Its name in the message.
 
     Raises
     ------
     LandmarkError
-        Naming the first landmark that is missing, the gesture that follows it, and what to do.
+        With the first missing landmark, the gesture that uses it, and what to do.
 
     """
     for gesture in language.gestures:

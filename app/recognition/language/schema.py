@@ -1,6 +1,6 @@
-"""The language file, version 1, as models: what may stand in it, with units and axes.
+"""Language schema: pydantic models of the language file, version 1, with units and axes.
 
-The JSON Schema published in `schema/` is generated from here.
+The JSON Schema published in `schema/` is generated from them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SCHEMA_ID = f"urn:osg-studio:gesture-language:{VERSION}"
 SCHEMA_FILE = f"gesture-language-{VERSION}.schema.json"
 
 MAX_GESTURES = 1000
-"""Far beyond what divers can learn (published languages have at most 20 signs); it bounds work."""
+"""Most gestures, which bounds the work; published languages have at most 20 signs."""
 
 MAX_FILE_BYTES = 64_000_000
 """1000 gestures of 40 kB, and half as much again for descriptions and commands."""
@@ -82,11 +82,11 @@ class RatesEntry(_Model):
 
     miss: Annotated[
         FiniteFloat,
-        Field(ge=0, le=1, description="Share of other people's takes that are refused."),
+        Field(ge=0, le=1, description="Share of other people's takes that are rejected."),
     ]
     false_alarm: Annotated[
         FiniteFloat,
-        Field(ge=0, le=1, description="Share of movements that mean nothing that are accepted."),
+        Field(ge=0, le=1, description="Share of out-of-vocabulary movements that are accepted."),
     ]
 
 
@@ -157,7 +157,7 @@ class TuningEntry(_Model):
 
     weights: Annotated[
         dict[Name, Annotated[FiniteFloat, Field(ge=0, le=MAX_FACTOR)]],
-        Field(description="Factor per voter on its say, 0: off. Voters left out keep 1."),
+        Field(description="Weight factor per voter, 0: off. Voters left out keep 1."),
     ] = {}
     simplification: Annotated[
         FiniteFloat | None,
@@ -232,12 +232,12 @@ class LanguageDocument(_Model):
 
 
 def generate_schema() -> str:
-    """Return the JSON Schema 2020-12 of the file as text, made from the models."""
+    """Return the JSON Schema 2020-12 of the file as text, generated from the models."""
     schema = LanguageDocument.model_json_schema()
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
     return json.dumps(head | schema, indent=2) + "\n"
 
 
 def load_schema() -> str:
-    """Return the JSON Schema as it is checked in and shipped."""
+    """Return the JSON Schema that is checked in and shipped."""
     return (resources.files("app.recognition") / "schema" / SCHEMA_FILE).read_text("utf-8")

@@ -1,4 +1,4 @@
-"""Tunings to and from their entry in the language file."""
+"""Tuning entry: conversion of tunings to and from their entry in the language file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.recognition.language.schema import TuningEntry
 
 
 def tuning_to_entry(tuning: Tuning) -> TuningEntry | None:
-    """Return the file's entry of a tuning; None where nothing differs from the profile."""
+    """Return the file's entry of a tuning; None if it changes nothing."""
     if tuning == AS_THE_PROFILE:
         return None
     return TuningEntry(
@@ -19,7 +19,7 @@ def tuning_to_entry(tuning: Tuning) -> TuningEntry | None:
 
 
 def entry_to_tuning(entry: TuningEntry | None) -> Tuning:
-    """Return the tuning of a file's entry, or where there is none."""
+    """Return the tuning of a file's entry, or the default without one."""
     if entry is None:
         return AS_THE_PROFILE
     return Tuning(

@@ -1,1 +1,1 @@
-"""Dynamic time warping (DTW): alignments of two sequences and their cost."""
+"""Sequence matching: dynamic time warping (DTW) and the distances between steps it uses."""

@@ -1,7 +1,7 @@
-"""Elastic matching: how far sequences lie apart when each may run ahead of the other for a while.
+"""Dynamic time warping (DTW) between one query and many references (Sakoe and Chiba 1978).
 
-Dynamic time warping (Sakoe and Chiba 1978) between one query and many references at once: the costs
-of their steps as products of matrices, of which `warping` finds the best alignments.
+The costs of all pairs of steps are matrix products (`step_distances`); `dtw_kernel` finds the best
+alignments of them.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from app.recognition.poses.sequence import FloatArray
 
 
 def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
-    """Measure the cost of the best alignment of a query with each reference.
+    """Compute the DTW distance of a query to each reference: the cost of the best alignment.
 
     Parameters
     ----------
     query
-        ``(N, D)``, one vector a step. NaN: this component of the vector is not known; it is left
-        out, and what is known of the two vectors stands for the whole.
+        ``(N, D)``, one vector a step. NaN: an unknown component, which is left out; the known
+        components are scaled to stand for the whole vector.
     references
         ``(M, N, D)``.
     band
@@ -38,8 +38,8 @@ def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> Float
 
     Returns
     -------
-    ``(M,)``: squared Euclidean distances summed along the alignment over N, so that it does not
-    grow with the number of steps; infinite where nothing can be compared.
+    ``(M,)``: squared Euclidean distances summed along the alignment, divided by N, so that they
+    do not grow with the number of steps; infinite where nothing can be compared.
 
     """
     count = count_half_steps(len(query), band)
@@ -49,10 +49,10 @@ def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> Float
 
 @dataclass(frozen=True, eq=False)
 class DtwReferences:
-    """Sequences that many queries are compared with, prepared once.
+    """DTW references: sequences prepared once for comparison with many queries.
 
-    As `dtw_distances`, but components that the query does not know at any step, or none of the
-    references, are left out before: what is known of two vectors stands for the others.
+    The distances are those of `dtw_distances`, but components that are unknown at all steps of
+    the query, or of all references, are left out first.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class DtwReferences:
     band: int
 
     def distances(self, query: FloatArray) -> FloatArray:
-        """Return the elastic distances of ``(N, D)`` to all references, ``(R,)``."""
+        """Return the DTW distances of ``(N, D)`` to all references, ``(R,)``."""
         return compute_alignment_costs(self.step_costs(query), len(query), self.band)
 
     def step_costs(
@@ -76,7 +76,7 @@ class DtwReferences:
         rows: npt.NDArray[np.intp] | None = None,
         out: StepCosts | None = None,
     ) -> StepCosts:
-        """Compare the steps of a query with those of some references, from both ends.
+        """Compute the costs of a query's steps against some references, from both ends.
 
         Parameters
         ----------
@@ -85,13 +85,12 @@ class DtwReferences:
         rows
             Indices of M of the references; all when not given.
         out
-            Where to write the answer: asking the system for fresh memory for each would take
-            longer than the arithmetic.
+            Array to write the result to; allocating memory would take longer than the arithmetic.
 
         Returns
         -------
-        ``(2, H, H, M)``: squared distances of the first H steps, and of the last H from the last
-        one backwards, for `compute_alignment_costs`; infinite where nothing is comparable.
+        ``(2, H, H, M)``: squared distances of the first H steps, and of the last H in reverse
+        order, for `compute_alignment_costs`; infinite where nothing is comparable.
 
         """
         count = count_half_steps(len(query), self.band)
@@ -115,12 +114,12 @@ class DtwReferences:
 
     @cached_property
     def known(self) -> npt.NDArray[np.intp]:
-        """Indices of the components that any reference knows at any step."""
+        """Indices of the components that are known in any reference at any step."""
         return np.flatnonzero(np.isfinite(self.sequences).any(axis=(0, 1)))
 
     @cached_property
     def complete(self) -> bool:
-        """Whether all references know these components throughout."""
+        """Whether these components are known at all steps of all references."""
         return bool(len(self.known) and np.isfinite(self.sequences[..., self.known]).all())
 
     def _sides_of(self, rows: npt.NDArray[np.intp] | None) -> StepCosts:
@@ -137,22 +136,18 @@ class DtwReferences:
 
     @cached_property
     def sides_by_row(self) -> StepCosts:
-        """The same with the references first, ``(R, 2, D' + 2, H)``.
-
-        A few of them are then gathered from few places.
-        """
+        """The same with the references first, ``(R, 2, D' + 2, H)``: faster to take some rows."""
         return np.ascontiguousarray(np.moveaxis(self._sides, -1, 0))
 
 
 @dataclass(frozen=True, eq=False)
 class DtwBatch:
-    """The same sequences as several voters see them, for queries that all of these look at.
+    """A batch of DTW references: the descriptors of several voters, compared together.
 
     Attributes
     ----------
     views
-        V of them, with the same numbers of sequences and of steps, and the same band.
-
+        V references, one a voter, with the same numbers of sequences and steps, and the same band.
     """
 
     views: tuple[DtwReferences, ...]
@@ -160,10 +155,10 @@ class DtwBatch:
     def step_costs(
         self, queries: Sequence[FloatArray], rows: npt.NDArray[np.intp] | None = None
     ) -> StepCosts:
-        """Compare the steps of a query with those of some references, from both ends.
+        """Compute the costs of a query's steps against some references, from both ends.
 
-        What lies side by side is prepared and gathered at once: each view alone is so small that
-        the calls would take longer than the arithmetic.
+        All views are gathered and multiplied at once: each alone is so small that the calls would
+        take longer than the arithmetic.
 
         Parameters
         ----------
@@ -194,7 +189,7 @@ class DtwBatch:
     def _joined_costs(
         self, query: FloatArray, rows: npt.NDArray[np.intp] | None, costs: StepCosts
     ) -> None:
-        """Fill in the costs of the joined views; the query ``(N, D)``, all side by side."""
+        """Write the costs of the joined views; the query is ``(N, D)``, all views side by side."""
         _, _, _, count, pairs = costs.shape
         sides = self._sides_by_row if rows is None else self._sides_by_row.take(rows, axis=0)
         right = np.ascontiguousarray(sides.transpose(1, 2, 3, 0))
@@ -213,16 +208,16 @@ class DtwBatch:
 
     @cached_property
     def _known(self) -> npt.NDArray[np.intp]:
-        """Which components of all views side by side the joined ones know."""
+        """Indices of the joined views' known components among all views side by side."""
         widths = [view.sequences.shape[-1] for view in self.views]
         starts = np.cumsum([0, *widths])
         return np.concatenate([starts[index] + self.views[index].known for index in self._joined])
 
     @cached_property
     def _left_of_powers(self) -> StepCosts:
-        """``(2 D + 1, P)``: turns what is known of a step, its squares and 1 into the left sides.
+        """``(2 D + 1, P)``: maps a step's known components, their squares and 1 to left sides.
 
-        Those of all joined views, side by side, by one product: each alone is a few numbers.
+        One product gives the left sides of all joined views, side by side.
         """
         size = len(self._known)
         turned = np.zeros((2 * size + 1, self._sides_by_row.shape[2]), dtype=np.float32)
@@ -238,7 +233,7 @@ class DtwBatch:
 
     @cached_property
     def _joined(self) -> dict[int, slice]:
-        """Of the views that are complete the index, and the rows of the products' right sides."""
+        """Rows of the products' right sides by the index of each complete view."""
         joined, start = {}, 0
         for index, view in enumerate(self.views):
             if view.complete:
@@ -253,7 +248,7 @@ class DtwBatch:
 
 
 def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArray[Precision]:
-    """Take the first steps of ``(..., N, D)``, and the last ones backwards: ``(2, ..., H, D)``."""
+    """Return the first steps of ``(..., N, D)`` and the last ones reversed: ``(2, ..., H, D)``."""
     shape = (2, *sequences.shape[:-2], count, sequences.shape[-1])
     ends = np.empty(shape, dtype=sequences.dtype)
     ends[0], ends[1] = sequences[..., :count, :], sequences[..., ::-1, :][..., :count, :]
@@ -261,7 +256,7 @@ def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArra
 
 
 def dtw_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArray[np.intp]:
-    """Find the best alignment itself, for one reference: which step corresponds to which.
+    """Find the best DTW alignment of a query with one reference: the pairs of aligned steps.
 
     Parameters
     ----------
@@ -273,13 +268,13 @@ def dtw_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArra
     Returns
     -------
     ``(S, 2)``: steps of the query and of the reference, from the first of both to the last of
-    both, of which each or either runs on. The costs of these pairs add up to the distance; of
-    equally good alignments the one in which both run on is taken.
+    both; from pair to pair one or both advance. The costs of these pairs add up to the distance;
+    of equally good alignments the one in which both advance is chosen.
 
     """
     costs = squared_distances(query, reference[None])[..., 0]
     steps = len(query)
-    # Row and column 0 stand before the first steps.
+    # Row and column 0 are before the first steps.
     total = np.full((steps + 1, steps + 1), np.inf)
     total[0, 0] = 0.0
     for i in range(steps):

@@ -1,8 +1,8 @@
-"""The best alignments of sequences, once the costs of their steps are known.
+"""DTW kernel: costs of the best alignments, from the costs of all pairs of steps.
 
-The recurrence of dynamic time warping (Sakoe and Chiba 1978) goes along anti-diagonals, on which no
-cell depends on another one, and from both ends of the sequences at once until the two halves meet:
-N steps of three array operations over all pairs of sequences.
+The recurrence of dynamic time warping (Sakoe and Chiba 1978) runs along anti-diagonals, whose cells
+are independent, and from both ends of the sequences at once until the halves meet: N steps of three
+array operations over all pairs of sequences.
 """
 
 from __future__ import annotations
@@ -20,37 +20,37 @@ from app.recognition.matching.step_distances import ROUNDING
 from app.recognition.poses.sequence import FloatArray
 
 StepCosts = npt.NDArray[np.float32]
-"""Costs of prepared references: half the memory of doubles, through which most of the time goes.
-Of descriptors, whose mean square is about 1, the distances are right to a millionth."""
+"""Single precision: memory traffic takes most of the time. Descriptors have a mean square of about
+1, of which distances are exact to a millionth."""
 
 Totals = npt.NDArray[np.float32 | np.float64]
 
 ROUNDING_OF_STEP_COSTS = 4e-6
-"""Distances below it are 0 where costs are in single precision: rounding leaves about a millionth
-of the mean square, and two takes of a gesture lie ten thousand times as far apart."""
+"""Distances below it are set to 0 in single precision: rounding errors are about a millionth of the
+mean square, and two takes of a gesture differ by ten thousand times as much."""
 
 
 def count_half_steps(steps: int, band: int) -> int:
-    """Return H: how many steps from either end an alignment may reach until the halves meet."""
+    """Return H, the number of steps from either end until the halves of an alignment meet."""
     return (steps - 1 + min(band, steps - 1)) // 2 + 1
 
 
 def compute_alignment_costs(
     costs: npt.NDArray[np.float32 | np.float64], steps: int, band: int
 ) -> FloatArray:
-    """Measure the cost of the best alignment of steps, for many pairs of sequences at once.
+    """Compute the cost of the best alignment, for many pairs of sequences at once.
 
     Parameters
     ----------
     costs
-        ``(2, ..., H, H, M)``: of each step of the one sequence against each of the other, for M
-        pairs, from the first steps on and from the last ones back; H of `count_half_steps`.
+        ``(2, ..., H, H, M)``: of each step of one sequence against each of the other, for M
+        pairs, first from the start, then reversed from the end; H of `count_half_steps`.
     steps, band
         N and the band, as for `dtw_distances`.
 
     Returns
     -------
-    ``(..., M)``: costs summed along the alignment over N.
+    ``(..., M)``: costs summed along the alignment, divided by N.
 
     """
     _, *points_of_view, count, _, pairs = costs.shape
@@ -74,22 +74,21 @@ def compute_alignment_costs(
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
-    """Memory for the totals of one shape of costs, and what each diagonal sees of it.
+    """Working memory for costs of one shape, with each diagonal's slices of it.
 
-    Prepared once, since cutting it out anew would take a fifth of the time of an alignment.
+    Prepared once, because slicing takes a fifth of the time of an alignment.
 
     Attributes
     ----------
     totals
-        ``(offsets, 2 V, M)`` of the diagonals with even and with odd numbers. Cells of one diagonal
-        do not depend on each other, but on those of the diagonal before, whose offsets i - j are
-        odd where these are even: kept apart, either lie side by side in memory.
+        ``(offsets, 2 V, M)`` of the even and of the odd diagonals. The cells of a diagonal depend
+        on those of the diagonal before, whose offsets i - j have the other parity; stored apart,
+        the cells of either are contiguous.
     diagonals
         Of each, in order: its own totals; the neighbours on either side, from the diagonal before;
-        room for the least of these three; and the places of its costs.
+        room for the least of these three; and the indices of its costs.
     meets_in_cells
         Whether the last diagonal is the one in the middle, and not the one before it.
-
     """
 
     totals: tuple[Totals, Totals]
@@ -97,7 +96,7 @@ class _Sweep:
     meets_in_cells: bool
 
     @classmethod
-    def prepared(
+    def prepare(
         cls, views: int, pairs: int, steps: int, band: int, precision: np.dtype[Any]
     ) -> _Sweep:
         """Prepare for V views of M pairs of sequences of N steps."""
@@ -116,34 +115,34 @@ class _Sweep:
 
 
 class _Sweeps(local):
-    """The sweeps of the shapes that a thread asked for last; each has its own memory."""
+    """The last used sweeps of each thread; every sweep has its own memory."""
 
     def __init__(self) -> None:
-        self.of = lru_cache(maxsize=4)(_Sweep.prepared)
+        self.of = lru_cache(maxsize=4)(_Sweep.prepare)
 
 
 _SWEEPS = _Sweeps()
 
 
 def _outer_offsets(band: int) -> tuple[int, int]:
-    """Return the least even and odd offsets beyond the band, where totals stay infinite."""
+    """Return the smallest even and odd offsets beyond the band, where totals stay infinite."""
     return band + 1 + (band + 1) % 2, band + 1 + band % 2
 
 
 @dataclass(frozen=True)
 class _Diagonal:
-    """Where the cells of an anti-diagonal within the band lie.
+    """Indices of the cells of an anti-diagonal within the band.
 
     Attributes
     ----------
     number
         i + j.
     own
-        Of the totals with its parity.
+        In the totals with its parity.
     one, other
-        Of the totals with the other parity: the neighbours on the diagonal before.
+        In the totals with the other parity: the neighbours on the diagonal before.
     cells
-        Of the costs, one row a pair of steps.
+        In the costs, one row a pair of steps.
 
     """
 
@@ -156,7 +155,7 @@ class _Diagonal:
 
 @lru_cache(maxsize=64)
 def _diagonals(steps: int, band: int) -> tuple[_Diagonal, ...]:
-    """Return the anti-diagonals, up to the one where the halves meet, with a cell in the band."""
+    """Return the anti-diagonals with cells in the band, up to the one where the halves meet."""
     found, count, outer = [], count_half_steps(steps, band), _outer_offsets(band)
     for number in range(steps):
         reach = min(band, number)

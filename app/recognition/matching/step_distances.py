@@ -1,4 +1,4 @@
-"""Distances between the steps of sequences: squared, all steps with all, as matrix products.
+"""Step distances: squared distances of all steps of sequences to each other, as matrix products.
 
 ``|q - r|^2 = |q|^2 - 2 q . r + |r|^2`` is the product of ``(-2 q, |q|^2, 1)`` and
 ``(r, 1, |r|^2)``, so that one multiplication of matrices compares a query with many references.
@@ -18,7 +18,7 @@ from app.recognition.poses.sequence import FloatArray
 Precision = TypeVar("Precision", np.float32, np.float64)
 
 ROUNDING = 1e-12
-"""Squared distances below it are what rounding leaves of differences of nearly equal sums: 0."""
+"""Squared distances below it are rounding errors of nearly equal sums and set to 0."""
 
 
 def squared_distances(
@@ -26,15 +26,15 @@ def squared_distances(
     references: FloatArray,
     out: npt.NDArray[np.float32 | np.float64] | None = None,
 ) -> npt.NDArray[np.float32 | np.float64]:
-    """Measure the squared distance of every step of the query to every step of the references.
+    """Compute the squared distance of every step of the query to every step of the references.
 
     Parameters
     ----------
     query, references
-        ``(..., N, D)`` and ``(..., M, N, D)``. NaN: this component is not known; it is left out,
-        and what is known of two vectors stands for the whole.
+        ``(..., N, D)`` and ``(..., M, N, D)``. NaN: an unknown component, which is left out; the
+        known components are scaled to stand for the whole vector.
     out
-        Where to write the answer, rounded as it must be; the last three axes contiguous.
+        Array to write the result to, in its own precision; the last three axes contiguous.
 
     Returns
     -------
@@ -47,16 +47,16 @@ def squared_distances(
         out = np.empty((*leading, query.shape[-2], steps, count))
     squares = out.reshape(flat)
     if query.shape[-1] and np.isfinite(query).all() and np.isfinite(references).all():
-        np.matmul(for_query(query), _flat(for_references(references)), out=squares)
+        np.matmul(for_query(query), _flatten(for_references(references)), out=squares)
     else:
-        _of_what_is_known(query, references, squares)
+        _compute_partial(query, references, squares)
     squares[squares < ROUNDING] = 0.0
     return out
 
 
 @dataclass(frozen=True, eq=False)
 class StepReferences:
-    """Sequences whose steps are compared with those of many queries, prepared once.
+    """Step references: sequences prepared once for comparison with the steps of many queries.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class StepReferences:
     sequences: FloatArray
 
     def squared_distances(self, query: FloatArray) -> FloatArray:
-        """Return `squared_distances` of ``(N, D)``, but for what rounding leaves of 0."""
+        """Return `squared_distances` of ``(N, D)``, without setting rounding errors to 0."""
         if self._complete and np.isfinite(query).all():
             squares = for_query(query) @ self._side
             return squares.reshape(len(query), *self.sequences.shape[1::-1])
@@ -80,7 +80,7 @@ class StepReferences:
 
     @cached_property
     def _side(self) -> FloatArray:
-        return _flat(for_references(self.sequences))
+        return _flatten(for_references(self.sequences))
 
 
 def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:
@@ -102,14 +102,14 @@ def for_references(references: npt.NDArray[Precision]) -> npt.NDArray[Precision]
     return right
 
 
-def _of_what_is_known(
+def _compute_partial(
     query: FloatArray, references: FloatArray, out: npt.NDArray[np.float32 | np.float64]
 ) -> None:
-    """Write the squares, ``(..., N, N M)``, for vectors with components that are not known."""
+    """Compute the squared distances, ``(..., N, N M)``, of vectors with unknown components."""
     known, others_known = np.isfinite(query), np.isfinite(references)
     left, right = np.where(known, query, 0.0), np.where(others_known, references, 0.0)
-    mask, others_mask = known.astype(np.float64), _turned(others_known.astype(np.float64))
-    turned = _turned(right)
+    mask, others_mask = known.astype(np.float64), _transpose(others_known.astype(np.float64))
+    turned = _transpose(right)
     squares = left**2 @ others_mask + mask @ turned**2 - 2.0 * (left @ turned)
     compared = mask @ others_mask
     scale = np.divide(
@@ -118,13 +118,13 @@ def _of_what_is_known(
     np.multiply(np.where(compared > 0, squares, 1.0), scale, out=out)
 
 
-def _turned(references: FloatArray) -> FloatArray:
-    """Turn ``(..., M, N, D)`` into ``(..., D, N M)``."""
+def _transpose(references: FloatArray) -> FloatArray:
+    """Reshape ``(..., M, N, D)`` to ``(..., D, N M)``."""
     turned = np.ascontiguousarray(np.moveaxis(references, (-1, -2, -3), (-3, -2, -1)))
-    return _flat(turned)
+    return _flatten(turned)
 
 
-def _flat(sides: FloatArray) -> FloatArray:
-    """Put the steps of all references side by side: ``(..., D, N, M)`` to ``(..., D, N M)``."""
+def _flatten(sides: FloatArray) -> FloatArray:
+    """Flatten the steps of all references: ``(..., D, N, M)`` to ``(..., D, N M)``."""
     *leading, steps, count = sides.shape
     return sides.reshape(*leading, steps * count)

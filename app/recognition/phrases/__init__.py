@@ -1,1 +1,1 @@
-"""Phrases: the grammar of gesture sequences, its automaton, parser and interpretation."""
+"""Phrases: grammars of gesture sequences, with automaton, parser and interpretation."""

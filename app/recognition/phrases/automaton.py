@@ -1,8 +1,8 @@
-"""The finite automaton of a grammar's messages (Glushkov 1961).
+"""Phrase automaton: the finite automaton of a grammar's messages (Glushkov 1961).
 
-Its positions are the occurrences of gestures in the grammar, every bounded repetition written out;
-a message is a walk over positions, and what the walk says is its parse. Nothing is consumed
-without a gesture, so the parser and the search for ambiguities both go gesture by gesture.
+Its positions are the occurrences of gestures in the grammar, with every bounded repetition written
+out; a message is a walk over positions that yields its parse. Every step consumes a gesture, so the
+parser and the search for ambiguities work gesture by gesture.
 """
 
 from __future__ import annotations
@@ -21,18 +21,15 @@ BEFORE = -1
 
 
 class Contribution(NamedTuple):
-    """What one gesture adds to a parse.
-
-    A phrase that begins has only its index; a value has its slot, too.
-    """
+    """One element of a parse: the beginning of a phrase, or a value in a slot."""
 
     phrase: int
     slot: str | None = None
     value: Value | None = None
 
 
-Reading = tuple[Contribution, ...]
-"""What a walk says, in order: for each phrase that it begins, and each value in a slot."""
+Parse = tuple[Contribution, ...]
+"""The contributions of a walk in order: each phrase that begins, and each value in a slot."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +39,15 @@ class Position:
     Attributes
     ----------
     values
-        Per label that may stand here its value; None for a gesture that carries none.
+        By allowed label its value; None for a gesture without value.
     phrase
         Index of the phrase that it is part of, or ends; None for a start gesture.
     turn
-        Which of the message's phrases it is part of, from 0.
+        Index of its phrase in the message, from 0.
     slot
-        Name of the slot that it fills, if it does.
+        Name of the slot that it fills, if any.
     inside
-        Whether it is part of the phrase, rather than of what frames it.
+        Whether it is part of the phrase, not of the frame.
 
     """
 
@@ -63,7 +60,7 @@ class Position:
 
 @dataclass
 class _Fragment:
-    """Part of the automaton: where it begins and ends, and whether it may be left out."""
+    """Part of the automaton: its first and last positions, and whether it is optional."""
 
     first: tuple[int, ...] = ()
     last: tuple[int, ...] = ()
@@ -71,21 +68,21 @@ class _Fragment:
 
 
 class PhraseAutomaton:
-    """All messages of a grammar.
+    """The finite automaton of all messages of a grammar.
 
     Parameters
     ----------
     grammar
-        Whose messages.
+        The grammar.
     most_phrases
-        Phrases in one message; as the grammar says when None.
+        Phrases in one message; the grammar's own number when None.
 
     Attributes
     ----------
     positions
         Every occurrence of a gesture.
     accepting
-        Positions at which a message may be over.
+        Positions at which a message may end.
 
     """
 
@@ -102,43 +99,42 @@ class PhraseAutomaton:
         self.accepting = frozenset(accepting)
 
     def following(self, position: int) -> frozenset[int]:
-        """Return the positions that may come next."""
+        """Return the positions that may follow."""
         return frozenset(self._first if position == BEFORE else self._follow[position])
 
-    def moves(self, position: int) -> Mapping[str, Sequence[tuple[int, Reading]]]:
-        """Return per label the positions that it leads to, and what that adds to the parse."""
+    def moves(self, position: int) -> Mapping[str, Sequence[tuple[int, Parse]]]:
+        """Return by label the positions that it leads to, each with its addition to the parse."""
         return self._moves[position]
 
     @cached_property
-    def _moves(self) -> dict[int, dict[str, list[tuple[int, Reading]]]]:
-        table: dict[int, dict[str, list[tuple[int, Reading]]]] = {}
+    def _moves(self) -> dict[int, dict[str, list[tuple[int, Parse]]]]:
+        table: dict[int, dict[str, list[tuple[int, Parse]]]] = {}
         for position in range(BEFORE, len(self.positions)):
             moves = table.setdefault(position, {})
             for target in sorted(self.following(position)):
                 for label in self.positions[target].values:
                     moves.setdefault(label, []).append(
-                        (target, self._said(position, target, label))
+                        (target, self._contributions(position, target, label))
                     )
         return table
 
-    def _said(self, position: int, target: int, label: str) -> Reading:
+    def _contributions(self, position: int, target: int, label: str) -> Parse:
         there = self.positions[target]
         if not there.inside or there.phrase is None:
             return ()
         here = None if position == BEFORE else self.positions[position]
         begins = here is None or not here.inside or here.turn != there.turn
-        said: Reading = (Contribution(there.phrase),) if begins else ()
+        added: Parse = (Contribution(there.phrase),) if begins else ()
         if there.slot is not None:
-            said += (Contribution(there.phrase, there.slot, there.values[label]),)
-        return said
+            added += (Contribution(there.phrase, there.slot, there.values[label]),)
+        return added
 
     def _add_turn(self, turn: int, before: set[int] | None) -> tuple[set[int], set[int]]:
-        """Add one more phrase of a message.
+        """Add one more phrase to a message.
 
         Returns
         -------
-        The positions after which another phrase may begin, and those at which the message may be
-        over.
+        The positions after which another phrase may begin, and those at which the message may end.
 
         """
         grammar = self.grammar
@@ -175,14 +171,14 @@ class PhraseAutomaton:
     def _sequence(self, parts: Sequence[Part], phrase: int, turn: int) -> _Fragment:
         whole = _Fragment()
         for part in parts:
-            whole = self._concatenated(whole, self._repeated(part, phrase, turn))
+            whole = self._concatenate(whole, self._repeat(part, phrase, turn))
         return whole
 
-    def _repeated(self, part: Part, phrase: int, turn: int) -> _Fragment:
-        """Write a part out `most` times; from `least` on, all that is left may be left out."""
+    def _repeat(self, part: Part, phrase: int, turn: int) -> _Fragment:
+        """Repeat a part `most` times; repetitions beyond `least` are optional."""
         tail = _Fragment()
         for index in reversed(range(part.most)):
-            tail = self._concatenated(self._once(part, phrase, turn), tail)
+            tail = self._concatenate(self._once(part, phrase, turn), tail)
             tail.nullable = tail.nullable or index >= part.least
         return tail
 
@@ -197,7 +193,7 @@ class PhraseAutomaton:
         added = self._add(position)
         return _Fragment((added,), (added,), nullable=False)
 
-    def _concatenated(self, one: _Fragment, other: _Fragment) -> _Fragment:
+    def _concatenate(self, one: _Fragment, other: _Fragment) -> _Fragment:
         self._join(set(one.last), other.first)
         return _Fragment(
             first=tuple(chain(one.first, other.first if one.nullable else ())),

@@ -1,8 +1,8 @@
-"""A grammar: which sequences of gestures are phrases, and what each tells the robot.
+"""Grammar: the phrases of a language, which are sequences of gestures with one command.
 
-Modelled on CADDIAN (Chiarella et al. 2015, 2018): a message is opened and closed by a gesture of
-its own, and a phrase has slots for quantities. Every repetition is bounded, so the sequences are
-finitely many and what is ambiguous can be found exactly, see `ambiguity`.
+Modelled on CADDIAN (Chiarella et al. 2015, 2018): messages have start and end gestures, and phrases
+have slots for quantities. Every repetition is bounded, so there are finitely many sequences and
+ambiguities can be found exactly, see `ambiguity`.
 """
 
 from __future__ import annotations
@@ -11,99 +11,28 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from app.recognition.errors import LanguageError
+from app.recognition.phrases.grammar_parts import GrammarParts
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
 from app.recognition.phrases.validation import check_grammar
-from app.recognition.text.strict_json import build_pointer
-
-DEFAULT_TIMEOUT = 10.0
-"""Seconds: as long as attention stays with a dialogue that does not answer (Nielsen 1993)."""
-
-FRAME = ("start", "end", "cancel")
-"""The gestures around a message, by their roles."""
 
 
 @dataclass(frozen=True)
-class Use:
-    """Where a grammar names a gesture.
-
-    Attributes
-    ----------
-    label
-        The gesture's.
-    pointer
-        JSON pointer into the language file.
-    where
-        The same in words.
-    role
-        One of `FRAME`; None inside a phrase or a slot type.
-
-    """
-
-    label: str
-    pointer: str
-    where: str
-    role: str | None = None
-
-
-@dataclass(frozen=True)
-class Grammar:
-    """All phrases of a language, and what frames them.
-
-    Attributes
-    ----------
-    phrases
-        In the author's order.
-    slot_types
-        What slots may be filled with.
-    start, end
-        Labels of the gestures that open and close a message; None: none is needed.
-    cancel
-        Label of the gesture that drops what was begun.
-    timeout
-        Most seconds between the end of a gesture and the start of the next one of a message.
-    most_phrases
-        Phrases in one message, one after the other, each opened by `start`.
+class Grammar(GrammarParts):
+    """The validated phrases of a language; see `GrammarParts` for its attributes.
 
     Raises
     ------
     LanguageError
-        When it contradicts itself; the pointer is that of the language file.
+        When it is inconsistent; the pointer is that of the language file.
 
     """
 
-    phrases: tuple[Phrase, ...] = ()
-    slot_types: tuple[SlotType, ...] = ()
-    start: str | None = None
-    end: str | None = None
-    cancel: str | None = None
-    timeout: float = DEFAULT_TIMEOUT
-    most_phrases: int = 1
-
     def __post_init__(self) -> None:
-        """Refuse what contradicts itself."""
+        """Validate the grammar."""
         check_grammar(self)
 
-    def slot_type(self, name: str) -> SlotType:
-        """Return the slot type of that name, which must exist."""
-        return next(each for each in self.slot_types if each.name == name)
-
-    def uses(self) -> Iterator[Use]:
-        """Give every place that names a gesture, in the file's order."""
-        for role in FRAME:
-            label = getattr(self, role)
-            if label is not None:
-                yield Use(label, build_pointer("grammar", role), f"the {role} gesture", role)
-        for index, slot_type in enumerate(self.slot_types):
-            for number, label in enumerate(slot_type.values):
-                pointer = build_pointer("grammar", "slot_types", index, "values", number, "gesture")
-                yield Use(label, pointer, f"the slot type {slot_type.name!r}")
-        for index, phrase in enumerate(self.phrases):
-            place = build_pointer("grammar", "phrases", index, "parts")
-            for pointer, label in _labels_in(phrase.parts, place):
-                yield Use(label, pointer, f"the phrase {phrase.name!r}")
-
     def require(self, labels: Collection[str]) -> None:
-        """Refuse a language that lacks a gesture of the grammar.
+        """Check that a language has all gestures of the grammar.
 
         Raises
         ------
@@ -120,7 +49,7 @@ class Grammar:
                 )
 
     def users_of(self, label: str) -> tuple[str, ...]:
-        """Name the phrases and other places that need a gesture, each once.
+        """Return the phrases and other places that need a gesture, in words, each once.
 
         A phrase with a slot needs the gestures of the slot's type as well.
         """
@@ -161,7 +90,7 @@ class Grammar:
         )
 
     def example(self, phrase: Phrase) -> tuple[str, ...]:
-        """Return a message of one phrase in which every part is shown."""
+        """Return a message of one phrase with all its parts."""
         opening = () if self.start is None else (self.start,)
         closing = () if self.end is None else (self.end,)
         return (*opening, *self._example_of(phrase.parts), *closing)
@@ -175,13 +104,3 @@ class Grammar:
                     yield next(iter(self.slot_type(part.slot_type).values))
                 else:
                     yield part.gestures[0]
-
-
-def _labels_in(parts: Sequence[Part], place: str) -> Iterator[tuple[str, str]]:
-    for index, part in enumerate(parts):
-        at = place + build_pointer(index)
-        if isinstance(part, OneOf):
-            for number, label in enumerate(part.gestures):
-                yield at + build_pointer("gestures", number), label
-        elif isinstance(part, Group):
-            yield from _labels_in(part.parts, at + "/parts")

@@ -1,4 +1,4 @@
-"""What a message means: for each of its phrases the values, the command, and the words."""
+"""Interpretation: the command, values and spoken text of each phrase of a parsed message."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.recognition.phrases.automaton import Reading
+from app.recognition.phrases.automaton import Parse
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Phrase, Slot, Value
 from app.recognition.phrases.templates import (
@@ -20,7 +20,7 @@ from app.recognition.phrases.templates import (
 
 @dataclass(frozen=True)
 class Meaning:
-    """One phrase as it was shown.
+    """The meaning of one phrase of a message.
 
     Attributes
     ----------
@@ -29,10 +29,10 @@ class Meaning:
     slots
         Values of the slots that were filled, by name.
     command
-        The phrase's command with values in the place of ``{slot}``; a slot that stands alone keeps
-        its JSON type, and is null where it was left out without a default.
+        The phrase's command with values for ``{slot}``; a slot that is the whole text keeps its
+        JSON type, and is null where it was left out without a default.
     spoken
-        To say back to the diver.
+        Text that is read back to the diver.
 
     """
 
@@ -48,13 +48,13 @@ class Meaning:
 
 @dataclass(frozen=True)
 class Mission:
-    """One message: its phrases in order."""
+    """The meaning of one message: its phrases in order."""
 
     phrases: tuple[Meaning, ...]
 
     @property
     def spoken(self) -> str:
-        """What to say back to the diver, so that a mission that was not meant is noticed."""
+        """Text that is read back to the diver, who can then cancel a wrong mission."""
         return f"mission: {'; then '.join(meaning.spoken for meaning in self.phrases)}"
 
     def to_list(self) -> list[dict[str, Any]]:
@@ -62,15 +62,15 @@ class Mission:
         return [meaning.to_dict() for meaning in self.phrases]
 
 
-def interpret_message(grammar: Grammar, parse: Reading) -> Mission:
-    """Return what a parse means."""
-    said: list[tuple[Phrase, dict[str, list[Value]]]] = []
+def interpret_message(grammar: Grammar, parse: Parse) -> Mission:
+    """Return the mission of a parse."""
+    shown: list[tuple[Phrase, dict[str, list[Value]]]] = []
     for each in parse:
         if each.slot is None:
-            said.append((grammar.phrases[each.phrase], {}))
+            shown.append((grammar.phrases[each.phrase], {}))
         elif each.value is not None:
-            said[-1][1].setdefault(each.slot, []).append(each.value)
-    return Mission(tuple(_meaning(grammar, phrase, values) for phrase, values in said))
+            shown[-1][1].setdefault(each.slot, []).append(each.value)
+    return Mission(tuple(_meaning(grammar, phrase, values) for phrase, values in shown))
 
 
 def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]) -> Meaning:
@@ -84,8 +84,8 @@ def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]
     if isinstance(phrase.command, str):
         command: str | dict[str, Any] | None = fill_template(phrase.command, known)
     else:
-        command = _filled(phrase.command, known)
-    return Meaning(phrase.name, shown, command, _spoken(phrase, known, shown))
+        command = _fill(phrase.command, known)
+    return Meaning(phrase.name, shown, command, _speak(phrase, known, shown))
 
 
 def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool) -> SlotValue:
@@ -94,7 +94,7 @@ def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool)
     return values if repeated else values[0]
 
 
-def _spoken(
+def _speak(
     phrase: Phrase, known: Mapping[str, SlotValue | None], shown: Mapping[str, SlotValue]
 ) -> str:
     if phrase.says:
@@ -104,12 +104,12 @@ def _spoken(
     )
 
 
-def _filled(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
-    """Put values into a command object, however deep its placeholders are."""
+def _fill(command: Any, values: Mapping[str, SlotValue | None]) -> Any:
+    """Fill the placeholders of a command, at any depth, with values."""
     if isinstance(command, dict):
-        return {key: _filled(each, values) for key, each in command.items()}
+        return {key: _fill(each, values) for key, each in command.items()}
     if isinstance(command, list):
-        return [_filled(each, values) for each in command]
+        return [_fill(each, values) for each in command]
     if not isinstance(command, str):
         return command
     whole = find_whole_placeholder(command)

@@ -1,8 +1,8 @@
-"""Phrases as they are shown: gesture by gesture, with what may come next.
+"""Phrase parser: parses messages gesture by gesture and lists what may come next.
 
-The three kinds of error are CADDIAN's (Chiarella et al. 2018): a gesture that was not recognised is
-shown again and the sequence kept; one that does not follow ends the message; and what was
-understood is spoken back, so that one who did not mean it can cancel.
+Errors are handled as in CADDIAN (Chiarella et al. 2018): a gesture that was not recognised is
+repeated and the sequence kept; one that cannot follow ends the message; and a message is read back,
+so that the diver can cancel it.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from app.recognition.phrases.automaton import BEFORE, PhraseAutomaton, Reading
+from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.interpretation import Mission, interpret_message
 from app.recognition.text.wording import join_words
@@ -28,28 +28,28 @@ PhraseEventKind = Literal[
 ]
 
 ENOUGH = 2
-"""Readings kept for a position: with two the message is ambiguous, whatever a third would say."""
+"""Parses kept for a position: with two the message is ambiguous, whatever a third is."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PhraseEvent:
-    """What came of a gesture, or of a pause.
+    """The effect of a gesture or a pause on the message.
 
     Attributes
     ----------
     kind
-        ``continues``: it is part of a message, and more is needed or may come. ``complete``: the
-        message is over. ``ambiguous``: it is over, and means two things: no command. ``cancelled``,
-        ``timed_out``, ``unexpected``: it is dropped. ``repeat``: a gesture was not recognised; what
-        was shown before stays. ``outside``: no message has begun.
+        ``continues``: the message needs or allows further gestures. ``complete``: the message
+        ended. ``ambiguous``: it ended with two meanings, so there is no command. ``cancelled``,
+        ``timed_out``, ``unexpected``: it is dropped. ``repeat``: the gesture was not recognised;
+        the message is kept. ``outside``: no message has begun.
     gestures
-        Labels of the message so far, this one included unless it does not belong to it.
+        Labels of the message so far, including this gesture if it belongs to it.
     label
         Of this gesture; None when it was rejected, and for a pause.
     expected
         Labels that may come next, in the grammar's order.
     mission
-        What the robot should do; only when complete.
+        The meaning of the message; only when complete.
     start, end
         Seconds: of the message so far, in the clock of the gestures.
 
@@ -65,14 +65,14 @@ class PhraseEvent:
 
     @property
     def text(self) -> str:
-        """The event in words, for the diver."""
+        """The event as a sentence for the diver."""
         so_far, following = ", ".join(self.gestures), join_words(self.expected, last="or")
         if self.mission is not None:
             return self.mission.spoken
         return {
             "continues": f"{so_far}: then {following}",
             "complete": so_far,
-            "ambiguous": f"{so_far} means two things; nothing is done",
+            "ambiguous": f"{so_far} has two meanings; nothing is done",
             "cancelled": "cancelled",
             "timed_out": f"{so_far}: waited too long for {following}; begin again",
             "unexpected": f"{self.label} does not follow {so_far}, {following} does; begin again",
@@ -96,12 +96,12 @@ class PhraseEvent:
 
 @dataclass(frozen=True)
 class _Message:
-    """A message as far as it was shown.
+    """An unfinished message.
 
     Attributes
     ----------
     parses
-        Per position of the automaton that it may be at, what it says.
+        Its parses by the position of the automaton that they lead to.
     gestures
         Labels.
     start, end
@@ -111,7 +111,7 @@ class _Message:
 
     """
 
-    parses: Mapping[int, tuple[Reading, ...]] = field(default_factory=lambda: {BEFORE: ((),)})
+    parses: Mapping[int, tuple[Parse, ...]] = field(default_factory=lambda: {BEFORE: ((),)})
     gestures: tuple[str, ...] = ()
     start: float = 0.0
     end: float = 0.0
@@ -119,11 +119,11 @@ class _Message:
 
 
 class PhraseParser:
-    """Puts recognised gestures together to messages.
+    """Parses recognised gestures into messages.
 
-    A command only ever comes of a message that has one parse, all gestures of which were
-    recognised and followed each other within the grammar's time-out. Where a message could be over
-    or go on, which the check of the language reports, the time-out ends it.
+    Only a message with exactly one parse gives a command, if all its gestures were recognised and
+    followed each other within the grammar's time-out. Where a message could end or continue, which
+    the check of the language reports, the time-out ends it.
 
     Parameters
     ----------
@@ -146,11 +146,11 @@ class PhraseParser:
 
     @property
     def may_end(self) -> bool:
-        """Whether a pause now would end the message, and not drop it."""
+        """Whether a pause now would complete the message instead of dropping it."""
         return not self._message.doubtful and len(self._complete()) == 1
 
     def feed(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
-        """Hear of one gesture.
+        """Process one gesture.
 
         Parameters
         ----------
@@ -161,64 +161,64 @@ class PhraseParser:
 
         Returns
         -------
-        What came of it; before that, what came of the pause before it when that was too long.
+        The event of the gesture; before it, that of the preceding pause if it was too long.
 
         """
-        return (*self.expire(start), *self._heard(label, start, end))
+        return (*self.expire(start), *self._advance(label, start, end))
 
     def expire(self, now: float) -> tuple[PhraseEvent, ...]:
-        """Hear that no gesture had begun by `now`; an event when that is too long."""
+        """Process a pause: no gesture had begun by `now`; returns an event if it is too long."""
         message = self._message
         if not message.gestures or now - message.end <= self.grammar.timeout:
             return ()
-        # After a rejected gesture nobody knows whether the message was over.
+        # After a rejected gesture it is unknown whether the message had ended.
         if not message.doubtful and (parses := self._complete()):
-            return (self._over(None, parses),)
-        return (self._dropped("timed_out", None),)
+            return (self._end_message(None, parses),)
+        return (self._drop("timed_out", None),)
 
     def abandon(self) -> tuple[PhraseEvent, ...]:
-        """Drop a message that was begun, whatever it would have become."""
-        return (self._dropped("cancelled", None),) if self._message.gestures else ()
+        """Drop an unfinished message."""
+        return (self._drop("cancelled", None),) if self._message.gestures else ()
 
-    def _heard(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
+    def _advance(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
         before = self._message if self._message.gestures else _Message(start=start)
         self._message = replace(before, end=end, doubtful=label is None)
         if label is None:
             return (self._event("repeat" if before.gestures else "outside", None),)
         if before.gestures and label == self.grammar.cancel:
-            return (self._dropped("cancelled", label),)
+            return (self._drop("cancelled", label),)
         following = self._following(label)
         if not following:
-            return self._refused(label, start, end)
+            return self._handle_unexpected(label, start, end)
         gestures = (*before.gestures, label)
         self._message = _Message(following, gestures, before.start, end)
         if not any(self._moves(position) for position in following):
-            return (self._over(label, self._complete()),)
+            return (self._end_message(label, self._complete()),)
         return (self._event("continues", label),)
 
-    def _refused(self, label: str, start: float, end: float) -> tuple[PhraseEvent, ...]:
-        """Answer a gesture that cannot come next; the start gesture begins anew."""
+    def _handle_unexpected(self, label: str, start: float, end: float) -> tuple[PhraseEvent, ...]:
+        """Handle a gesture that cannot follow; the start gesture begins a new message."""
         if not self._message.gestures:
             return (self._event("outside", label),)
-        dropped = self._dropped("unexpected", label)
-        anew = self._heard(label, start, end) if label == self.grammar.start else ()
-        return (dropped, *anew)
+        dropped = self._drop("unexpected", label)
+        restarted = self._advance(label, start, end) if label == self.grammar.start else ()
+        return (dropped, *restarted)
 
-    def _moves(self, position: int) -> Mapping[str, Iterable[tuple[int, Reading]]]:
+    def _moves(self, position: int) -> Mapping[str, Iterable[tuple[int, Parse]]]:
         return self._automaton.moves(position)
 
-    def _following(self, label: str) -> dict[int, tuple[Reading, ...]]:
-        """Return the parses of the message with one more gesture, per position."""
-        following: dict[int, tuple[Reading, ...]] = {}
+    def _following(self, label: str) -> dict[int, tuple[Parse, ...]]:
+        """Return the parses of the message with one more gesture, by position."""
+        following: dict[int, tuple[Parse, ...]] = {}
         for position, parses in self._message.parses.items():
-            for target, said in self._moves(position).get(label, ()):
+            for target, added in self._moves(position).get(label, ()):
                 known = following.get(target, ())
-                more = [*known, *(parse + said for parse in parses)]
+                more = [*known, *(parse + added for parse in parses)]
                 following[target] = tuple(dict.fromkeys(more))[:ENOUGH]
         return following
 
-    def _complete(self) -> tuple[Reading, ...]:
-        """Return the parses with which the message could be over now."""
+    def _complete(self) -> tuple[Parse, ...]:
+        """Return the parses with which the message could end now."""
         found = [
             parse
             for position, parses in self._message.parses.items()
@@ -227,18 +227,18 @@ class PhraseParser:
         ]
         return tuple(dict.fromkeys(found))
 
-    def _over(self, label: str | None, parses: tuple[Reading, ...]) -> PhraseEvent:
+    def _end_message(self, label: str | None, parses: tuple[Parse, ...]) -> PhraseEvent:
         if len(parses) > 1:
-            return self._dropped("ambiguous", label)
-        return self._dropped("complete", label, interpret_message(self.grammar, parses[0]))
+            return self._drop("ambiguous", label)
+        return self._drop("complete", label, interpret_message(self.grammar, parses[0]))
 
-    def _dropped(
+    def _drop(
         self, kind: PhraseEventKind, label: str | None, mission: Mission | None = None
     ) -> PhraseEvent:
-        """Forget the message."""
+        """Drop the message."""
         event = self._event(kind, label, mission)
         self._message = _Message()
-        # What was waited for in vain is told; otherwise what begins the next message.
+        # After a time-out the expected gestures of this message, otherwise those of the next one.
         in_vain = kind in ("timed_out", "unexpected")
         return event if in_vain else replace(event, expected=self.expected)
 

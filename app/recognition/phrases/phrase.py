@@ -1,4 +1,4 @@
-"""A phrase: the parts shown one after the other, its slots, and what it tells the robot."""
+"""Phrases: sequences of parts (gestures, slots, groups) with a command and a spoken text."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 MAX_REPEAT = 10
-"""Most gestures in a row for one part: nobody counts further while swimming."""
+"""Most repetitions of one part: more are hard to count while swimming."""
 
 Value = str | int | float
-"""What a gesture stands for in a slot."""
+"""The value of a gesture in a slot."""
 
 ReadsAs = Literal["number", "text", "digits"]
 """How a slot's gestures are read: a number each, a text each, or together as a decimal number."""
@@ -18,15 +18,14 @@ ReadsAs = Literal["number", "text", "digits"]
 
 @dataclass(frozen=True)
 class OneOf:
-    """One gesture out of some, which says nothing more.
+    """A part that is one of several gestures, without value.
 
     Attributes
     ----------
     gestures
-        Labels, any of which will do.
+        Labels of the alternatives.
     least, most
-        How often in a row; ``least`` 0: it may be left out.
-
+        Repetitions; ``least`` 0: optional.
     """
 
     gestures: tuple[str, ...]
@@ -36,17 +35,17 @@ class OneOf:
 
 @dataclass(frozen=True)
 class Slot:
-    """A gesture that carries a value for the command.
+    """A part whose gesture gives a value for the command.
 
     Attributes
     ----------
     name
-        By which command and spoken text refer to the value.
+        Name of the value in command and spoken text.
     slot_type
-        Name of the `SlotType` whose gestures may stand here.
+        Name of the `SlotType` whose gestures may fill it.
     least, most
-        How often in a row; ``least`` 0: it may be left out. More than one makes the value a list,
-        or one number where the type reads digits.
+        Repetitions; ``least`` 0: optional. More than one makes the value a list, or one number
+        where the type reads digits.
     default
         The command's value where the slot was left out; None: none.
 
@@ -61,7 +60,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Group:
-    """Parts that are left out or repeated together; a group holds no groups."""
+    """Parts that are optional or repeated together; a group contains no groups."""
 
     parts: tuple[OneOf | Slot, ...]
     least: int = 1
@@ -73,16 +72,16 @@ Part = OneOf | Slot | Group
 
 @dataclass(frozen=True)
 class SlotType:
-    """The gestures that may fill a slot, and what each stands for.
+    """The gestures that may fill a slot, with their values.
 
     Attributes
     ----------
     name
-        By which slots refer to it.
+        Name in `Slot.slot_type`.
     reads_as
-        What kind of values they are.
+        Kind of the values.
     values
-        Value per label, in the author's order.
+        Value by label, in the author's order.
 
     """
 
@@ -102,10 +101,11 @@ class Phrase:
     parts
         In the order in which they are shown.
     command
-        What the robot should do: text, an object, or None; ``{slot}`` in it stands for a value.
+        What the robot should do: text, an object, or None; ``{slot}`` in it is replaced by the
+        value.
     says
-        How it is spoken back: ``{slot}`` stands for a value, and what is in ``[ ]`` is left out
-        with the slots in it. Empty: the name and the values.
+        Spoken text: ``{slot}`` is replaced by the value, and text in ``[ ]`` is left out if its
+        slots are. Empty: the name and the values.
 
     """
 
@@ -115,7 +115,7 @@ class Phrase:
     says: str = ""
 
     def slots(self) -> Iterator[tuple[Slot, Group | None]]:
-        """Give every slot, with the group that it is in."""
+        """Yield every slot with the group that contains it, if any."""
         for part in self.parts:
             if isinstance(part, Slot):
                 yield part, None

@@ -1,4 +1,4 @@
-"""Texts with ``{slot}`` in them, and ``[ ]`` around what is left out with its slots."""
+"""Text templates with ``{slot}`` placeholders, and optional text in ``[ ]``."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ from app.recognition.phrases.phrase import Value
 from app.recognition.text.wording import join_words
 
 SlotValue = Value | list[Value]
-"""What a slot came to: a list where it may be filled more than once."""
+"""Value of a slot: a list if it may be filled more than once."""
 
 _PLACEHOLDER = re.compile(r"\{([a-z][a-z0-9_]*)\}")
 _STRETCH = re.compile(r"\[([^\[\]]*)\]|([^\[\]]+)")
 
 
 def find_placeholders(text: str) -> Iterator[str]:
-    """Give the slots that a text refers to."""
+    """Yield the slots that a text refers to."""
     return (match[1] for match in _PLACEHOLDER.finditer(text))
 
 
 def find_template_fault(
     template: str, slots: Collection[str], missing: Collection[str]
 ) -> str | None:
-    """Say what is wrong with a spoken text; None: nothing.
+    """Return what is wrong with a spoken text, or None.
 
     Parameters
     ----------
     template
         The text.
     slots
-        The slots there are.
+        Names of the slots.
     missing
-        Those that may have no value: they must stand in ``[ ]``.
+        Slots that may have no value: they must be in ``[ ]``.
 
     """
     if _STRETCH.sub("", template):
-        return f"the square brackets in {template!r} do not pair up, or stand in each other"
+        return f"the square brackets in {template!r} do not pair up, or are nested"
     for optional, plain in _STRETCH.findall(template):
         names = list(find_placeholders(optional or plain))
         if unknown := [name for name in names if name not in slots]:
@@ -46,32 +46,32 @@ def find_template_fault(
         if optional and not names:
             return f"[{optional}] has no slot in it that could be left out: write it without [ ]"
         if absent := [name for name in names if plain and name in missing]:
-            return f"{{{absent[0]}}} may be left out: put what is then not said in [ ]"
+            return f"{{{absent[0]}}} may be left out: put the text that depends on it in [ ]"
     return None
 
 
 def fill_template(text: str, values: Mapping[str, SlotValue | None]) -> str:
-    """Put the values in words into a text; one that is missing leaves nothing."""
+    """Replace the placeholders of a text by values in words; missing values by nothing."""
     return _PLACEHOLDER.sub(lambda match: speak_value(values.get(match[1])), text)
 
 
 def find_whole_placeholder(text: str) -> str | None:
-    """Return the slot that a text is nothing else than a placeholder of."""
+    """Return the slot if a text is just its placeholder, else None."""
     match = _PLACEHOLDER.fullmatch(text)
     return match[1] if match else None
 
 
 def speak_template(template: str, values: Mapping[str, SlotValue | None], shown: Set[str]) -> str:
-    """Put values into a template.
+    """Return a spoken text with values.
 
     Parameters
     ----------
     template
         A spoken text.
     values
-        Per slot.
+        By slot.
     shown
-        The slots that a gesture filled: without one of its own, what is in ``[ ]`` is not said.
+        The slots that a gesture filled: text in ``[ ]`` without any of them is left out.
 
     """
     return "".join(
@@ -82,7 +82,7 @@ def speak_template(template: str, values: Mapping[str, SlotValue | None], shown:
 
 
 def speak_value(value: SlotValue | None) -> str:
-    """Say a value."""
+    """Return a value in words."""
     if value is None:
         return ""
     if isinstance(value, list):

@@ -1,14 +1,15 @@
-"""What a grammar must obey beyond the shape of its entries, each fault with its JSON pointer."""
+"""Grammar validation: rules beyond the schema, with the JSON pointer of each error."""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from app.recognition.errors import GestureError, LanguageError
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, check_command
+from app.recognition.phrases.grammar_parts import GrammarParts
 from app.recognition.phrases.phrase import (
     MAX_REPEAT,
     Group,
@@ -22,15 +23,11 @@ from app.recognition.phrases.phrase import (
 from app.recognition.phrases.templates import find_placeholders, find_template_fault
 from app.recognition.text.strict_json import build_pointer
 
-if TYPE_CHECKING:
-    from app.recognition.phrases.grammar import Grammar
-
 MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
 
 MAX_PHRASES_IN_MESSAGE = 8
-"""CADDIAN's missions have up to eleven commands; what is longer than a breath of attention is
-planned on the surface."""
+"""CADDIAN's missions have up to eleven commands; longer ones are planned on the surface."""
 
 MAX_GESTURES_IN_PHRASE = 40
 """With every repetition counted: bounds the work of the check, and a phrase of forty gestures takes
@@ -40,14 +37,14 @@ MAX_GESTURES_IN_GRAMMAR = 1000
 """Of all phrases together, for the same reason: the check compares each with each."""
 
 MAX_TIMEOUT = 600.0
-"""Seconds: after ten minutes nobody goes on with a sentence."""
+"""Seconds: ten minutes, far longer than any pause within a message."""
 
 SLOT_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
-"""What stands between braces; also a valid name of a parameter on any robot."""
+"""Name of a placeholder, which is also a valid parameter name on any robot."""
 
 
-def check_grammar(grammar: Grammar) -> None:
-    """Refuse a grammar that contradicts itself.
+def check_grammar(grammar: GrammarParts) -> None:
+    """Check that a grammar is consistent.
 
     Raises
     ------
@@ -71,13 +68,13 @@ def check_grammar(grammar: Grammar) -> None:
     for use in grammar.uses():
         if use.label == grammar.cancel and use.role != "cancel":
             raise LanguageError(
-                f"{use.label!r} is the cancel gesture, so that {use.where} could never be heard "
-                "with it: choose another",
+                f"{use.label!r} is the cancel gesture, so {use.where} cannot use it: choose "
+                "another gesture",
                 use.pointer,
             )
 
 
-def _check_frame(grammar: Grammar) -> None:
+def _check_frame(grammar: GrammarParts) -> None:
     if not 0 < grammar.timeout <= MAX_TIMEOUT:  # NaN is not either
         raise LanguageError(
             f"must be above 0 and at most {MAX_TIMEOUT:g} seconds, got {grammar.timeout}",
@@ -90,8 +87,8 @@ def _check_frame(grammar: Grammar) -> None:
         )
     if grammar.most_phrases > 1 and grammar.end is None:
         raise LanguageError(
-            "a message of several phrases needs an end gesture, or the robot would never know that "
-            "no more is coming",
+            "a message of several phrases needs an end gesture: without one the robot cannot "
+            "detect its end",
             "/grammar/most_phrases",
         )
     if len(grammar.phrases) > MAX_PHRASES:
@@ -126,7 +123,7 @@ def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
 
 
 def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool:
-    """Tell whether a value is one of the kind; `together`: as a whole, not digit by digit."""
+    """Return whether a value is one of the kind; `together`: as a whole, not digit by digit."""
     if reads_as == "text":
         return isinstance(value, str) and bool(value.strip()) and value.isprintable()
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -136,10 +133,10 @@ def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool
     return isinstance(value, int) and value >= 0 and (together or value <= 9)
 
 
-def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
+def _check_phrase(grammar: GrammarParts, phrase: Phrase, pointer: str) -> None:
     if not phrase.parts or all(_may_be_left_out(part) for part in phrase.parts):
         raise LanguageError(
-            f"{phrase.name!r} can be said without any gesture: let one part be needed",
+            f"{phrase.name!r} can be shown without any gesture: make one part required",
             pointer + "/parts",
         )
     for index, part in enumerate(phrase.parts):
@@ -153,7 +150,7 @@ def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
     _check_words(phrase, pointer)
 
 
-def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
+def _check_part(grammar: GrammarParts, part: Part, pointer: str) -> None:
     if not 0 <= part.least <= part.most or not 1 <= part.most <= MAX_REPEAT:
         raise LanguageError(
             f"least {part.least} and most {part.most}: must be 0 <= least <= most and 1 <= most <= "
@@ -172,7 +169,7 @@ def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
             _check_part(grammar, member, pointer + build_pointer("parts", index))
 
 
-def _check_slot(grammar: Grammar, slot: Slot, pointer: str) -> None:
+def _check_slot(grammar: GrammarParts, slot: Slot, pointer: str) -> None:
     if not SLOT_NAME.fullmatch(slot.name):
         raise LanguageError(
             f"{slot.name!r} is no name of a slot: a small letter, then at most 39 small letters, "
@@ -203,8 +200,8 @@ def _check_slot_names(phrase: Phrase, pointer: str) -> None:
             )
         if group is not None and group.most > 1 and slot.most > 1:
             raise LanguageError(
-                f"{slot.name!r} may be repeated, and so may its group: which value belongs to "
-                "which repetition could not be told",
+                f"{slot.name!r} and its group may both be repeated, so its values cannot be "
+                "assigned to repetitions: let only one of them repeat",
                 at + "/most",
             )
         seen.add(slot.name)

@@ -1,1 +1,1 @@
-"""Landmarks over time: their names, one frame, a pose sequence, a normalised trajectory."""
+"""Poses: landmark names, the landmarks of one frame, pose sequences and trajectories."""

@@ -1,4 +1,4 @@
-"""What is found in one frame: a body, and up to two hands."""
+"""Frame landmarks: the body and the hands that an estimator finds in one image."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Body:
         ``(33, 2)`` pixels, x right, y down, in the order of `POSE_LANDMARKS`; may lie outside the
         image. NaN: not seen, or not among the landmarks that the estimator's model has.
     visibility
-        ``(33,)`` in [0, 1]: the model's belief that the landmark is in view and not hidden.
+        ``(33,)`` in [0, 1]: the model's probability that the landmark is in view and not hidden.
     score
-        The model's belief in [0, 1] that there is a person at all.
+        The model's probability, in [0, 1], that there is a person.
 
     """
 
@@ -51,7 +51,7 @@ class Hand:
     side
         The person's left or right hand, as the model sees it.
     score
-        The model's belief in [0, 1] that there is a hand at all.
+        The model's probability, in [0, 1], that there is a hand.
 
     """
 
@@ -67,7 +67,7 @@ class Hand:
 
 @dataclass(frozen=True, eq=False)
 class FrameLandmarks:
-    """All that was found in one frame: at most one body, and up to two hands, larger first."""
+    """The landmarks of one frame: at most one body, and up to two hands, the larger first."""
 
     body: Body | None
     hands: tuple[Hand, ...]

@@ -1,4 +1,4 @@
-"""Names of the landmarks: MediaPipe's 33 of the body and 21 of a hand, and the groups OSG uses.
+"""Landmark names: MediaPipe's 33 of the body and 21 of a hand, and the groups used here.
 
 Names are MediaPipe's own in snake_case. "Left" and "right" are the person's, not the image's.
 """
@@ -87,17 +87,17 @@ LANDMARK_GROUPS: Final[dict[str, tuple[str, ...]]] = {
         "mouth_right",
     ),
 }
-"""Landmarks that move as one; a gesture is described by at most one of each (paper, Sec. IV-A).
+"""Landmarks that move together; a gesture uses at most one of each group (paper, Sec. IV-A).
 
-The first name of a group is its usual representative: of the hand's four, the wrist is the one
-the pose model places most steadily; of the head's eleven, the nose.
+The first name of a group is its usual representative: the pose model places the wrist most
+steadily of a hand's four landmarks, and the nose of the head's eleven.
 """
 
 UPPER_BODY: Final = frozenset(
     {*SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
     | {*LANDMARK_GROUPS["left_hand"], *LANDMARK_GROUPS["right_hand"]}
 )
-"""What gestures are made with and measured against, without the details of the face."""
+"""Landmarks that gestures are made with or measured against, without the details of the face."""
 
 SKELETON: Final = (
     ("left_shoulder", "right_shoulder"),

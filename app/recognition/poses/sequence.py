@@ -1,4 +1,4 @@
-"""A recording of body landmarks over time, as a pose estimator gives it: pixels and seconds."""
+"""Pose sequences: body landmarks over time as an estimator finds them, in pixels and seconds."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ class PoseSequence:
 
     def __post_init__(self) -> None:
         """Validate, and freeze private copies of the arrays."""
-        object.__setattr__(self, "landmarks", _checked_names(self.landmarks))
-        xy = _frozen(self.xy, "xy")
+        object.__setattr__(self, "landmarks", _check_names(self.landmarks))
+        xy = _freeze(self.xy, "xy")
         count = len(self.landmarks)
         if xy.ndim != 3 or xy.shape[1:] != (count, 2):
             raise PoseError(f"xy has shape {xy.shape}, expected (frames, {count} landmarks, 2)")
         if np.isinf(xy).any():
             raise PoseError("xy holds infinite values; mark what was not seen with NaN")
-        time = _frozen(self.time, "time")
+        time = _freeze(self.time, "time")
         if time.shape != (len(xy),):
             raise PoseError(f"time has shape {time.shape}, expected ({len(xy)},), one per frame")
         if not np.isfinite(time).all():
@@ -77,15 +77,15 @@ class PoseSequence:
             )
         object.__setattr__(self, "xy", xy)
         object.__setattr__(self, "time", time)
-        object.__setattr__(self, "confidence", _checked_confidence(self.confidence, xy))
-        object.__setattr__(self, "frame_size", _checked_size(self.frame_size))
+        object.__setattr__(self, "confidence", _check_confidence(self.confidence, xy))
+        object.__setattr__(self, "frame_size", _check_size(self.frame_size))
 
     def __len__(self) -> int:
         """Count the frames, T."""
         return len(self.time)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether two recordings hold the same values; NaN equals NaN."""
+        """Return whether two pose sequences hold the same values; NaN equals NaN."""
         if not isinstance(other, PoseSequence):
             return NotImplemented
         return (
@@ -105,7 +105,7 @@ class PoseSequence:
 
     @cached_property
     def seen(self) -> npt.NDArray[np.bool_]:
-        """Tell ``(T, K)`` which landmark was found in which frame."""
+        """``(T, K)``: which landmark was found in which frame."""
         seen = _all_finite(self.xy)
         seen.setflags(write=False)
         return seen
@@ -183,7 +183,7 @@ class PoseSequence:
         half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
         centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
         centre = np.where(np.isfinite(centre), centre, hips - half)
-        centre = _interpolated(centre, self.time)
+        centre = _interpolate(centre, self.time)
         centre.setflags(write=False)
         return centre
 
@@ -208,12 +208,12 @@ class PoseSequence:
 
 
 def find_columns(names: Sequence[str], landmarks: Sequence[str], what: str) -> list[int]:
-    """Return where `names` stand among `landmarks`.
+    """Return the indices of `names` in `landmarks`.
 
     Raises
     ------
     PoseError
-        When one of them does not; `what` says in its words whose landmarks these are.
+        When a name is missing; `what` is the owner of the landmarks in the message.
 
     """
     missing = [name for name in names if name not in landmarks]
@@ -223,18 +223,18 @@ def find_columns(names: Sequence[str], landmarks: Sequence[str], what: str) -> l
 
 
 def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
-    """Put the frames of a stream together.
+    """Concatenate the parts of a stream to one pose sequence.
 
     Parameters
     ----------
     moments
-        At least one, in order, with the same landmarks and frame size; confidence is kept where
-        all of them tell it.
+        At least one part, in order, with the same landmarks and frame size. Confidence is kept
+        only if all of them have it.
 
     Raises
     ------
     PoseError
-        When the time does not go on from one to the next.
+        When the time does not increase from one part to the next.
 
     """
     known = [each.confidence for each in moments if each.confidence is not None]
@@ -246,16 +246,16 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
     )
 
 
-def _checked_names(names: Any) -> tuple[str, ...]:
+def _check_names(names: Any) -> tuple[str, ...]:
     if not isinstance(names, str):
-        # What is no collection, or holds what cannot be hashed, is no set of names either.
+        # TypeError: not a collection, or with entries that are not hashable.
         with suppress(TypeError):
-            return _distinct_names(tuple(names))
+            return _check_distinct(tuple(names))
     raise PoseError(f"landmarks must be non-empty names, got {names!r}")
 
 
 @lru_cache(maxsize=16)  # every frame of a stream comes with the same ones
-def _distinct_names(names: tuple[Any, ...]) -> tuple[str, ...]:
+def _check_distinct(names: tuple[Any, ...]) -> tuple[str, ...]:
     if not all(isinstance(name, str) and name for name in names):
         raise PoseError(f"landmarks must be non-empty names, got {names!r}")
     if not names:
@@ -266,7 +266,7 @@ def _distinct_names(names: tuple[Any, ...]) -> tuple[str, ...]:
     return names
 
 
-def _frozen(values: Any, name: str) -> FloatArray:
+def _freeze(values: Any, name: str) -> FloatArray:
     try:
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -275,10 +275,10 @@ def _frozen(values: Any, name: str) -> FloatArray:
     return array
 
 
-def _checked_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
+def _check_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
     if values is None:
         return None
-    confidence = _frozen(values, "confidence")
+    confidence = _freeze(values, "confidence")
     if confidence.shape != xy.shape[:2]:
         raise PoseError(f"confidence has shape {confidence.shape}, expected {xy.shape[:2]}")
     if not ((confidence >= 0) & (confidence <= 1)).all():
@@ -286,7 +286,7 @@ def _checked_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
     return confidence
 
 
-def _checked_size(size: Any) -> tuple[int, int]:
+def _check_size(size: Any) -> tuple[int, int]:
     if len(size) != 2 or not all(float(side) > 0 for side in size):
         raise PoseError(f"frame_size is {size!r}, expected (width, height) in pixels, both > 0")
     return int(size[0]), int(size[1])
@@ -299,12 +299,12 @@ def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
 
 
 def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:
-    """Tell which of the points ``(..., 2)`` have both coordinates."""
+    """Return ``(...)``: which of the points ``(..., 2)`` have both coordinates."""
     known = np.isfinite(points)
     return np.asarray(known[..., 0] & known[..., 1], dtype=np.bool_)
 
 
-def _interpolated(path: FloatArray, time: FloatArray) -> FloatArray:
+def _interpolate(path: FloatArray, time: FloatArray) -> FloatArray:
     """Fill NaN rows of ``(T, 2)`` linearly in time, the nearest value beyond the ends."""
     known = _all_finite(path)
     if known.all():

@@ -1,8 +1,7 @@
-"""Other people's sets of landmarks, by the names this program knows them by.
+"""Skeletons: the landmark sets of other pose estimators, translated to `POSE_LANDMARKS`.
 
-A set is a tuple in the order of its source; None stands for what has no counterpart among
-`POSE_LANDMARKS`. Neck and mid-hip of OpenPose are such: OpenPose makes the neck of the shoulders,
-and both would only repeat what shoulders and hips say.
+A set is a tuple in the order of its source; None stands for a landmark without counterpart.
+OpenPose's neck and mid-hip have none: they follow from the shoulders and the hips.
 """
 
 from __future__ import annotations
@@ -65,7 +64,7 @@ SKELETON_2D: Final[LandmarkSet] = (
     "left_ear",
     "right_ear",
 )
-"""ROS4HRI's `hri_msgs/Skeleton2D`: said to follow OpenPose's COCO model, but by the message's own
+"""ROS4HRI's `hri_msgs/Skeleton2D`: documented as OpenPose's COCO model, but in the message's own
 constants the left eye and the left ear come first."""
 
 BODY_25: Final[LandmarkSet] = (
@@ -92,11 +91,11 @@ _PARTS: Final = {
     },
     "big_toe": "foot_index",
 }
-"""Names of a landmark without its side, in snake_case, and what they are called here."""
+"""Other programs' names of a landmark without its side, in snake_case, and the names used here."""
 
 
 def translate_landmark(name: str) -> str | None:
-    """Return the landmark that another program's name means.
+    """Return the landmark for another program's landmark name.
 
     The side may stand before or behind, as a word or a letter, in any case: ``left_wrist``,
     ``LWrist``, ``wristL``, ``Wrist.L`` and ``LEFT_WRIST`` are the same.
@@ -119,10 +118,7 @@ def translate_landmark(name: str) -> str | None:
 
 
 def find_missing_landmarks(landmarks: Collection[str]) -> tuple[str, ...]:
-    """Return what gestures are made with or measured against and a source does not give.
-
-    Those of `UPPER_BODY`, in the order of `POSE_LANDMARKS`.
-    """
+    """Return the landmarks of `UPPER_BODY` that a source lacks, in `POSE_LANDMARKS`' order."""
     return tuple(name for name in POSE_LANDMARKS if name in UPPER_BODY and name not in landmarks)
 
 

@@ -1,4 +1,4 @@
-"""Trajectories of landmarks, freed from where the diver floats and how far away the camera is."""
+"""Trajectories: landmark paths normalised for the diver's position and distance to the camera."""
 
 from __future__ import annotations
 
@@ -18,18 +18,17 @@ Result = TypeVar("Result")
 Unit = Literal["torso_length", "extent"]
 
 MAX_GAP_SECONDS = 0.5
-"""Longest gap bridged by a straight line.
+"""Longest gap that is bridged by a straight line, seconds.
 
-The minimum-jerk reaches that gestures are made of last 0.5 s and more (Flash and Hogan 1985); over
-half a second a straight line may replace a whole stroke, and an invented stroke is worse than a
-gap.
+Reaching movements last 0.5 s and more (Flash and Hogan 1985): a longer line could replace a whole
+stroke, and an invented stroke is worse than a gap.
 """
 
 MIN_EXTENT_IN_FRAME = 0.005
-"""Least extent, as a share of the frame's longer side, that counts as motion without a torso.
+"""Least extent that counts as motion without a torso, as a share of the frame's longer side.
 
-About 3 pixels of 640: a pose model's jitter on a still body. Scaled to fill the extent, jitter
-would look like a gesture; what moves less is scaled by the frame instead and stays tiny.
+About 3 pixels of 640, a pose model's jitter on a still body. Smaller extents are scaled by the
+frame instead of their own size, so that jitter does not look like a gesture.
 """
 
 
@@ -43,7 +42,7 @@ class Trajectory:
         K landmark names.
     xy
         ``(T, K, 2)`` in `unit`, x to the image's right, y down, origin at the torso's centre (or
-        at the centroid after `recentred`). NaN: not seen and not bridged.
+        at the centroid after `recentre`). NaN: not seen and not bridged.
     time
         ``(T,)`` seconds since the first moment, strictly increasing.
     unit
@@ -60,7 +59,7 @@ class Trajectory:
 
     @classmethod
     def from_poses(cls, poses: PoseSequence) -> Trajectory:
-        """Normalise a recording: torso-centre translation per frame, one scale for all.
+        """Normalise a pose sequence: torso-centre translation per frame, one scale for all frames.
 
         Translating or uniformly scaling the recording, and shifting its clock, leave the
         trajectory as it is (paper, Sec. IV-C; the published code never does this).
@@ -73,8 +72,8 @@ class Trajectory:
         """
         if not poses.seen.any():
             raise PoseError(
-                f"none of the {len(poses)} frames shows a landmark: nothing to follow; choose a "
-                "range in which the diver is seen"
+                f"none of the {len(poses)} frames shows a landmark; choose a range in which the "
+                "diver is seen"
             )
         time = poses.time - poses.time[0]
         centre, length = poses.torso_centre(), poses.torso_length()
@@ -84,7 +83,7 @@ class Trajectory:
             scale = extent if extent >= MIN_EXTENT_IN_FRAME * frame else frame
             xy = (poses.xy - np.nanmean(poses.xy, axis=(0, 1))) / scale
             return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="extent")
-        # Repeated, for numpy would go through pairs of numbers one by one.
+        # Repeated: numpy broadcasts pairs of numbers one by one, which is slow.
         xy = (poses.xy - np.repeat(centre[:, None], len(poses.landmarks), axis=1)) / length
         return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="torso_length")
 
@@ -93,27 +92,26 @@ class Trajectory:
         return len(self.time)
 
     @cached_property
-    def _known(self) -> dict[Hashable, Any]:
+    def _computed(self) -> dict[Hashable, Any]:
         return {}
 
-    def once(self, what: Hashable, work_out: Callable[[], Result]) -> Result:
-        """Work something out of this trajectory when it is first asked for, and keep it.
+    def compute_once(self, key: Hashable, compute: Callable[[], Result]) -> Result:
+        """Return a value computed from this trajectory, cached after the first call.
 
-        The same few trajectories are compared over and over while a language is made, checked or
-        explained: its demonstrations and their variants.
+        Demonstrations and their variants are compared many times while a language is built,
+        checked or explained.
 
         Parameters
         ----------
-        what
-            Names the result and all that it depends on beside the trajectory.
-        work_out
-            Must give the same result whenever it is called; nobody may change that.
-
+        key
+            Identifies the value and everything it depends on beside the trajectory.
+        compute
+            Called at most once for a key; its result must not be modified.
         """
-        if what not in self._known:
-            self._known[what] = work_out()
-        found: Result = self._known[what]
-        return found
+        if key not in self._computed:
+            self._computed[key] = compute()
+        result: Result = self._computed[key]
+        return result
 
     def select(self, names: Sequence[str]) -> Trajectory:
         """Keep the named landmarks, in the order given.
@@ -132,18 +130,18 @@ class Trajectory:
         inside = (self.time >= start) & (self.time <= end)
         return replace(self, xy=self.xy[inside], time=self.time[inside])
 
-    def mirrored(self) -> Trajectory:
+    def mirror(self) -> Trajectory:
         """Mirror left and right: x changes its sign, landmarks swap their sides."""
         names = tuple(other_side(name) for name in self.landmarks)
         return replace(self, landmarks=names, xy=self.xy * (-1.0, 1.0) + 0.0)
 
-    def recentred(self) -> Trajectory:
+    def recentre(self) -> Trajectory:
         """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""
         if not np.isfinite(self.xy).any():
             return self
         return replace(self, xy=self.xy - np.nanmean(self.xy, axis=(0, 1)))
 
-    def filled(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
+    def fill_gaps(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
         """Bridge gaps of at most `max_gap` seconds by straight lines; longer ones stay NaN.
 
         A gap lasts from the last moment a landmark is seen to the next one. Before the first
@@ -164,7 +162,7 @@ class Trajectory:
                     path[inside] = path[before] + share[:, None] * (path[after] - path[before])
         return replace(self, xy=xy)
 
-    def resampled_in_time(self, count: int) -> Trajectory:
+    def resample_in_time(self, count: int) -> Trajectory:
         """Resample to `count` moments at equal times, linearly.
 
         A moment between two samples of which one is NaN becomes NaN: gaps stay gaps.
@@ -178,7 +176,7 @@ class Trajectory:
         self._require_two(count)
         return self.at(np.linspace(self.time[0], self.time[-1], count))
 
-    def resampled_in_arc_length(self, count: int) -> Trajectory:
+    def resample_in_arc_length(self, count: int) -> Trajectory:
         """Resample to `count` moments at equal steps along the joint path of all landmarks.
 
         The step is the root of the summed squared steps of all landmarks, so they stay in step
@@ -191,10 +189,10 @@ class Trajectory:
             When `count` is below 2 or the trajectory has fewer than two moments.
 
         """
-        return self.at(self.moments_in_arc_length(count))
+        return self.at(self.find_arc_length_moments(count))
 
-    def moments_in_arc_length(self, count: int) -> FloatArray:
-        """Return the `count` moments to which `resampled_in_arc_length` resamples.
+    def find_arc_length_moments(self, count: int) -> FloatArray:
+        """Return the `count` moments to which `resample_in_arc_length` resamples.
 
         Raises
         ------

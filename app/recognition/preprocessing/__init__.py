@@ -1,1 +1,1 @@
-"""Landmark cleaning: side swaps, outliers, quality checks, choice of salient landmarks."""
+"""Preprocessing: repair of landmarks, quality checks, and the choice of salient landmarks."""

@@ -1,4 +1,4 @@
-"""Reach: how long the bones of an arm can look, and arms kept within it."""
+"""Limb length: limits how long an arm's bones can appear in simulated takes."""
 
 from __future__ import annotations
 
@@ -12,21 +12,20 @@ from app.recognition.poses.trajectory import Trajectory
 
 SHARE_OF_TORSO = {"elbow": 0.65, "wrist": 0.51}
 """Length of the bone that ends there, in torso lengths: upper arm 0.186, forearm 0.146 and trunk
-0.288 of the body's height (Drillis and Contini 1966). A bone looks shorter than it is where it
-points towards the camera, so the demonstration alone may not show its length."""
+0.288 of the body's height (Drillis and Contini 1966). A bone that points towards the camera looks
+shorter, so a demonstration alone may not show its length."""
 
 LEEWAY = 1.05
-"""How much longer than in the demonstration a bone may look: a pose model's error from frame to
-frame."""
+"""Factor by which a bone may look longer than in the demonstration: a pose model's error."""
 
 _ARMS = list_limbs([side + "wrist" for side in SIDES])
 
 
 def limit_limbs(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
-    """Shorten the bones of arms that look longer than they can.
+    """Shorten the arms' bones to their greatest possible length.
 
-    An elbow first follows a wrist that has gone too far; then, from the shoulder outwards, what
-    is too far away is brought back along its bone. The movement of the shoulders is left alone.
+    An elbow first follows a wrist that is too far away; then, from the shoulder outwards, each end
+    that is too far away is moved back along its bone. Shoulders keep their movement.
 
     Parameters
     ----------
@@ -42,17 +41,19 @@ def limit_limbs(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
     """
     within = paths.copy()
     places = {parse_body_part(name): index for index, name in enumerate(demonstration.landmarks)}
-    lengths = _longest(demonstration, places)
+    lengths = _find_longest(demonstration, places)
     for inner, outer in lengths:
         if outer.endswith("wrist"):
-            _bring(within, places[inner], places[outer], lengths[inner, outer])
+            _move_within(within, places[inner], places[outer], lengths[inner, outer])
     for inner, outer in lengths:
-        _bring(within, places[outer], places[inner], lengths[inner, outer])
+        _move_within(within, places[outer], places[inner], lengths[inner, outer])
     return within
 
 
-def _longest(demonstration: Trajectory, places: dict[str, int]) -> dict[tuple[str, str], float]:
-    """Return, from the trunk outwards, how long each bone that was seen can look."""
+def _find_longest(
+    demonstration: Trajectory, places: dict[str, int]
+) -> dict[tuple[str, str], float]:
+    """Return the greatest length of each bone that was seen, from the trunk outwards."""
     torso = _torso_length(demonstration)
     longest = {}
     for inner, outer in _ARMS:
@@ -77,8 +78,8 @@ def _torso_length(demonstration: Trajectory) -> float:
     return float(np.median(known)) if len(known) else 0.0
 
 
-def _bring(paths: FloatArray, mover: int, anchor: int, longest: float) -> None:
-    """Bring one landmark along its bone to within reach of another, in place."""
+def _move_within(paths: FloatArray, mover: int, anchor: int, longest: float) -> None:
+    """Move one landmark along its bone to within `longest` of another, in place."""
     bone: npt.NDArray[np.float64] = paths[..., mover, :] - paths[..., anchor, :]
     length = np.linalg.norm(bone, axis=-1, keepdims=True)
     paths[..., mover, :] -= bone * np.maximum(0.0, 1.0 - longest / np.maximum(length, 1e-12))

@@ -1,8 +1,7 @@
-"""Jumps: moments at which a landmark lies where no arm could have carried it there and back.
+"""Outliers: moments at which a landmark is farther away than an arm can go and come back.
 
-A pose model throws a landmark onto something else for a frame or a few, and finds it again.
-Between the moments before and after, an arm can only stray from the straight line as far as its
-acceleration allows; what strays farther was misplaced.
+Pose models misplace a landmark for a frame or a few. Between the moments before and after, an arm
+can leave the straight line only as far as its acceleration allows.
 """
 
 from __future__ import annotations
@@ -19,28 +18,27 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import measure_displacements
 
 LONGEST_JUMP = 0.25
-"""Seconds between the moments around a jump, at most. In that time a hand can go half a torso
-length and come back (see `ACCELERATION`); beyond, a jump and a stroke cannot be told apart."""
+"""Most seconds between the moments around an outlier. In that time a hand can go half a torso
+length and come back (see `ACCELERATION`); longer outliers look like strokes."""
 
 ACCELERATION = 100.0
-"""Torso lengths a second squared, about 50 m/s^2: of a fast pointing hand in air it is half of
-that, in water less."""
+"""Largest acceleration, torso lengths a second squared: about 50 m/s^2, twice that of a fast
+pointing hand in air."""
 
 NOTICED = 0.15
-"""Torso lengths, 7 cm: what strays less is jitter, which smoothing takes care of."""
+"""Least distance of an outlier, torso lengths (7 cm); smaller ones are smoothed as jitter."""
 
 JITTERS = 9.0
-"""How many times the lower quartile of the landmark's strays a jump must be: in a recording that
-trembles all over, no moment is worse than the others. The quartile, since a jump in every fifth
-moment also puts the moments beside it off the line."""
+"""Least distance of an outlier as a multiple of the lower quartile of the landmark's distances, so
+that trembling is no outlier. The quartile, because outliers also affect the moments beside them."""
 
 MOST_JUMPS = 0.25
-"""Share of a landmark's moments that may be jumps. Where there are more, nobody knows which of its
-places are the true ones, and all are left as they are."""
+"""Largest share of a landmark's moments that may be outliers. With more, the true positions cannot
+be determined, and all are kept."""
 
 TORSOS_PER_EXTENT = 0.7
-"""Torso lengths in the largest displacement of a landmark, where no torso is in view: gestures of
-an arm span one to two."""
+"""Torso lengths per largest displacement of a landmark, where no torso is in view: gestures of an
+arm span one to two."""
 
 UNFOLLOWED = frozenset(POSE_LANDMARKS) - UPPER_BODY
 
@@ -48,17 +46,17 @@ Mask = npt.NDArray[np.bool_]
 
 
 def find_outliers(trajectory: Trajectory) -> Mask:
-    """Find where landmarks jump.
+    """Find the outliers of a trajectory.
 
     Returns
     -------
-    ``(T, K)``: which landmark is misplaced at which moment. The first and the last moment at which
-    it is seen never are: there is no there and back. Nor are MediaPipe's legs and the details of
-    the face, which no gesture follows.
+    ``(T, K)``: which landmark is misplaced at which moment. Never the first and the last moment at
+    which it is seen, which have no neighbour on one side, nor MediaPipe's legs and details of the
+    face, which no gesture uses.
 
     """
     off = np.zeros(trajectory.xy.shape[:2], dtype=bool)
-    followed = _followed(trajectory.landmarks)
+    followed = _find_followed(trajectory.landmarks)
     paths = trajectory.xy.take(followed, axis=1)
     if (unit := measure_body_unit(trajectory)) != 1.0:
         paths /= unit
@@ -69,26 +67,26 @@ def find_outliers(trajectory: Trajectory) -> Mask:
     whole: Mask = np.asarray(known.all(axis=0))
     together = np.flatnonzero(whole & kinked)
     if len(together):
-        off[:, followed[together]] = _strays(paths.take(together, axis=1), trajectory.time)
+        off[:, followed[together]] = _find_strays(paths.take(together, axis=1), trajectory.time)
     for index in np.flatnonzero(~whole).tolist():
         seen = np.flatnonzero(known[:, index])
         path = paths[seen, index, None]
         if _has_kink(path).any():
-            off[seen, followed[index]] = _strays(path, trajectory.time[seen])[:, 0]
+            off[seen, followed[index]] = _find_strays(path, trajectory.time[seen])[:, 0]
     return off
 
 
 @lru_cache(maxsize=64)
-def _followed(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
-    """Return the places of the landmarks that a gesture may follow."""
+def _find_followed(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
+    """Return the indices of the landmarks that a gesture may follow."""
     return np.flatnonzero([name not in UNFOLLOWED for name in landmarks])
 
 
 def _has_kink(paths: FloatArray) -> Mask:
-    """Tell ``(K,)`` in which of paths ``(T, K, 2)``, without gaps, a step differs from the last.
+    """Return ``(K,)``: in which of paths ``(T, K, 2)``, without gaps, a step differs from the last.
 
-    By more than `NOTICED`, as every jump's does. At thirty frames a second no movement's do; then
-    nothing else need be looked at.
+    By more than `NOTICED`, as at every outlier. At thirty frames a second no movement has such
+    steps, which makes this a fast first test.
     """
     steps = paths[1:] - paths[:-1]
     bends = steps[1:] - steps[:-1]
@@ -98,39 +96,39 @@ def _has_kink(paths: FloatArray) -> Mask:
 
 
 def measure_body_unit(trajectory: Trajectory) -> float:
-    """Return a torso length, or what stands in for it, in the trajectory's unit; > 0."""
+    """Return a torso length, or an estimate of it, in the trajectory's unit; > 0."""
     if trajectory.unit == "torso_length":
         return 1.0
     return TORSOS_PER_EXTENT * max(measure_displacements(trajectory).values()) or 1.0
 
 
-def _strays(paths: FloatArray, time: FloatArray) -> Mask:
-    """Tell ``(T, K)`` which places of paths ``(T, K, 2)``, in torso lengths, are jumps."""
-    off = _there_and_back(paths, time)
+def _find_strays(paths: FloatArray, time: FloatArray) -> Mask:
+    """Return ``(T, K)``: the outliers of paths ``(T, K, 2)`` in torso lengths."""
+    off = _find_clearest(paths, time)
     for index in np.flatnonzero(off.any(axis=0)).tolist():
-        off[:, index] = _with_those_behind(off[:, index], paths[:, [index]], time)
+        off[:, index] = _find_further(off[:, index], paths[:, [index]], time)
     return off
 
 
-def _with_those_behind(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
-    """Look for more jumps of one landmark without those found, until there are no more.
+def _find_further(off: Mask, path: FloatArray, time: FloatArray) -> Mask:
+    """Find further outliers of one landmark after removing those found, until there are none.
 
     Returns
     -------
-    ``(T,)``; none at all where there are too many.
+    ``(T,)``; none at all if there are more than `MOST_JUMPS`.
 
     """
     while off.mean() <= MOST_JUMPS:
         kept = np.flatnonzero(~off)
-        found = _there_and_back(path[kept], time[kept])[:, 0]
+        found = _find_clearest(path[kept], time[kept])[:, 0]
         if not found.any():
             return off
         off[kept[found]] = True
     return np.zeros_like(off)
 
 
-def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
-    """Find each landmark's clearest jumps, of one or more moments, that do not touch one another.
+def _find_clearest(paths: FloatArray, time: FloatArray) -> Mask:
+    """Find each landmark's clearest outliers, of one or more moments, without adjacent ones.
 
     Parameters
     ----------
@@ -152,7 +150,7 @@ def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
         if lasts.min() > LONGEST_JUMP:
             break
         net = paths[length + 1 :] - paths[:firsts]
-        stray = _least_stray(paths, time, net, lasts)
+        stray = _measure_least_stray(paths, time, net, lasts)
         if length == 1:
             usual = _lower_quartile(stray)
         carried = NOTICED + ACCELERATION / 8 * lasts**2
@@ -170,29 +168,29 @@ def _there_and_back(paths: FloatArray, time: FloatArray) -> Mask:
 
 
 def _lower_quartile(values: FloatArray) -> FloatArray:
-    """Return what ``np.quantile(values, 0.25, axis=0)`` does, in a fifth of its time."""
+    """Return ``np.quantile(values, 0.25, axis=0)`` in a fifth of the time."""
     place = (len(values) - 1) / 4
     below, above = int(place), math.ceil(place)
     ordered = np.partition(values, (below, above), axis=0)
     return np.asarray(ordered[below] + (place - below) * (ordered[above] - ordered[below]))
 
 
-def _least_stray(
+def _measure_least_stray(
     paths: FloatArray, time: FloatArray, net: FloatArray, lasts: FloatArray
 ) -> FloatArray:
-    """Measure how far the places between two moments lie from the straight line, at least.
+    """Compute the least distance from the straight line of the positions between two moments.
 
     Parameters
     ----------
     paths, time
-        As for `_there_and_back`.
+        As for `_find_clearest`.
     net, lasts
-        ``(F, K, 2)`` and ``(F,)``: the way and the seconds between each of the first F moments and
-        the one that is ``T - F`` later.
+        ``(F, K, 2)`` and ``(F,)``: displacement and seconds between each of the first F moments
+        and the one that is ``T - F`` later.
 
     Returns
     -------
-    ``(F, K)``: the smallest distance of a place in between from where uniform motion would be.
+    ``(F, K)``: the smallest distance of a position in between from that of uniform motion.
 
     """
     firsts = len(lasts)

@@ -1,7 +1,6 @@
-"""Quality: whether a recording shows enough of a gesture to be judged by.
+"""Quality check: refuses poses that are too poor to recognise after `repair`.
 
-Repair (`repair`) puts right what can be known. What is left may still be too little: then saying so
-is the right answer, and the nearest gesture would be a guess.
+A refusal with its reason is the better answer there; the nearest gesture would be a guess.
 """
 
 from __future__ import annotations
@@ -17,43 +16,42 @@ from app.recognition.preprocessing.outliers import measure_body_unit
 from app.recognition.text.wording import humanize
 
 FEWEST_FRAMES = 5
-"""Frames of a recording, at least: a corner takes three, and the simplest gestures have two strokes
-of three frames, with the corner in both."""
+"""Least number of frames: the simplest gestures are two strokes of three frames that share a
+corner."""
 
 LEAST_FOLLOWED = 0.5
-"""Share of the time that a landmark must be followed. With gaps of up to half a second bridged,
-losing 60 % of the frames costs a few per cent of the answers (`docs/results.md`); what lies in
-longer gaps is not there at all."""
+"""Least share of the time in which a landmark must be seen, gaps of half a second bridged. Losing
+60 % of frames at random costs a few per cent of accuracy (`benchmarks/studies/damage.md`)."""
 
 LEAP = 1.0
-"""Torso lengths from one frame to the next, within `LEAP_SECONDS`, that no hand goes: of quick
-swipes the fastest 0.1 s span half of that."""
+"""Torso lengths from one frame to the next, within `LEAP_SECONDS`, that no hand moves: the fastest
+0.1 s of quick swipes span half of that."""
 
 LEAP_SECONDS = 0.1
-"""Longest time between two frames in which a leap can be told from a stroke."""
+"""Longest time between two frames in which a leap differs from a stroke."""
 
 MOST_LEAPS = 0.2
-"""Share of the steps that may be leaps. Repair leaves them only where more than a quarter of a
-landmark's places were misplaced."""
+"""Largest share of steps that may be leaps. Repair leaves them only if more than a quarter of a
+landmark's positions are outliers."""
 
 
 def find_fault(
     poses: PoseSequence, landmarks: Sequence[str], trajectory: Trajectory | None = None
 ) -> str | None:
-    """Tell what makes a recording too poor to judge.
+    """Return why poses are too poor to recognise, or None.
 
     Parameters
     ----------
     poses
-        The recording, repaired.
+        Repaired poses.
     landmarks
-        What the gesture in question is shown with; those that the recording lacks are passed over.
+        The salient landmarks of the gesture in question; those that `poses` lacks are ignored.
     trajectory
-        What the recording shows, where that is known already.
+        The trajectory of `poses`, if it is computed already.
 
     Returns
     -------
-    A clause with the values seen, for people; None where nothing is too poor.
+    A clause for users with the values seen; None where nothing is too poor.
 
     """
     if len(poses) < FEWEST_FRAMES:
@@ -70,7 +68,7 @@ def find_fault(
         time, places = trajectory.time, trajectory.xy[:, index]
         if not np.isfinite(places).all():
             seen = np.flatnonzero(np.isfinite(places).all(axis=1))
-            followed = _followed(time, seen) / poses.duration
+            followed = _sum_followed_time(time, seen) / poses.duration
             if followed < LEAST_FOLLOWED:
                 only = f"only {followed:.0%} of its {poses.duration:.1f} s"
                 return f"the {humanize(name)} is followed for {only}"
@@ -84,8 +82,8 @@ def find_fault(
     return None
 
 
-def _followed(time: FloatArray, seen: npt.NDArray[np.intp]) -> float:
-    """Add up the seconds between moments at which a landmark was seen, without longer gaps."""
+def _sum_followed_time(time: FloatArray, seen: npt.NDArray[np.intp]) -> float:
+    """Sum the seconds between moments at which a landmark was seen, without longer gaps."""
     lasts = np.diff(time[seen])
     bridged = (lasts <= MAX_GAP_SECONDS) | (np.diff(seen) == 1)
     return float(lasts[bridged].sum())

@@ -1,9 +1,8 @@
-"""Repair of bad keypoints, the same for demonstrations and queries.
+"""Repair: corrects side swaps and removes outliers of landmarks, in demonstrations and queries.
 
-Two faults of pose models are undone: exchanged sides (`sides`) and jumps (`jumps`). Nothing is
-invented: exchanged landmarks get each other's places, and what is not believed counts as not seen.
-Gaps are bridged where trajectories are made (`Trajectory.filled`), jitter is smoothed where
-movements are compared (`movement`).
+Two errors of pose models are repaired: side swaps (`side_swaps`) and outliers (`outliers`). No
+positions are invented: swapped landmarks are exchanged back, and outliers become NaN. Gaps are
+bridged later by `Trajectory.fill_gaps`, and jitter is smoothed by `build_movement`.
 """
 
 from __future__ import annotations
@@ -20,29 +19,29 @@ from app.recognition.preprocessing.outliers import find_outliers
 from app.recognition.preprocessing.side_swaps import find_side_swaps, swap_sides
 
 ROUNDS = 16
-"""Most rounds of looking for faults: what one round takes away shows others. Damaged beyond use,
-of 400 recordings none needed more than nine."""
+"""Most rounds of repair: one round can reveal errors for the next. Of 400 recordings with heavy
+damage none needed more than nine."""
 
 MOST_NAMED = 3
-"""Landmarks that are named in a sentence about jumps; the others are counted."""
+"""Landmarks named in a sentence about outliers; the others are counted."""
 
 Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class Repair:
-    """A repaired recording of T frames, and what was done to it.
+    """Repaired poses of T frames, and what was repaired.
 
     Attributes
     ----------
     poses
-        The recording; the one given where nothing was wrong.
+        The repaired poses; the original object where nothing was wrong.
     exchanged
-        ``(T,)``: left and right were exchanged back.
+        ``(T,)``: frames whose left and right were exchanged back.
     blended
-        ``(T,)``: lies between the sides, and counts as not seen.
+        ``(T,)``: frames that mix both sides, set to NaN.
     jumps
-        ``(T, K)``: a place that a landmark jumped to, and counts as not seen.
+        ``(T, K)``: outliers, set to NaN.
 
     """
 
@@ -53,24 +52,24 @@ class Repair:
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """What `poses` shows, normalised; made once for all that look at it.
+        """The trajectory of `poses`, computed once.
 
         Raises
         ------
         PoseError
-            When they show nothing.
+            When no landmark is seen.
 
         """
         return Trajectory.from_poses(self.poses)
 
     @property
     def touched(self) -> Mask:
-        """Tell ``(T,)`` in which frames anything was repaired."""
+        """``(T,)``: frames in which anything was repaired."""
         return np.asarray(self.exchanged | self.blended | self.jumps.any(axis=1))
 
     @property
     def findings(self) -> tuple[str, ...]:
-        """What was repaired, in sentences with counts; empty where nothing was."""
+        """The repairs as sentences with counts; empty where nothing was repaired."""
         if not (self.exchanged.any() or self.blended.any() or self.jumps.any()):
             return ()
         frames = f"of {len(self.poses)} frames"
@@ -91,11 +90,10 @@ class Repair:
 
 
 def repair_poses(poses: PoseSequence) -> Repair:
-    """Undo exchanged sides, and take out the places that landmarks jumped to.
+    """Correct side swaps and remove outliers.
 
-    Repairing again changes nothing; a recording without these faults is returned as it is.
-    Translating or uniformly scaling the recording, and shifting its clock, do not change what is
-    repaired.
+    Repairing again changes nothing; poses without these errors are returned unchanged. The repair
+    does not depend on translation or uniform scaling of the poses, nor on the clock's origin.
     """
     no_frame = np.zeros(len(poses), dtype=bool)
     result = Repair(poses, no_frame, no_frame, np.zeros(poses.seen.shape, dtype=bool))
@@ -103,8 +101,8 @@ def repair_poses(poses: PoseSequence) -> Repair:
         return result
     for _ in range(ROUNDS):
         before = result.poses
-        for mend in (_with_sides_right, _without_jumps):
-            result = mend(result)
+        for step in (_exchange_sides, _remove_outliers):
+            result = step(result)
             if not result.poses.seen.any():
                 return result
         if result.poses is before:
@@ -112,7 +110,7 @@ def repair_poses(poses: PoseSequence) -> Repair:
     return result
 
 
-def _with_sides_right(repair: Repair) -> Repair:
+def _exchange_sides(repair: Repair) -> Repair:
     poses = repair.poses
     sides = find_side_swaps(repair.trajectory)
     if not sides.exchanged.any():
@@ -130,7 +128,7 @@ def _with_sides_right(repair: Repair) -> Repair:
     )
 
 
-def _without_jumps(repair: Repair) -> Repair:
+def _remove_outliers(repair: Repair) -> Repair:
     poses = repair.poses
     off = find_outliers(repair.trajectory)
     if not off.any():

@@ -1,4 +1,4 @@
-"""Salient landmarks: the few whose motion is the gesture (paper, Sec. IV-A)."""
+"""Salient landmarks: chooses the few landmarks whose motion is the gesture (paper, Sec. IV-A)."""
 
 from __future__ import annotations
 
@@ -13,33 +13,30 @@ from app.recognition.poses.trajectory import Trajectory
 MIN_DISPLACEMENT = 0.3
 """Peak-to-peak displacement, in the trajectory's unit, from which a landmark can be salient.
 
-With an adult's torso of about half a metre this is 15 cm. Measured relative to the torso, the
-hand of an arm at rest and the head stray up to 0.2 torso lengths (balance, breathing, jitter of
-the pose model); the smallest deliberate arm gestures span half a torso and more.
+About 15 cm. A resting hand and the head move up to 0.2 torso lengths (balance, breathing, jitter);
+the smallest deliberate arm gestures span half a torso length and more.
 """
 
 MIN_SHARE_OF_LARGEST = 0.4
 """Least displacement of a salient landmark as a share of the largest one.
 
-A diver's idle hand sculls for balance, and sculls more during a wide gesture, so a fixed
-threshold alone would admit it. Hands that gesture together span alike: in both-handed
-recordings the smaller displacement is rarely below half of the larger.
+A diver's idle hand sculls for balance, more so during wide gestures, so a fixed threshold is not
+enough. In two-handed recordings the smaller displacement is rarely below half of the larger.
 """
 
 OUTLIER_PERCENTILES = (5.0, 95.0)
-"""The range taken as peak to peak.
+"""The percentiles taken as peak to peak.
 
-A pose model throws a landmark far off for a frame or two; one such frame would make anything
-salient. A real extreme is slow (the hand turns round there), so little of it is lost.
+One frame with a misplaced landmark would make it salient. Real extremes are slow, because the hand
+turns round there, so little of them is lost.
 """
 
 _GROUP_OF = {name: group for group, names in LANDMARK_GROUPS.items() for name in names}
 
 _NEVER_SALIENT = frozenset(POSE_LANDMARKS) - frozenset(_GROUP_OF)
-"""MediaPipe's arms, trunk and legs.
+"""MediaPipe's arms, trunk and legs, which only the author can choose.
 
-Shoulders and hips are the frame of reference, elbows follow the hands, and legs swim. They can
-still be chosen by hand.
+Shoulders and hips are the frame of reference, elbows follow the hands, and legs swim.
 """
 
 
@@ -71,9 +68,9 @@ def measure_displacements(trajectory: Trajectory) -> dict[str, float]:
 def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
     """Choose the landmarks whose motion is the gesture.
 
-    One of each hand and one of the head at most (`LANDMARK_GROUPS`), always the group's usual
-    representative when the recording has it: the same landmark then stands for the hand in
-    every recording. Landmarks of another set than MediaPipe's each stand for themselves.
+    At most one of each hand and one of the head (`LANDMARK_GROUPS`): the group's usual
+    representative if available, so that all recordings use the same one. Landmarks of other sets
+    than MediaPipe's are not grouped.
 
     Returns
     -------
@@ -101,8 +98,8 @@ def choose_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[st
     Raises
     ------
     GestureError
-        When the choice is empty or names a landmark twice, one that the recording lacks, or one
-        that is never seen.
+        When the choice is empty, or names a landmark twice, one that is missing, or one that is
+        never seen.
 
     """
     names = tuple(salient)

@@ -1,11 +1,10 @@
-"""Exchanged sides: frames in which the pose model took the left for the right.
+"""Side swaps: frames in which the pose model took left for right.
 
-Without a face in view the model mistakes the sides for a frame or for many; both hands then jump to
-each other's place and back. Hands that really meet, cross or part keep their velocity, so the sides
-are exchanged where that makes the movement steadier: the least sum of accelerations, by the best
-path through the frames (Viterbi 1967).
+Without a face in view the model confuses the sides for a frame or for many; both hands then jump to
+each other's position and back. Hands that really meet or cross keep their velocity, so the frames
+to exchange are those that give the least sum of accelerations (Viterbi 1967).
 
-Places are looked at in single precision, a millionth of a torso length: it takes half as long.
+Positions are in single precision, exact to a millionth of a torso length, in half the time.
 """
 
 from __future__ import annotations
@@ -24,38 +23,37 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.outliers import measure_body_unit
 
 TOLL = 0.5
-"""What a change of sides must save at least, as a share of the distance between the sides.
+"""Cost of each change between normal and exchanged frames, in distances between the sides.
 
-A mistaken frame costs several such distances. On other people's undamaged two-handed recordings,
-hands that cross and meet among them, one in 500 is changed at all; from 1 on, a tenth of the
-exchanged frames are no longer found.
+A swapped frame costs several such distances. One in 500 undamaged two-handed recordings is changed;
+from a cost of 1 on, a tenth of the swapped frames is missed (`benchmarks/studies/damage.md`).
 """
 
 TREMBLES = 3.0
-"""How many times the usual acceleration a change of sides must save at least: where landmarks
-tremble, two hands beside each other seem steadier exchanged now and then."""
+"""Least cost of a change as a multiple of the usual acceleration: with trembling landmarks, two
+hands beside each other can seem steadier exchanged."""
 
 MOST_EXCHANGED = 0.5
-"""Share of the frames beyond which it is the others that are mistaken."""
+"""Share of exchanged frames beyond which the other frames are taken as swapped."""
 
 UNSEEN_SPEED = 5.0
-"""Torso lengths a second that hands without a body may have moved while not seen: a quick stroke.
-From 3 down, one in twenty recordings of two hands with gaps is changed."""
+"""Torso lengths a second that hands without a body may move while not seen: a quick stroke.
+
+With 3 or less, one in twenty recordings of two hands with gaps is changed."""
 
 FRONTAL = 0.25
-"""Torso lengths between the shoulders, from which their width tells the sides apart; of a diver
-seen from the side it means nothing."""
+"""Least torso lengths between the shoulders at which they show a frontal view."""
 
 BLENDED = 0.9
-"""Share of the median width of the shoulders below which a frame of a mistaken recording is between
-the two: a pose model's own smoothing blends the sides there, and hands lie before the trunk. From
-0.88 to 0.94 one frame or two decide; below, the last of them draws a stroke that was never made."""
+"""Share of the median shoulder width below which a frame beside swapped ones is blended: the pose
+model's smoothing mixes both sides. From 0.88 to 0.94 a frame or two differ; with less, a blended
+frame remains and adds a stroke."""
 
 ELBOWS = ("left_elbow", "right_elbow")
 
 ARMS_BLENDED = 0.95
-"""Share of the elbows' distance before and after below which a frame of a mistaken recording shows
-blended arms. From 0.9 to 0.97 the sample clip that needs it is read right on every processor."""
+"""Share of the elbows' distance before and after below which a frame beside swapped ones has
+blended arms. From 0.9 to 0.97 the sample clip that needs it is recognised on every processor."""
 
 BLEND_SECONDS = 0.25
 """Longest time from a blended frame to one that shows the arms apart: a pose model's smoothing
@@ -67,14 +65,14 @@ SingleArray = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class SideSwaps:
-    """Which frames of a recording of T are mistaken.
+    """The side swaps of T frames.
 
     Attributes
     ----------
     exchanged
-        ``(T,)``: left and right were taken for each other.
+        ``(T,)``: left and right are exchanged.
     blended
-        ``(T,)``: between a mistaken frame and a right one, the sides lie mixed.
+        ``(T,)``: the sides are mixed, between a swapped frame and a correct one.
 
     """
 
@@ -84,7 +82,7 @@ class SideSwaps:
 
 @lru_cache(maxsize=64)
 def pair_sides(landmarks: tuple[str, ...]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return the places of the landmarks of the left side, and of their counterparts."""
+    """Return the indices of the landmarks of the left side, and of their counterparts."""
     parts = [parse_body_part(name) for name in landmarks]
     left = tuple(
         index
@@ -96,21 +94,20 @@ def pair_sides(landmarks: tuple[str, ...]) -> tuple[tuple[int, ...], tuple[int, 
 
 @lru_cache(maxsize=64)
 def _coordinates_of_sides(landmarks: tuple[str, ...]) -> npt.NDArray[np.intp]:
-    """Return where among all coordinates those of both sides lie: ``(2, 2, K)``.
+    """Return the indices of both sides' coordinates among all coordinates: ``(2, 2, K)``.
 
-    First all x, then all y, and of each the left side's before the right one's, so that what is
-    added up lies side by side in memory.
+    First all x, then all y, of each the left side's before the right one's, so that summed values
+    are contiguous in memory.
     """
     sides = 2 * np.array(pair_sides(landmarks), dtype=np.intp)
     return np.stack([sides, sides + 1])
 
 
 def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
-    """Find the frames in which left and right were mistaken for each other.
+    """Find the frames in which the pose model took left for right.
 
-    All landmarks of a side are exchanged together: the model mistakes the whole body. Frames that
-    show nothing count as right, and so does all of a recording with one side or fewer than three
-    frames.
+    All landmarks are exchanged together, because the model confuses the whole body. Frames without
+    landmarks are never swapped, nor are trajectories of one side or of fewer than three frames.
     """
     frames = len(trajectory)
     none = SideSwaps(np.zeros(frames, dtype=bool), np.zeros(frames, dtype=bool))
@@ -118,7 +115,7 @@ def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     if not sides.size:
         return none
     xy = trajectory.xy.reshape(frames, -1).take(sides, axis=1).astype(np.float32)
-    blended = _blended(trajectory)
+    blended = _find_blended(trajectory)
     known = np.isfinite(xy)
     clear = (~blended if known.all() else known.any(axis=(1, 2, 3)) & ~blended).nonzero()[0]
     if len(clear) < 3:
@@ -126,37 +123,37 @@ def find_side_swaps(trajectory: Trajectory) -> SideSwaps:
     xy = xy if len(clear) == frames else xy[clear]
     if (unit := measure_body_unit(trajectory)) != 1.0:
         xy = xy / unit
-    between = _lengths(xy[:, :, 0] - xy[:, :, 1])
+    between = _measure_lengths(xy[:, :, 0] - xy[:, :, 1])
     toll = TOLL * median(np.add.reduce(between, axis=1, dtype=np.float64))
-    # A body in view tells its sides apart by the trunk, wherever the hands went meanwhile.
+    # With a body in view the trunk shows the sides after a gap, so hands get no allowance.
     speed = 0.0 if set(SHOULDERS) <= set(trajectory.landmarks) else UNSEEN_SPEED
     accelerations = _Accelerations.between(xy, trajectory.time[clear], speed)
     kept = accelerations.of(0, 0, 0)
     toll = max(toll, TREMBLES * median(kept))
-    # A change of sides spares at most the two accelerations around it.
+    # A change of sides saves at most the two accelerations around it.
     if (kept[1:] + kept[:-1]).max(initial=kept[0]) <= toll:
         return none
-    mistaken = _steadiest(accelerations.of_all(), toll)
-    if not mistaken.any():
+    swapped = _find_steadiest(accelerations.of_all(), toll)
+    if not swapped.any():
         return none
-    if mistaken.mean() > MOST_EXCHANGED:
-        mistaken = ~mistaken
+    if swapped.mean() > MOST_EXCHANGED:
+        swapped = ~swapped
     exchanged = none.exchanged.copy()
-    exchanged[clear] = mistaken
-    return SideSwaps(exchanged, blended | _blended_arms(trajectory, blended))
+    exchanged[clear] = swapped
+    return SideSwaps(exchanged, blended | _find_blended_arms(trajectory, blended))
 
 
 def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> FloatArray:
-    """Give the landmarks of either side the values of the other one.
+    """Exchange the values of the left and right landmarks in some frames.
 
     Parameters
     ----------
     values
-        ``(T, K, ...)``, of each landmark at each moment.
+        ``(T, K, ...)``, of each landmark in each frame.
     landmarks
         K names.
     frames
-        ``(T,)`` the moments at which to do so, see `Sides.exchanged`.
+        ``(T,)``: the frames to exchange, see `SideSwaps.exchanged`.
 
     """
     left, right = pair_sides(landmarks)
@@ -167,8 +164,8 @@ def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> 
     return changed
 
 
-def _blended(trajectory: Trajectory) -> Mask:
-    """Tell ``(T,)`` in which frames the shoulders are too close to each other."""
+def _find_blended(trajectory: Trajectory) -> Mask:
+    """Return ``(T,)``: frames in which the shoulders are too close to each other."""
     if not set(SHOULDERS) <= set(trajectory.landmarks):
         return np.zeros(len(trajectory), dtype=bool)
     first, second = (trajectory.landmarks.index(name) for name in SHOULDERS)
@@ -179,18 +176,18 @@ def _blended(trajectory: Trajectory) -> Mask:
     return np.asarray(width < (BLENDED * usual if usual > FRONTAL else 0.0))
 
 
-def _blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
-    """Find ``(T,)`` frames whose elbows lie nearer to each other than shortly before and after.
+def _find_blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
+    """Return ``(T,)``: frames whose elbows are closer together than shortly before and after.
 
-    The model's smoothing blends arms for longer than shoulders, which are closer to each other.
-    Exchanged sides do not change the distance.
+    The model's smoothing mixes arms for longer than shoulders, which are closer together. Swapped
+    sides do not change the distance.
 
     Parameters
     ----------
     trajectory
-        T frames, some of which show exchanged sides.
+        T frames, some of which are swapped.
     blended
-        ``(T,)``: frames that are known to be blended, and are no measure for others.
+        ``(T,)``: frames already known to be blended, which are not compared with.
 
     """
     near = np.zeros(len(trajectory), dtype=bool)
@@ -210,7 +207,7 @@ def _blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
 
 @dataclass(frozen=True, eq=False)
 class _Accelerations:
-    """By how much landmarks miss where their velocity would have carried them.
+    """Accelerations of landmarks: their distances from constant velocity.
 
     Attributes
     ----------
@@ -218,10 +215,9 @@ class _Accelerations:
         ``(T, 2, 2, K)`` each: x and y of the landmarks of both sides, kept (0) or exchanged (1),
         in torso lengths.
     carried
-        ``(T - 2, 1, 1, 1)``: share of the last step by which the next one carries on.
+        ``(T - 2, 1, 1, 1)``: factor on the last step for the expected next one.
     elsewhere
-        ``(T - 2, 1, 1)``: torso lengths that a landmark may have gone elsewhere in a gap; 0 where
-        none may.
+        ``(T - 2, 1, 1)``: torso lengths of free movement in a gap; 0 where none is allowed.
 
     """
 
@@ -233,8 +229,8 @@ class _Accelerations:
     def between(cls, xy: SingleArray, time: FloatArray, unseen_speed: float) -> _Accelerations:
         """Prepare for ``(T, 2, 2, K)`` at ``(T,)`` and a speed in gaps, torso lengths a second."""
         steps = time[1:] - time[:-1]
-        # After a gap a hand may have stopped, so it is carried no farther than between the frames
-        # before, and it may have gone elsewhere.
+        # After a gap a hand may have stopped, so the expected step is at most the last one, and
+        # free movement is allowed.
         share = np.minimum(steps[1:] / steps[:-1], 1.0)
         carried = share.astype(np.float32)[:, None, None, None]
         both = (xy, xy[:, :, ::-1])
@@ -245,26 +241,26 @@ class _Accelerations:
         return cls(both, carried, elsewhere.astype(np.float32)[:, None, None])
 
     def of(self, first: int, second: int, third: int) -> FloatArray:
-        """Sum them, ``(T - 2,)``, for frames of which each is kept (0) or exchanged (1).
+        """Return their sums, ``(T - 2,)``, for three frames each kept (0) or exchanged (1).
 
-        A landmark that is not seen in all three counts nothing.
+        A landmark that is not seen in all three adds nothing.
         """
         before, last = self.both[first][:-2], self.both[second][1:-1]
         carried_on = last - before
         carried_on *= self.carried
         off = self.both[third][2:] - last
         off -= carried_on
-        missed = _lengths(off, self.elsewhere)
+        missed = _measure_lengths(off, self.elsewhere)
         return np.asarray(np.add.reduce(missed, axis=(1, 2), dtype=np.float64))
 
     def of_all(self) -> FloatArray:
-        """Sum them for every choice: ``(T - 2, 2, 2, 2)``."""
+        """Return their sums for every choice: ``(T - 2, 2, 2, 2)``."""
         choices = [self.of(*choice) for choice in np.ndindex(2, 2, 2)]
         return np.stack(choices, axis=1).reshape(-1, 2, 2, 2)
 
 
-def _lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArray:
-    """Return how much longer than `less` vectors ``(T, 2, ...)`` are; 0 where not, or not known.
+def _measure_lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArray:
+    """Return the lengths of vectors ``(T, 2, ...)`` minus `less`; 0 if negative or unknown.
 
     The vectors are overwritten.
     """
@@ -276,8 +272,8 @@ def _lengths(vectors: SingleArray, less: SingleArray | float = 0.0) -> SingleArr
     return np.asarray(np.fmax(lengths, 0.0, out=lengths))
 
 
-def _steadiest(missed: FloatArray, toll: float) -> Mask:
-    """Choose ``(T,)`` frames to exchange so that the sum is least; the first one is kept.
+def _find_steadiest(missed: FloatArray, toll: float) -> Mask:
+    """Return ``(T,)``: frames to exchange for the least sum; the first one is never exchanged.
 
     Parameters
     ----------
@@ -288,7 +284,7 @@ def _steadiest(missed: FloatArray, toll: float) -> Mask:
 
     """
     change = toll * np.array([[0.0, 1.0], [1.0, 0.0]])
-    total = np.array([[0.0, toll], [np.inf, np.inf]])  # by what the last two frames are
+    total = np.array([[0.0, toll], [np.inf, np.inf]])  # by the choice for the last two frames
     came_from = np.empty((len(missed), 2, 2), dtype=np.intp)
     for step, costs in enumerate(missed):
         ways = total[:, :, None] + costs + change

@@ -1,1 +1,1 @@
-"""From a video to takes: decoding, extraction of landmarks, salutes, segmentation, trimming."""
+"""Recordings: video decoding, extraction of landmarks, salutes, segmentation into takes."""

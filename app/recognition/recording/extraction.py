@@ -1,4 +1,4 @@
-"""From a clip to what is in it: frames stream through the models, only landmarks are kept."""
+"""Extraction: runs a pose estimator on every frame of a clip and keeps the landmarks."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ from app.recognition.recording.video_limits import VideoLimits
 Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
 Raising an exception in it cancels the work."""
-
 Observer = Callable[[VideoFrame, FrameLandmarks], None]
-"""``observer(frame, found)``: a frame of the clip, and what the models found in it. Raising an
-exception in it cancels the work."""
+"""``observer(frame, found)``: a frame of the clip and its landmarks. Raising an exception in it
+cancels the work."""
 
 
 def record(
@@ -40,24 +39,24 @@ def record(
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
-    Memory does not grow with the clip but by the landmarks: one frame is held at a time.
+    One frame is in memory at a time; only the landmarks grow with the clip.
 
     Parameters
     ----------
     clip
         The video file.
     estimator
-        What finds the landmarks; it is reset first and left open. None: the default one. The poses
-        have those landmarks that it can find at all.
+        The pose estimator; it is reset first and left open. None: the default one. The poses have
+        the landmarks that it can find.
     progress
         Called after every frame.
     observer
         Called with the landmarks of every frame, before `progress` counts it.
     limits
-        What the clip may cost.
+        Limits of the clip's size and length.
     water
-        Whether colour and contrast are set right before the landmarks are looked for: where a
-        frame is murky, always, or never.
+        Whether colour and contrast are corrected before estimation: in murky frames, always, or
+        never.
 
     Raises
     ------
@@ -81,12 +80,12 @@ def record_frames(
     observer: Observer | None = None,
     water: WaterCorrection = "auto",
 ) -> Recording:
-    """Find body and hands in frames that are open already; see `record`.
+    """Find body and hands in the frames of an open source; see `record`.
 
     Raises
     ------
     VideoError
-        When a frame cannot be read after all, or breaks a limit.
+        When a frame cannot be read, or breaks a limit.
     ModelError
         When the default estimator's models are not installed.
 
@@ -114,7 +113,7 @@ def build_frame_sequence(
     frame_size: tuple[int, int],
     landmarks: tuple[str, ...] = POSE_LANDMARKS,
 ) -> PoseSequence:
-    """Return what was found in one frame as a recording of that frame alone.
+    """Return the landmarks of one frame as a pose sequence of length 1.
 
     Parameters
     ----------
@@ -125,7 +124,7 @@ def build_frame_sequence(
     frame_size
         Width and height of the image in pixels.
     landmarks
-        Those to keep: what the estimator can find at all (`list_landmarks`).
+        Landmarks to keep: those that the estimator can find (`list_landmarks`).
 
     """
     if found.body is None:
@@ -146,7 +145,7 @@ def build_frame_sequence(
 
 
 class _Collector:
-    """Gathers the landmarks of one frame after another into a `Recording`."""
+    """Collects the landmarks of frame after frame into a `Recording`."""
 
     def __init__(self, info: VideoInfo, estimator: PoseEstimator) -> None:
         self._info = info
@@ -173,7 +172,7 @@ class _Collector:
         )
 
     def _warnings(self) -> tuple[str, ...]:
-        """Say what is missing in the clip, with counts, and what to do about it."""
+        """Return what is missing in the clip, as sentences with counts and remedies."""
         frames = len(self._moments)
         found = []
         if self._without_body:
@@ -219,7 +218,7 @@ def _record(
 
 
 def _expected_frames(info: VideoInfo, frame: VideoFrame) -> int:
-    """Estimate the clip's count of frames from what was read so far, never below it."""
+    """Estimate the clip's number of frames from those read so far, never below it."""
     done = frame.index + 1
     if info.frames is not None:
         return max(done, info.frames)

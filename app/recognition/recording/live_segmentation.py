@@ -1,4 +1,4 @@
-"""Takes found while a camera runs: the same salutes and the same cut as in a recorded clip."""
+"""Live segmentation: finds takes frame by frame, with the same rules as in recorded clips."""
 
 from __future__ import annotations
 
@@ -18,22 +18,23 @@ from app.recognition.recording.segmentation import (
 )
 
 LONGEST_SALUTE = 10.0
-"""Seconds of a start salute that are remembered beside the longest take: the way of the hand from
-it takes one, and a camera that stalls may need some until the salute counts."""
+"""Seconds of a start salute kept in addition to the longest take: the transit takes one, and a
+camera that stalls may need some until the salute counts."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """What one frame of a camera adds.
+    """The result of one frame of a camera.
 
     Attributes
     ----------
     salute
-        In [0, 1]: how much the best hand salutes.
+        Score in [0, 1] of the best salute.
     held
-        Whether a salute was held long enough to count, and still is.
+        Whether a salute has been held long enough to count, and still is.
     state
-        Whether a salute is awaited, a take goes on, or the salute that ended it is still held.
+        Whether the machine waits for a salute, is in a take, or waits for the end of the salute
+        that ended it.
     take
         The take that this frame ends, if it ends one.
 
@@ -48,7 +49,7 @@ class Sight:
 class LiveTakes:
     """Finds the takes of a camera's frames, one frame at a time.
 
-    Memory is bounded: no more than the longest take and its start salute are kept, as landmarks.
+    Memory is bounded: only the landmarks of the longest take and its start salute are kept.
 
     Parameters
     ----------
@@ -63,11 +64,11 @@ class LiveTakes:
         self._moments: deque[PoseSequence] = deque()
 
     def __len__(self) -> int:
-        """Count the frames that are remembered."""
+        """Return the number of frames kept."""
         return len(self._moments)
 
     def feed(self, time: float, found: FrameLandmarks) -> Sight:
-        """Take the next frame.
+        """Process the next frame.
 
         Parameters
         ----------
@@ -82,14 +83,14 @@ class LiveTakes:
         )
 
     def feed_moment(self, moment: PoseSequence, salute: float) -> Sight:
-        """Take the next frame, whose landmarks and salute came apart.
+        """Process the next frame, given as poses and salute score.
 
         Parameters
         ----------
         moment
-            The body in that frame alone, later than in every call before.
+            The poses of that frame alone, later than in every call before.
         salute
-            In [0, 1]: how much the best hand salutes (`best_salute`).
+            Score in [0, 1] of the best salute (`best_salute`).
 
         """
         time = float(moment.time[0])
@@ -107,7 +108,7 @@ class LiveTakes:
         )
 
     def finish(self) -> Take | None:
-        """End the stream; return the take that was begun and not closed, if there is one."""
+        """End the stream and return the unclosed take, if there is one."""
         if not self._moments:
             return None
         bracket = self._machine.finish(float(self._moments[-1].time[0]))

@@ -1,4 +1,4 @@
-"""Everything found in one clip, frame by frame: the body, the hands and how much they salute."""
+"""Recordings: the landmarks of body and hands and the salute scores of a clip, with their file."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 FILE_VERSION = 1
-"""Of the file that `Recording.save` writes; raised when a reader of today could misread it."""
+"""Version of the file that `Recording.save` writes; increased when older readers would fail."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What an estimator found in all T frames of a clip.
+    """The landmarks that an estimator found in all T frames of a clip.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Recording:
     salute
         ``(T,)`` in [0, 1]: score of the best salute in the frame (`best_salute`), 0 without a hand.
     warnings
-        What the user should know about the clip, in sentences with counts.
+        Problems of the clip, as sentences with counts.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class Recording:
         object.__setattr__(self, "salute", salute)
 
     def save(self, path: str | Path) -> None:
-        """Write a compressed NumPy archive, all of it or nothing.
+        """Write a compressed NumPy archive atomically.
 
         The file appears under its name only when it is complete and on the disk.
         """
@@ -100,7 +100,7 @@ class Recording:
 
     @classmethod
     def load(cls, path: str | Path) -> Recording:
-        """Read what `save` wrote.
+        """Read a file that `save` wrote.
 
         Raises
         ------

@@ -1,9 +1,8 @@
-"""The Vulcan salute that brackets a gesture: a test on one hand's landmarks, and its hold in time.
+"""Vulcan salute: a score of one hand's landmarks, and the trigger that requires it to be held.
 
-Fingers straight, index with middle and ring with little finger together, a V between the two
-pairs. The published rule compares three gaps between finger tips only and therefore also fires on
-a victory sign, on two fingers held together and on loosely curled hands; the test here asks for
-the whole shape.
+Fingers straight, index with middle and ring with little finger together, a V between the pairs. The
+published rule compares three gaps between finger tips and therefore also accepts a victory sign,
+two fingers held together and loosely curled hands; the score here tests the whole shape.
 """
 
 from __future__ import annotations
@@ -27,10 +26,10 @@ _JOINTS = [
     [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
     for finger in FINGERS
 ]
-"""Positions in `HAND_LANDMARKS` of each finger's knuckle, middle joint, last joint and tip."""
+"""Indices in `HAND_LANDMARKS` of each finger's knuckle, middle joint, last joint and tip."""
 
 _JOINTS_OF_FINGERS = [itemgetter(*joints) for joints in _JOINTS]
-"""Each takes one finger's four joints out of a hand's points."""
+"""Getters of each finger's four joints from a hand's points."""
 
 _INDEX_KNUCKLE, _MIDDLE_KNUCKLE, _, _LITTLE_KNUCKLE = (joints[0] for joints in _JOINTS)
 _TIPS = [joints[3] for joints in _JOINTS]
@@ -43,20 +42,20 @@ PUBLISHED_RATIO = 1.2
 class Condition:
     """A soft threshold: 0.5 at `middle`, 0.98 half a `width` above, 0.02 half a `width` below.
 
-    The logistic slope ``8 / width`` makes `width` the range in which the answer is in doubt.
+    The logistic slope is ``8 / width``, so that `width` is the uncertain range.
     """
 
     middle: float
     width: float
 
     def excess(self, value: float) -> float:
-        """Tell how far `value` is above the threshold; `fulfilment` makes a share of it."""
+        """Return how far `value` is above the threshold, the input of `score_condition`."""
         return 8 * (value - self.middle) / self.width
 
 
 def score_condition(excess: float) -> float:
     """Return the logistic share in [0, 1] of a `Condition.excess`."""
-    # In this order NaN, of coordinates too large to compute with, becomes the lower bound.
+    # In this order NaN, from coordinates too large to compute with, becomes the lower bound.
     return 1 / (1 + math.exp(-min(max(-50.0, excess), 50.0)))
 
 
@@ -88,12 +87,12 @@ TIP_GAP_RATIO = Condition(1.1, 0.6)
 """Gap between the tips of middle and ring finger over the wider gap inside the pairs."""
 
 PALM_WIDTH = Condition(0.38, 0.4)
-"""Index to little finger knuckle: seen edge-on the angles mean nothing."""
+"""Index to little finger knuckle: seen edge-on, angles are unreliable."""
 
 KNUCKLES_PER_PALM = 1.2
 """Palm length over the width of the knuckles, for foreshortened palms."""
 
-# The same for hands whose fingers the hand model bends at the tips; narrower, since less is asked.
+# The same for hands whose fingertips the hand model bends; stricter, since fewer are tested.
 NEARLY_STRAIGHT = Condition(0.75, 0.2)
 """Index and middle finger, as in `STRAIGHT`."""
 
@@ -104,13 +103,13 @@ WIDE_SPREAD = Condition(20.0, 4.0)
 """Degrees of the V: far beyond an open hand's 12."""
 
 WIDEST_SPREAD = 40.0
-"""Degrees: a V of people's fingers is narrower, a folded ring finger points anywhere beyond."""
+"""Degrees: people's V is narrower; a folded ring finger can exceed it."""
 
 WIDE_TIP_GAP_RATIO = Condition(1.4, 0.2)
 """Tip gaps as in `TIP_GAP_RATIO`."""
 
 CLOSE_INDEX_PAIR, CLOSE_LITTLE_PAIR = 9.0, 22.0
-"""Degrees inside the pairs, at most; a bent finger's direction is less sure."""
+"""Largest degrees inside the pairs; a bent finger's direction is less certain."""
 
 VISIBLE_RING, VISIBLE_LITTLE = Condition(0.27, 0.06), Condition(0.17, 0.06)
 """Distance knuckle to tip, of which a folded finger shows almost nothing."""
@@ -123,29 +122,28 @@ SMALL_ENOUGH = Condition(0.0, 4.0)
 """Degrees by which an angle stays below its limit."""
 
 ENTER_SCORE = 0.5
-"""A salute begins where the test itself says so."""
+"""Score from which a salute begins, the threshold of the test itself."""
 
 LEAVE_SCORE = 0.3
-"""A salute goes on while the score stays above this: a hand that trembles around the threshold is
-still saluting, one that has closed or opened scores below 0.1."""
+"""Score down to which a salute continues: a trembling hand still salutes, a closed or open hand
+scores below 0.1."""
 
 HOLD_SECONDS = 0.3
-"""A salute counts once it was held for this long: longer than the hand takes the shape in passing,
-shorter than anyone gets impatient. In seconds, since the published code's 30 frames on the desk
-and 5 on the robot are different times."""
+"""Seconds that a salute must be held: longer than a hand has the shape in passing. In seconds,
+since the published code's 30 frames on the desk and 5 on the robot are different times."""
 
 DROPOUT_SECONDS = 0.5
-"""A salute is over when it was not seen for this long. Under water the hand detector loses a still
-hand for up to half a second; nobody draws a gesture in that time."""
+"""Seconds without salute after which it is over. Under water the hand detector loses a still hand
+for up to half a second, which is too short for a gesture."""
 
 
 def salute_score(hand_xy: FloatArray) -> float:
-    """Tell how much one hand looks like a Vulcan salute.
+    """Return how much one hand looks like a Vulcan salute.
 
     The least fulfilled of eight conditions: four straight, long, stretched-out fingers, the V
     between middle and ring finger, wide in degrees and against the pairs, and a palm not seen
-    edge-on. Short fingers the hand model often reads as bent at the tips, ring and little finger
-    most; they salute too when the V is wide, the pairs are close and none is folded.
+    edge-on. The hand model often bends the tips of short fingers, ring and little finger most;
+    such hands salute if the V is wide, the pairs are close and no finger is folded.
     Translating, turning, mirroring (left or right hand) and uniformly scaling the hand leave the
     score as it is.
 
@@ -164,20 +162,20 @@ def salute_score(hand_xy: FloatArray) -> float:
         When `hand_xy` has another shape.
 
     """
-    points = [complex(x, y) for x, y in _checked(hand_xy).tolist()]
+    points = [complex(x, y) for x, y in _check_shape(hand_xy).tolist()]
     if not all(map(cmath.isfinite, points)):
         return 0.0
     try:
         shape = _HandShape.of(points)
     except OverflowError:  # landmarks farther apart than numbers go
         return 0.0
-    # The share grows with the excess: the least excess is that of the least fulfilled condition.
+    # The score grows with the excess, so the least excess is of the least fulfilled condition.
     return score_condition(max(_clear_salute(shape), _wide_salute(shape)))
 
 
 @dataclass(frozen=True, eq=False)
 class _HandShape:
-    """What the conditions look at, of index, middle, ring and little finger in this order.
+    """Measures of a hand, of index, middle, ring and little finger in this order.
 
     ``straight`` (4) shares; ``length`` (4) and ``stretch`` (4) palms; ``index_pair``, ``spread``
     and ``little_pair`` degrees from a finger to the next, away from the thumb; ``gap_ratio`` the
@@ -262,7 +260,7 @@ def _wide_salute(shape: _HandShape) -> float:
 
 
 def check_published_rule(hand_xy: FloatArray) -> bool:
-    """Tell what the published implementation calls a salute, to compare with.
+    """Return whether the published implementation accepts a hand as a salute, for comparison.
 
     The gap between the tips of middle and ring finger is `PUBLISHED_RATIO` times wider than the
     gap between index and middle finger, and than the one between ring and little finger.
@@ -278,7 +276,7 @@ def check_published_rule(hand_xy: FloatArray) -> bool:
         When `hand_xy` has another shape.
 
     """
-    tips = _checked(hand_xy)[_TIPS]
+    tips = _check_shape(hand_xy)[_TIPS]
     index, middle, little = np.linalg.norm(np.diff(tips, axis=0), axis=1)
     return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
 
@@ -290,11 +288,11 @@ def best_salute(hands: Iterable[Hand]) -> float:
 
 @dataclass
 class SaluteTrigger:
-    """Turns the salute scores of a stream into salutes that were meant.
+    """Turns the salute scores of a stream into held salutes.
 
-    What counts is time between two neighbouring frames that both show the salute, so a detection
-    in a single frame counts for nothing, at any frame rate. Of one such step at most
-    half of `hold` counts: a salute needs at least three frames, also where a camera stalls.
+    The time between neighbouring frames that both show the salute is summed, so a detection in a
+    single frame adds nothing at any frame rate. One such step adds at most half of `hold`: a
+    salute needs at least three frames, also where a camera stalls.
 
     Attributes
     ----------
@@ -303,7 +301,7 @@ class SaluteTrigger:
     dropout
         Seconds without salute until it is over.
     enter, leave
-        Scores from which it begins, and down to which it goes on.
+        Scores from which it begins, and down to which it continues.
     held
         Whether a salute counts now.
     since, until
@@ -323,7 +321,7 @@ class SaluteTrigger:
     _previous: tuple[float, float] | None = field(default=None, init=False)
 
     def update(self, time: float, score: float) -> bool:
-        """Take the next frame's score.
+        """Process the next frame's score.
 
         Parameters
         ----------
@@ -348,13 +346,13 @@ class SaluteTrigger:
                 self.until = time
         if self.until is not None and time - self.until > self.dropout:
             self.held, self._collected = False, 0.0
-        # The tolerance only forgives that a sum of floats misses `hold` by the last bit.
+        # The tolerance is for a sum of floats that misses `hold` by the last bit.
         elif self._collected >= self.hold - 1e-9:
             self.held = True
         return self.held
 
 
-def _checked(hand_xy: FloatArray) -> FloatArray:
+def _check_shape(hand_xy: FloatArray) -> FloatArray:
     points = np.asarray(hand_xy, dtype=np.float64)
     if points.shape != (len(HAND_LANDMARKS), 2):
         raise PoseError(f"a hand has shape {points.shape}, expected (21, 2): x and y of 21 points")

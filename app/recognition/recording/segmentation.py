@@ -1,4 +1,4 @@
-"""Takes: what lies between two salutes, found in a recording or while a camera runs."""
+"""Segmentation: finds the takes of a recording or a stream, each between two salutes."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ from app.recognition.recording.salute import SaluteTrigger
 from app.recognition.recording.trimming import Span, find_stroke
 
 SHORTEST_TAKE = 0.8
-"""Seconds between two salutes, at least. A reach, a stroke and a reach back take 0.5 s each at
-human speed (Flash and Hogan 1985); what is shorter is one salute that was lost for a while."""
+"""Least seconds between two salutes. A reach, a stroke and a reach back take 0.5 s each (Flash and
+Hogan 1985); a shorter pause is one salute that was lost for a while."""
 
 LONGEST_TAKE = 60.0
-"""Seconds. A gesture takes a few; whoever has not saluted for a minute has forgotten the stop
-salute or gone away, and their next salute begins a new gesture."""
+"""Most seconds of a take. A gesture takes a few; after a minute the stop salute was forgotten, and
+the next salute begins a new take."""
 
 
 class TakeState(str, Enum):
-    """What a `TakeMachine` does now."""
+    """State of a `TakeMachine`."""
 
     idle = "idle"
     """Waits for a salute."""
     recording = "recording"
-    """A salute was made; the gesture is being shown, or about to be."""
+    """A salute was held; the gesture is shown, or about to be."""
     done = "done"
     """A second salute ended the take and is still held."""
 
 
 @dataclass(frozen=True)
 class Bracket:
-    """Two salutes around a take, or one that was never followed by another.
+    """The salutes around a take; the second one may be missing.
 
     Attributes
     ----------
     first_salute
-        From the first sight of the start salute to its last one.
+        From the first frame of the start salute to its last one.
     last_salute
-        From the first sight of the stop salute to when it had been held long enough; None: there
-        was none before the stream or the time for a take ended.
+        From the first frame of the stop salute to when it had been held long enough; None: the
+        stream or the time for a take ended without one.
     end
         Seconds: when the take ends, by the stop salute or without one.
 
@@ -71,21 +71,20 @@ class Bracket:
 class TakeMachine:
     """Turns a stream of salute scores into takes.
 
-    Idle until a salute is held; then recording. The take begins when this salute is released,
-    however long it is held, and ends where the next one begins. Then done, until that salute is
-    released too: one salute never ends one take and begins the next.
-
-    A salute that comes back within `shortest` seconds of its release had only been lost. A take
-    that lasts longer than `longest` seconds is given up as unclosed.
+    Idle until a salute is held; then recording. The take begins when this salute is released and
+    ends where the next one begins. Then done, until that salute is released too: one salute never
+    ends one take and begins the next.
+    A salute that returns within `shortest` seconds of its release continues. A take longer than
+    `longest` seconds ends unclosed.
 
     Attributes
     ----------
     trigger
-        Tells when a salute is held.
+        Detects held salutes.
     shortest, longest
-        Seconds that a take may last.
+        Least and most seconds of a take.
     state
-        What the machine does now.
+        Current state.
 
     """
 
@@ -97,14 +96,14 @@ class TakeMachine:
     _released: float | None = field(default=None, init=False)
 
     def update(self, time: float, score: float) -> Bracket | None:
-        """Take the next frame.
+        """Process the next frame.
 
         Parameters
         ----------
         time
             Seconds, later than in every call before.
         score
-            How much the best hand salutes, in [0, 1] (`best_salute`).
+            Score in [0, 1] of the best salute (`best_salute`).
 
         Returns
         -------
@@ -128,7 +127,7 @@ class TakeMachine:
 
         Returns
         -------
-        The take that was begun and not closed, if there is one.
+        The unclosed take, if there is one.
 
         """
         released = self._released
@@ -162,7 +161,7 @@ class TakeMachine:
 
 @dataclass(frozen=True)
 class Take:
-    """One showing of a gesture.
+    """One take: what lies between two salutes.
 
     Attributes
     ----------
@@ -171,7 +170,7 @@ class Take:
     closed
         Whether a stop salute ended it; else `end` is where the clip (or the time allowed) ends.
     poses
-        The stroke, without the hand's way from the salute and back to it.
+        The stroke, without the transits from and to the salutes.
     stroke_start, stroke_end
         Seconds in the clip between which `poses` lies.
     untrimmed
@@ -216,15 +215,14 @@ def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
     Parameters
     ----------
     recording
-        What was found in a clip.
+        The recording of a clip.
     trim
-        Whether to leave the hand's way from and to the salute out of the stroke
-        (`app.recognition.recording.trimming`).
+        Whether to trim the transits from and to the salutes (`app.recognition.recording.trimming`).
 
     Returns
     -------
-    The takes in order; none where nobody salutes, then the user chooses the range by hand. At most
-    the last one is unclosed, unless the diver forgot a stop salute for `LONGEST_TAKE` seconds.
+    The takes in order; none without salutes. Only the last one can be unclosed, unless a stop
+    salute was forgotten for `LONGEST_TAKE` seconds.
 
     """
     machine = TakeMachine()
@@ -252,12 +250,12 @@ def find_takes(
 
 
 def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:
-    """Cut a take out of a recording.
+    """Cut a take out of a pose sequence.
 
     Parameters
     ----------
     poses
-        A recording that covers the bracket with its salutes.
+        Poses that cover the bracket with its salutes.
     bracket
         The salutes around the take.
     trim

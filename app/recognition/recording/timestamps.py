@@ -1,34 +1,35 @@
-"""Seconds of the frames of a video: the container's timestamps, repaired where they are broken."""
+"""Timestamps: the seconds of a video's frames, from the container, repaired where invalid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 FALLBACK_STEP = 1 / 25
-"""Seconds between frames while nothing in the file says otherwise: the slowest rate that
-cameras record moving pictures at by default (PAL), so that repaired time rather lags than runs."""
+"""Seconds between frames where the file has no rate: the slowest usual rate (PAL), so that repaired
+time does not run ahead."""
 
 SHORTEST_STEP, LONGEST_STEP = 1 / 1000, 0.5
-"""Believable seconds between neighbouring frames: from a high-speed camera's 1000 frames a second
+"""Plausible seconds between neighbouring frames: from a high-speed camera's 1000 frames a second
 to the longest gap that a trajectory bridges (`app.recognition.poses.trajectory.MAX_GAP_SECONDS`).
-A container's nominal rate is often wrong (a WebM recorded by a browser says 1000 per second)."""
+
+A container's nominal rate is often wrong (1000 a second in a WebM recorded by a browser)."""
 
 NUDGE = 0.25
-"""Share of a step that a frame is put after one which claims to be as late: little enough that the
-next good timestamp is still ahead, also where two frames changed places and the step seems double.
+"""Share of a step by which a frame is moved behind one with the same timestamp: so little that the
+next valid timestamp is later, also where two frames are out of order and the step seems double.
 """
 
 DISCONTINUITY = 1.0
-"""Seconds back from which a jump is a restart of the clock (joined files, a camera's counter that
-wraps) and not a frame out of order: B-frames reorder by at most a few frames."""
+"""Seconds back from which a jump is a restart of the clock (joined files, a counter that wraps) and
+not a frame out of order: B-frames reorder by a few frames at most."""
 
 
 @dataclass
 class FrameClock:
-    """Gives every frame, in display order, a time later than that of the frame before it.
+    """Computes a strictly increasing time for every frame, in display order.
 
-    The first frame is at 0 s and every other one where the container puts it, whatever the
-    nominal rate. Three faults are repaired and counted:
+    The first frame is at 0 s, every other one at the container's timestamp, whatever the nominal
+    rate. Three errors are repaired and counted:
 
     - no timestamp: one step after the frame before;
     - not later than the frame before (duplicates, frames out of order): `NUDGE` of a step after
@@ -36,14 +37,14 @@ class FrameClock:
     - more than `DISCONTINUITY` back: the clock restarted; this frame comes one step after the
       one before, and all later ones are moved along with it.
 
-    A step is the last believable difference of two timestamps.
+    A step is the last plausible difference of two timestamps.
 
     Attributes
     ----------
     step
         Seconds between frames as far as known: the nominal value first, then as seen.
     repaired
-        Count of frames whose timestamp was missing or not usable.
+        Number of frames whose timestamp was missing or not usable.
 
     """
 
@@ -54,7 +55,7 @@ class FrameClock:
     _shift: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
-        """Replace a nominal step that cannot be true."""
+        """Replace an implausible nominal step."""
         if not SHORTEST_STEP <= self.step <= LONGEST_STEP:
             self.step = FALLBACK_STEP
 
@@ -64,7 +65,7 @@ class FrameClock:
         Parameters
         ----------
         stamp
-            What the container says, in seconds from any fixed moment; None: nothing.
+            The container's timestamp, in seconds from any fixed moment; None: missing.
 
         Returns
         -------

@@ -1,14 +1,13 @@
-"""The hand's way from the salute to where the stroke begins, and back: found, to be left out.
+"""Trimming: finds the transits between the salutes and the gesture, and cuts them off.
 
-Between two salutes the diver reaches for the place where the gesture begins, draws, and returns
-to the salute. The two reaches say nothing about the gesture; drawn into its trajectory image they
-make all gestures more alike (they are in every image of the published language files).
+Between two salutes the diver reaches for the place where the gesture begins, draws, and returns.
+The two reaches are no part of the gesture; in its trajectory image they would make all gestures
+more alike (as in every image of the published language files).
 
-People move in discrete strokes with a bell-shaped speed each (Flash and Hogan 1985), and a reach
-to a point is nearly straight. So the recording is cut where the speed of the moving wrists has a
-clear minimum, and the first piece is the reach, the last one the return, when they are straight,
-short enough, and not all there is. In doubt nothing is cut: a stroke with a reach in it is still
-recognised, half a stroke is not.
+People move in strokes with a bell-shaped speed (Flash and Hogan 1985), and a reach to a point is
+nearly straight. So the take is split where the speed of the moving wrists has a clear minimum; the
+first and the last piece are transits if they are straight, short, and not the whole movement. In
+doubt nothing is cut: a stroke with a reach is still recognised, half a stroke is not.
 """
 
 from __future__ import annotations
@@ -30,63 +29,63 @@ GRID_STEP = 1 / 60
 """Seconds between the moments at which speed is computed: finer than most cameras' frames."""
 
 SMOOTHING = 0.06
-"""Standard deviation in seconds of the Gaussian that quietens the positions: a quarter of the
-half-width of the shortest reach's bell (0.4 s), so that bells survive and frame noise does not."""
+"""Standard deviation in seconds of the Gaussian that smooths positions: a quarter of the half-width
+of the shortest reach's bell (0.4 s), so that bells remain and frame noise does not."""
 
 MOVING_HAND = 0.3
-"""Torso lengths that a wrist must travel, corner to corner, to count as moving: sway of the body
-and errors of the pose model stay below, gestures are above."""
+"""Least extent of a moving wrist, torso lengths: sway of the body and errors of the pose model are
+below, gestures above."""
 
 CLEAR_MINIMUM = 0.4
-"""Speed at a boundary over the lower one of the two neighbouring peaks, at most. A hand that stops
-or turns sharply comes below; on a curve it slows down by about a third (two-thirds power law,
+"""Largest ratio of the speed at a boundary to the lower of its two neighbouring peaks. A hand that
+stops or turns sharply is below; on a curve it slows down by about a third (two-thirds power law,
 Lacquaniti et al. 1983)."""
 
 RESTING = 0.06
-"""Share of the highest speed below which a hand is at rest: where the jitter of the pose model ends
-and the slowest careful drawing after the fastest reach has not yet begun."""
+"""Share of the highest speed below which a hand is at rest: above the pose model's jitter, below
+the slowest drawing after the fastest reach."""
 
 CORNER_MINIMUM = 0.7
-"""The same where the hand turns by `CORNER_ANGLE` or more: a hand drawing a rounded corner slows
-down less than one that stops, but always a little."""
+"""`CLEAR_MINIMUM` where the hand turns by `CORNER_ANGLE` or more: at a rounded corner a hand slows
+down less than when it stops."""
 
 CORNER_ANGLE = 60.0
 """Degrees between the directions `CORNER_REACH` before and after the minimum. A circle drawn in a
-second turns by 54 degrees in that time, and does not slow down."""
+second turns by 54 degrees in that time without slowing down."""
 
 CORNER_REACH = 0.15
 """Seconds before and after a minimum in which the hand's direction is measured: longer than the
 smoothing rounds a corner."""
 
 PAUSE = 0.1
-"""Share of a neighbouring peak below which the hand pauses; of a minimum-jerk stroke this cuts off
-less than a hundredth of the way."""
+"""Share of a neighbouring peak below which the hand pauses; this cuts off less than a hundredth of
+a minimum-jerk stroke."""
 
 FRONTAL = 0.25
-"""Torso lengths between the shoulders in the image from which left and right can be told apart by
-them; seen from the side they are too near each other."""
+"""Least torso lengths between the shoulders at which they show left and right; from the side they
+are too close together."""
 
 SHOULDERS_KEPT = 0.6
 """Share of their usual distance in the image that the shoulders keep: turning by 50 degrees."""
 
 TREMOR = 0.05
-"""Torso lengths, corner to corner: 2.5 cm. A hand held still in the water drifts and trembles less;
-what is smaller is no movement, whatever its speed."""
+"""Least extent of a movement, torso lengths: 2.5 cm. A hand held still in water drifts and trembles
+less."""
 
 STRAIGHT_REACH = 0.85
-"""Distance over way of a reach, at least. Reaches are straight within a few per cent; a half
-circle has 0.64, a quarter circle 0.90 but it is no whole piece of a gesture's stroke."""
+"""Least ratio of distance to path length of a reach. Reaches are straight within a few per cent; a
+half circle has 0.64; a quarter circle has 0.90 but is no whole piece of a stroke."""
 
 LONGEST_REACH = 1.5
 """Seconds. Reaches take 0.5 to 1 s (Flash and Hogan 1985); in water somewhat longer."""
 
 LARGEST_SHARE = 0.45
-"""Of all that lies between the salutes, what one reach may take at most; two leave a tenth."""
+"""Largest share of a take that one reach may have; two leave a tenth."""
 
 
 @dataclass(frozen=True)
 class Span:
-    """A stretch of a recording.
+    """A span of time.
 
     Attributes
     ----------
@@ -145,20 +144,19 @@ class Piece:
 def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | None) -> Span:
     """Find the gesture's own movement between two salutes.
 
-    Translating or scaling the recording leaves the answer as it is, shifting its clock shifts it.
+    The result does not depend on translation or scale of the poses, and shifts with their clock.
 
     Parameters
     ----------
     poses
-        A recording from the first salute to the last one.
+        Poses from the first salute to the last one.
     first_salute, last_salute
-        When the salutes were seen. The hand rests somewhere in them, but may keep the shape while
-        it leaves, and take it before it arrives. None: the take was not closed, and only its
-        beginning is looked at.
+        When the salutes were seen. The hand may keep the shape while it leaves, and take it before
+        it arrives. None: the take was not closed, and only its beginning is trimmed.
 
     Returns
     -------
-    The stroke, between the salutes; all that lies between them where no reach is clear.
+    The stroke; everything between the salutes where no reach is clear.
 
     """
     end = last_salute.start if last_salute else float(poses.time[-1])
@@ -175,7 +173,7 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     if len(pieces) < 2:
         return whole
     if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):
-        # There and back: the two pieces may be the whole gesture, a line drawn twice.
+        # Two pieces, there and back, may be the whole gesture: a line drawn twice.
         return whole
     moving = float(motion.time[pieces[-1].last] - motion.time[pieces[0].first])
     goes = _is_reach(motion, pieces[0], moving)
@@ -187,13 +185,13 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
 
 
 def _hand_motion(poses: PoseSequence) -> Motion | None:
-    """Follow the wrists that move, or return None where none does or none is seen."""
+    """Measure the motion of the moving wrists; None where none moves or is seen."""
     count = int(np.ceil(poses.duration / GRID_STEP)) + 1
     wrists = [name for name in WRISTS if name in poses.landmarks]
-    seen = _without_exchanged_sides(poses)
+    seen = _drop_side_swaps(poses)
     if count < 3 or not any(np.isfinite(seen.column(name)).any() for name in wrists):
         return None
-    trajectory = Trajectory.from_poses(seen).select(wrists).filled().resampled_in_time(count)
+    trajectory = Trajectory.from_poses(seen).select(wrists).fill_gaps().resample_in_time(count)
     moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
     return measure_motion(moving, trajectory.time + poses.time[0])
 
@@ -221,17 +219,16 @@ def measure_motion(paths: Sequence[FloatArray], time: FloatArray) -> Motion | No
         return None
     moments = np.arange(len(time))
     smooth = np.stack(
-        [_smoothed(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
+        [_smooth(np.interp(moments, moments[known], column[known])) for column in xy.T], axis=1
     )
     speed = np.linalg.norm(np.gradient(smooth, time, axis=0), axis=1)
     return Motion(time=time, xy=smooth, speed=speed, known=known)
 
 
-def _without_exchanged_sides(poses: PoseSequence) -> PoseSequence:
-    """Take out the frames in which the pose model took the left side for the right one.
+def _drop_side_swaps(poses: PoseSequence) -> PoseSequence:
+    """Remove frames with side swaps, in which the shoulders cross or come near each other.
 
-    Without a face in view it sometimes does, for a frame or more, and the smoothing blends the
-    frames beside it: there the shoulders cross, or come near each other.
+    The model's smoothing also blends the frames beside swapped ones.
     """
     length = poses.torso_length()
     if length is None or not set(SHOULDERS) <= set(poses.landmarks):
@@ -247,13 +244,13 @@ def _without_exchanged_sides(poses: PoseSequence) -> PoseSequence:
 
 
 def _extent(path: FloatArray) -> float:
-    """Diagonal of a path's bounding box; 0 where nothing is seen."""
+    """Return the diagonal of a path's bounding box; 0 where nothing is seen."""
     seen = path[np.isfinite(path).all(axis=1)]
     return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
 
 
-def _smoothed(values: FloatArray) -> FloatArray:
-    """Convolve with the Gaussian of `SMOOTHING` seconds, the ends held."""
+def _smooth(values: FloatArray) -> FloatArray:
+    """Convolve with the Gaussian of `SMOOTHING` seconds, with the end values extended."""
     deviation = SMOOTHING / GRID_STEP
     half = int(np.ceil(3 * deviation))
     weights = np.exp(-0.5 * (np.arange(-half, half + 1) / deviation) ** 2)
@@ -262,7 +259,7 @@ def _smoothed(values: FloatArray) -> FloatArray:
 
 
 def split_pieces(motion: Motion) -> list[Piece]:
-    """Cut where speed has a clear minimum, and drop the pauses between the pieces."""
+    """Split a motion where its speed has a clear minimum, and drop the pauses in between."""
     speed = motion.speed
     if len(speed) < 3 or speed.max() <= 0:
         return []
@@ -270,25 +267,25 @@ def split_pieces(motion: Motion) -> list[Piece]:
     peaks, valleys = _turning_points(np.maximum(speed, resting))
     while valleys:
         excess = [
-            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _allowed(motion, valley)
+            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _find_limit(motion, valley)
             for i, valley in enumerate(valleys)
         ]
         worst = int(np.argmax(excess))
         if excess[worst] <= 1:
             break
-        # The lower one of the two peaks is a ripple on the other's flank.
+        # Without a clear minimum the lower of the two peaks is a ripple on the other's flank.
         valleys.pop(worst)
         peaks.pop(worst if speed[peaks[worst]] < speed[peaks[worst + 1]] else worst + 1)
     cuts = [0, *valleys, len(speed) - 1]
     pieces = [
-        _without_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
+        _drop_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
         for i, peak in enumerate(peaks)
     ]
     return [piece for piece in pieces if _extent(motion.xy[piece.first : piece.last + 1]) > TREMOR]
 
 
-def _allowed(motion: Motion, valley: int) -> float:
-    """Return how deep a minimum of speed must be to cut there, as a share of its peaks."""
+def _find_limit(motion: Motion, valley: int) -> float:
+    """Return the largest speed of a minimum to split at, as a share of its lower peak."""
     reach = round(CORNER_REACH / GRID_STEP)
     before = motion.xy[valley] - motion.xy[max(valley - reach, 0)]
     after = motion.xy[min(valley + reach, len(motion.xy) - 1)] - motion.xy[valley]
@@ -298,9 +295,9 @@ def _allowed(motion: Motion, valley: int) -> float:
 
 
 def _turning_points(values: FloatArray) -> tuple[list[int], list[int]]:
-    """Return where `values` peaks and, between each two peaks, where it is lowest.
+    """Return the indices of the peaks of `values`, and of the minima between them.
 
-    A plateau counts as its middle; an end of the array from which it only falls is a peak.
+    The index of a plateau is its middle; an end of the array from which values fall is a peak.
     """
     ends = np.flatnonzero(np.diff(values) != 0)
     firsts, lasts = np.append(0, ends + 1), np.append(ends, len(values) - 1)
@@ -315,15 +312,15 @@ def _turning_points(values: FloatArray) -> tuple[list[int], list[int]]:
     return middles[peaks].tolist(), valleys
 
 
-def _without_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piece:
+def _drop_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piece:
     fast = np.flatnonzero(speed[first : last + 1] > pause)
     return Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else Piece(first, last)
 
 
 def _is_reach(motion: Motion, piece: Piece, moving: float) -> bool:
-    """Tell whether a piece is a straight, short movement of hands in view.
+    """Return whether a piece is a straight, short movement of hands in view.
 
-    `moving` is how many seconds all movement between the salutes takes.
+    `moving` is the duration of all movement between the salutes, in seconds.
     """
     lasts = float(motion.time[piece.last] - motion.time[piece.first])
     return (

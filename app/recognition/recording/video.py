@@ -1,9 +1,9 @@
-"""Clips as upright RGB frames with seconds, read by FFmpeg through PyAV, from files nobody trusts.
+"""Video decoding: untrusted clips as upright RGB frames with timestamps, by FFmpeg through PyAV.
 
-What a file is, its content decides, never its name. Only the containers in `CONTAINERS` are
-recognised and only the protocol `file` is open to FFmpeg, so that a playlist or a reference
-inside the file can open neither another file nor a network address. A fuzzed file may still hang
-or crash a decoder: run this where a crash does no harm and time is limited (a job's process).
+The format is detected from the content, never from the name. Only the containers in `CONTAINERS`
+and the protocol `file` are enabled, so that a playlist or a reference inside a file can open
+neither another file nor a network address. A malicious file may still hang or crash a decoder: run
+this in a process of its own with a time limit, as jobs do.
 """
 
 from __future__ import annotations
@@ -43,33 +43,31 @@ CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts")
 recorders and browsers write. None of them is a playlist."""
 
 ALPHA_BACKGROUND = 128
-"""Grey, 0 to 255, that shines through transparent pixels: halfway, so that neither a dark nor a
-bright diver vanishes against it."""
+"""Grey, 0 to 255, behind transparent pixels: halfway, so that dark and bright divers stand out."""
 
 DECODER_THREADS = 2
-"""Threads of the decoder. Two keep decoding off the time of the models; each further one holds
-one more frame in memory."""
+"""Threads of the decoder: two decode while the models run; each further one holds a frame more."""
 
 MISSING_SHARE, MISSING_SECONDS = 0.1, 0.5
-"""Of the stated duration, what may be missing at the end before a clip counts as cut short (the
-greater one holds); containers round, and sound may last a little longer than the picture."""
+"""Share and seconds of the stated duration that may be missing at the end, whichever is greater,
+before a clip counts as cut short: containers round, and sound may last a little longer."""
 
 MOST_STREAMS = 64
-"""Streams that FFmpeg may set up; a film with every language of sound has fewer."""
+"""Most streams that FFmpeg may open; a film with many languages has fewer."""
 
 
 @dataclass(frozen=True)
 class VideoInfo:
-    """What a clip says about itself, before all of it is read.
+    """A clip's metadata, before all of it is read.
 
     Attributes
     ----------
     width, height
         Of the upright picture with square pixels.
     duration
-        Seconds, or None when the container does not say.
+        Seconds, or None when the container does not state it.
     frames
-        Count of frames, or None when the container does not say (Matroska never does).
+        Number of frames, or None when the container does not state it (Matroska never does).
     rotation
         Degrees, counter-clockwise, by which the stored picture is turned to be upright:
         0, 90, 180 or 270.
@@ -93,7 +91,7 @@ class VideoFrame:
     Attributes
     ----------
     index
-        Count of frames before this one.
+        Number of frames before this one.
     time
         Seconds after the first frame, from the container (see `FrameClock`).
     image
@@ -107,16 +105,16 @@ class VideoFrame:
 
 
 class FrameSource(Protocol):
-    """The frames of one clip, whatever file they lie in."""
+    """The interface of sources of frames, whatever the file format."""
 
     @property
     def info(self) -> VideoInfo:
-        """What the clip says about itself."""
+        """The clip's metadata."""
         ...
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Say in sentences what was wrong with the frames read so far."""
+        """Problems of the frames read so far, as sentences."""
         ...
 
     def __iter__(self) -> Iterator[VideoFrame]:
@@ -125,21 +123,21 @@ class FrameSource(Protocol):
 
 
 class FrameReader(Iterator[VideoFrame]):
-    """The frames of one clip, decoded one at a time; at most a handful are in memory.
+    """Iterates over the frames of a clip, decoding one at a time; few are in memory.
 
-    A damaged clip gives the frames that can be read; `warnings` then says how many.
+    Of a damaged clip the readable frames are returned, and `warnings` counts them.
 
     Parameters
     ----------
     path
         The file.
     limits
-        Checked here from what the file states, and again for every frame decoded.
+        Checked from the metadata when opened, and again for every decoded frame.
 
     Attributes
     ----------
     info
-        What the clip says about itself.
+        The clip's metadata.
 
     Raises
     ------
@@ -158,7 +156,7 @@ class FrameReader(Iterator[VideoFrame]):
         self._time = 0.0
         self._reformatter = VideoReformatter()
         self._first: DecodedFrame | None = None
-        self._container = _opened(self._path, self._limits)
+        self._container = _open(self._path, self._limits)
         self._decoded = self._decode()
         try:
             self._stream = _video_stream(self._container, self._path)
@@ -182,7 +180,7 @@ class FrameReader(Iterator[VideoFrame]):
         Raises
         ------
         VideoError
-            When the clip breaks a limit after all.
+            When the clip breaks a limit.
 
         """
         frame, self._first = self._first, None
@@ -207,14 +205,14 @@ class FrameReader(Iterator[VideoFrame]):
 
     def close(self) -> None:
         """Close the file; the reader gives no more frames."""
-        # It knows the reader: together they would keep the pictures until Python collects.
+        # A reference cycle with the reader would keep the pictures until garbage collection.
         self._decoded.close()
         self._first = None
         self._container.close()
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Say in sentences what was wrong with the frames read so far."""
+        """Problems of the frames read so far, as sentences."""
         found = []
         read = f"{self._count} of {self.info.frames or 'an unknown number of'} frames were read"
         stated = self.info.duration or 0.0
@@ -233,14 +231,14 @@ class FrameReader(Iterator[VideoFrame]):
         return tuple(found)
 
     def _check_statement(self) -> None:
-        """Refuse before decoding what the file itself says is too much."""
+        """Check the limits against the metadata, before decoding."""
         context = self._stream.codec_context
         self._limits.require_pixels(context.width, context.height)
         self._limits.require_frames(self._stream.frames)
         self._limits.require_seconds(_stated_seconds(self._container, self._stream) or 0.0)
 
     def _decode(self) -> Generator[DecodedFrame, None, None]:
-        """Decode what can be decoded, counting what cannot."""
+        """Decode frames, counting those that cannot be decoded."""
         packets = self._container.demux(self._stream)
         while True:
             try:
@@ -280,7 +278,7 @@ class FrameReader(Iterator[VideoFrame]):
 
 
 def probe(path: str | Path, limits: VideoLimits | None = None) -> VideoInfo:
-    """Read what a clip says about itself, and decode its first frame to prove that it can be.
+    """Read a clip's metadata, and decode its first frame as a test.
 
     Raises
     ------
@@ -298,7 +296,7 @@ def read_frames(path: str | Path, limits: VideoLimits | None = None) -> FrameRea
 
 
 def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
-    """Put a picture with transparency on a plain background.
+    """Blend a picture with transparency over a plain background.
 
     Parameters
     ----------
@@ -317,14 +315,14 @@ def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
     return np.rint(blended).astype(np.uint8)
 
 
-def _opened(path: Path, limits: VideoLimits) -> InputContainer:
+def _open(path: Path, limits: VideoLimits) -> InputContainer:
     if not path.is_file():
         raise VideoError(f"{path} is not a file; give the path of a clip")
     if path.stat().st_size == 0:
         raise VideoError(f"{path.name} is empty (0 bytes); copy or record it again")
     try:
         return av.open(
-            # The scheme keeps a name like "concat:a|b" or "http:x" from being read as an address.
+            # The scheme prevents names like "concat:a|b" or "http:x" from opening an address.
             f"file:{path.resolve()}",
             container_options={
                 "protocol_whitelist": "file",

@@ -1,4 +1,4 @@
-"""What reading a clip may cost, checked before and while it is decoded."""
+"""Video limits: the largest size and length of a clip, checked before and during decoding."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.recognition.errors import VideoError
 
 @dataclass(frozen=True)
 class VideoLimits:
-    """What a clip may cost, for a file of few bytes can hold 100 000 frames or one of 1 GB.
+    """Limits of a clip: a file of few bytes can hold 100 000 frames, or one frame of 1 GB.
 
     Attributes
     ----------

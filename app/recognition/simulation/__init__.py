@@ -1,1 +1,1 @@
-"""Simulated movements: variants of a demonstration, background motion, error rate estimates."""
+"""Simulation: variants of demonstrations, out-of-vocabulary movements, and estimated rates."""

@@ -1,10 +1,9 @@
-"""Accidental movements: what divers' arms do besides gesturing, synthesised.
+"""Background motion: synthetic arm movements of divers that are no gestures.
 
-Between two salutes, or in front of a robot that listens all the time, hands also reach for things,
-adjust the mask or scull for balance. A gesture that such a movement resembles will be read where
-none was meant. The library below is not recorded but composed: places in front of a body of average
-proportions (Winter 2009, table 4.1), joined by minimum-jerk strokes (Flash and Hogan 1985), with
-places, size, tempo and hand drawn anew for each example.
+Hands also reach for things, adjust the mask or scull for balance, and a gesture that resembles such
+a movement causes false alarms. The movements are not recorded: positions in front of a body of
+average proportions (Winter 2009, table 4.1) are joined by minimum-jerk strokes (Flash and Hogan
+1985), with position, size, tempo and hand drawn at random for each example.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
 RATE = 25.0
-"""Moments per second: a usual camera's frames."""
+"""Moments per second, a usual camera's frame rate."""
 
 SHOULDER = np.array([0.33, -0.5])
 HIP = np.array([0.2, 0.5])
@@ -30,18 +29,17 @@ FOREARM = 0.51
 (Winter 2009, table 4.1: trunk 0.288 of stature, upper arm 0.186, forearm 0.146)."""
 
 BENT_TOWARDS_CAMERA = 0.7
-"""Share of an elbow's bend that the camera sees: arms that work before the body also bend towards
-the camera."""
+"""Visible share of an elbow's bend: arms in front of the body also bend towards the camera."""
 
 HAND = {"pinky": (0.19, -0.05), "index": (0.2, 0.03), "thumb": (0.12, 0.07)}
-"""Landmarks of the hand from the wrist: along the forearm, and across it towards the thumb, in
-torso lengths, as the pose model places them on a flat hand."""
+"""Landmarks of the hand relative to the wrist: along the forearm, and across it towards the thumb,
+in torso lengths, as the pose model places them on a flat hand."""
 
 REST = (0.43, 0.6)
-"""Where the wrist is when the arm hangs beside the body."""
+"""Position of the wrist when the arm hangs beside the body."""
 
 PLACE_SPREAD = 0.07
-"""Standard deviation of a place, in torso lengths: 3 to 4 cm, a hand's width from edge to edge."""
+"""Standard deviation of a position, in torso lengths: 3 to 4 cm."""
 
 TEMPO_SPREAD = 0.25
 """Standard deviation of the logarithm of the tempo: two people's takes of one movement differ by
@@ -56,23 +54,23 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Manner:
-    """A kind of accidental movement: where the hand goes, and how long each way takes.
+    """A kind of background motion: positions of the hand, and the duration of each stroke.
 
     Attributes
     ----------
     kind
-        In words, to be read after "set off by".
+        In words, such as "adjusting the mask".
     places
-        The wrist's places in torso lengths: x outward from the body's middle on the hand's own
+        The wrist's positions in torso lengths: x outward from the body's middle on the hand's own
         side (negative: across), y down from the torso's centre.
     seconds
-        Of each way to the next place.
+        Duration of each stroke to the next position.
     repeated
-        Least and most times that the places are gone through.
+        Least and most repetitions of the positions.
     both
-        Whether both hands do it, mirrored.
+        Whether both hands move, mirrored.
     hold
-        Least and most seconds of rest at the last place.
+        Least and most seconds of rest at the last position.
     alternating
         With `both`: the other hand is half a round behind.
 
@@ -117,21 +115,21 @@ MANNERS = (
         alternating=True,
     ),
 )
-"""The library. Places and durations are of people in front of a camera, by eye; the spreads are
-wide enough that their exact values matter little."""
+"""All kinds. Positions and durations were estimated by eye from people in front of a camera; the
+spreads are so wide that exact values matter little."""
 
 
 @dataclass(frozen=True, eq=False)
 class BackgroundMovement:
-    """One example.
+    """One example of background motion.
 
     Attributes
     ----------
     kind
-        In words: "adjusting the mask".
+        In words, such as "adjusting the mask".
     trajectory
         Of the upper body's 15 landmarks, in torso lengths. Half of the examples begin and end with
-        the arm at rest, the other half are the movement alone, as a trimmed take would be.
+        the arm at rest, the others are the movement alone, like a trimmed take.
 
     """
 
@@ -140,40 +138,42 @@ class BackgroundMovement:
 
 
 def simulate_background_motion(count: int = 3, *, seed: int = 0) -> tuple[BackgroundMovement, ...]:
-    """Synthesise accidental movements.
+    """Simulate background motion.
 
     Parameters
     ----------
     count
-        Examples of each of the kinds in `MANNERS`; more examples begin with the same ones.
+        Examples of each kind in `MANNERS`; a larger count begins with the same examples.
     seed
         The same seed gives the same movements.
 
     """
     return tuple(
-        BackgroundMovement(manner.kind, _example(manner, np.random.default_rng([seed, *which])))
+        BackgroundMovement(manner.kind, _draw(manner, np.random.default_rng([seed, *which])))
         for which in np.ndindex(len(MANNERS), count)
         for manner in [MANNERS[which[0]]]
     )
 
 
-def _example(manner: Manner, generator: np.random.Generator) -> Trajectory:
-    """Draw one example, with the right hand or the left."""
-    places, seconds = _drawn(manner, generator)
-    active = _stroke(places, seconds)
+def _draw(manner: Manner, generator: np.random.Generator) -> Trajectory:
+    """Draw one example, with the right or the left hand."""
+    places, seconds = _draw_path(manner, generator)
+    active = _join_strokes(places, seconds)
     idle = np.broadcast_to(np.array(REST), active.shape)
     other = idle
     if manner.both:
         lag = len(active) // (2 * manner.repeated[1]) if manner.alternating else 0
         other = np.concatenate([np.repeat(active[:1], lag, axis=0), active])[: len(active)]
-    body = _body(right=active, left=other)
+    body = _build_body(right=active, left=other)
     jitter = generator.normal(0, TREMOR, body.xy.shape)
     shaky = replace(body, xy=body.xy + jitter)
-    return shaky.mirrored() if generator.random() < 0.5 else shaky
+    return shaky.mirror() if generator.random() < 0.5 else shaky
 
 
-def _drawn(manner: Manner, generator: np.random.Generator) -> tuple[list[FloatArray], list[float]]:
-    """Draw the places of one example, and the seconds of the way to each from the one before."""
+def _draw_path(
+    manner: Manner, generator: np.random.Generator
+) -> tuple[list[FloatArray], list[float]]:
+    """Draw the positions of one example, and the durations of the strokes between them."""
     rounds = int(generator.integers(manner.repeated[0], manner.repeated[1] + 1))
     pace = float(np.exp(generator.normal(0, TEMPO_SPREAD)))
     visited = list(manner.places) * rounds
@@ -189,11 +189,11 @@ def _drawn(manner: Manner, generator: np.random.Generator) -> tuple[list[FloatAr
     return places, ways
 
 
-def _stroke(places: Sequence[FloatArray], seconds: Sequence[float]) -> FloatArray:
-    """Join places by minimum-jerk strokes: ``(T, 2)`` at `RATE`.
+def _join_strokes(places: Sequence[FloatArray], seconds: Sequence[float]) -> FloatArray:
+    """Join positions by minimum-jerk strokes: ``(T, 2)`` at `RATE`.
 
-    A stroke lasts a third longer than its way, and runs into the next one, as the parts of one
-    movement do; the hand therefore rounds the corners (Flash and Hogan 1985, via points).
+    A stroke lasts a third longer than its interval and overlaps the next one, so that the hand
+    rounds the corners as in one movement (Flash and Hogan 1985, via points).
     """
     time = np.arange(0, sum(seconds) + seconds[-1] / 3, 1 / RATE)
     path = np.repeat(places[0][None], len(time), axis=0)
@@ -206,16 +206,16 @@ def _stroke(places: Sequence[FloatArray], seconds: Sequence[float]) -> FloatArra
 
 
 def _minimum_jerk(share: FloatArray) -> FloatArray:
-    """Return how much of a stroke is done, given the share of its time."""
+    """Return the share of a stroke's distance at a share of its time."""
     return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
 
 
-def _body(right: FloatArray, left: FloatArray) -> Trajectory:
-    """Place the upper body's landmarks around two wrists' paths ``(T, 2)``, x outward each."""
+def _build_body(right: FloatArray, left: FloatArray) -> Trajectory:
+    """Build the upper body's landmarks for two wrists' paths ``(T, 2)``, x outward each."""
     paths = {"nose": np.broadcast_to(NOSE, right.shape)}
     # The diver faces the camera: the right hand's outside is the image's left.
     for side, outward, wrist in (("right", (-1.0, 1.0), right), ("left", (1.0, 1.0), left)):
-        for part, path in _arm(wrist).items():
+        for part, path in _build_arm(wrist).items():
             paths[f"{side}_{part}"] = path * outward
     return Trajectory(
         landmarks=tuple(paths),
@@ -225,8 +225,8 @@ def _body(right: FloatArray, left: FloatArray) -> Trajectory:
     )
 
 
-def _arm(wrist: FloatArray) -> dict[str, FloatArray]:
-    """Bend an arm so that it reaches the wrist; one too far away is stretched towards it."""
+def _build_arm(wrist: FloatArray) -> dict[str, FloatArray]:
+    """Return an arm whose hand is at the wrist's position; stretched if that is too far away."""
     reach = wrist - SHOULDER
     distance = np.maximum(np.linalg.norm(reach, axis=1, keepdims=True), 1e-9)
     along = reach / distance
@@ -234,7 +234,7 @@ def _arm(wrist: FloatArray) -> dict[str, FloatArray]:
     foot = np.clip((UPPER_ARM**2 - FOREARM**2 + bounded**2) / (2 * bounded), -UPPER_ARM, UPPER_ARM)
     bend = BENT_TOWARDS_CAMERA * np.sqrt(UPPER_ARM**2 - foot**2)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    # Elbows hang: of the two bends the lower one, or the outer one where both are level.
+    # Of the two possible bends the lower one, or the outer one where both are level.
     downward = np.where(across @ (0.3, 1.0) >= 0, 1.0, -1.0)[:, None]
     elbow = SHOULDER + foot * along + bend * downward * across
     reached = SHOULDER + bounded * along

@@ -1,8 +1,7 @@
-"""Foreign movements: what a language's gestures must not be taken for, without recording any.
+"""Negatives: simulated out-of-vocabulary movements of a language.
 
-Accidental movements (`accidental`), and splices: the first half of one gesture that goes on as the
-second half of another one, as a diver who changes his mind, or a robot that missed the start, would
-have it.
+Background motion (`background_motion`), and splices: the first half of one gesture followed by the
+second half of another one.
 """
 
 from __future__ import annotations
@@ -17,20 +16,20 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.background_motion import simulate_background_motion
 
 MOST_SPLICES = 16
-"""Splices made of a language, as many as there are kinds of accidental movements."""
+"""Most splices of a language, as many as there are kinds of background motion."""
 
 
 def draw_negatives(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
-    """Make movements that are no gesture of the language: accidental ones, then splices.
+    """Return movements that are no gesture of the language: background motion, then splices.
 
-    All of them condensed, as queries are.
+    All of them are condensed, as queries are.
     """
     shown = [gesture.trajectory for gesture in gestures if gesture.trajectory is not None]
-    return _accidental() + tuple(map(condense, splice_all(shown)))
+    return _draw_background_motion() + tuple(map(condense, splice_all(shown)))
 
 
 @lru_cache(maxsize=1)
-def _accidental() -> tuple[Trajectory, ...]:
+def _draw_background_motion() -> tuple[Trajectory, ...]:
     return tuple(condense(movement.trajectory) for movement in simulate_background_motion(1))
 
 
@@ -47,13 +46,13 @@ def splice_all(demonstrations: Sequence[Trajectory]) -> tuple[Trajectory, ...]:
 
 
 def splice(before: Trajectory, after: Trajectory) -> Trajectory:
-    """Go on from the middle of one movement as another one does from its own.
+    """Join the first half of one movement and the second half of another.
 
     Parameters
     ----------
     before, after
-        Of at least two moments each, with landmarks in common, which are kept. The second half is
-        moved so that nothing jumps; a landmark not seen at the seam stays where it was.
+        At least two moments each; common landmarks are kept. The second half is shifted to be
+        continuous; a landmark not seen at the seam is not shifted.
 
     """
     common = [name for name in before.landmarks if name in after.landmarks]

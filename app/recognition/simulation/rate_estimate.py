@@ -1,10 +1,9 @@
-"""Forecasts: how often something will happen, estimated from few rehearsals, with its interval.
+"""Rate estimates: the probability of an error, from few simulated takes, with an interval.
 
-Counting is too coarse here: of a dozen rehearsed takes none may be misread although one in fifty
-will be. What is known of each is more than whether it was misread: by how much it was not. Their
-mean tells how far real takes lie from being misread, and how real takes scatter about it is known
-from people. How the rehearsed takes scatter is not asked: variants have a heavier tail than people,
-and asked one by one they warned of five confusions for each that came true (`docs/health.md`).
+Counting errors is too coarse: of a dozen takes none may be misread at a rate of one in fifty. The
+estimate uses the mean of the takes' margins, and for their scatter that of people's takes. The
+simulated takes' own scatter is not used: variants have a heavier tail than people and predicted
+five confusions for each that was observed (`benchmarks/studies/predictions.md`).
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.variant_bias import VariantBias
 
 STANDARD_ERRORS = 1.96
-"""Standard errors to either side that hold 95 % of a normal distribution."""
+"""Standard errors to either side of a 95 % interval of a normal distribution."""
 
 LARGEST_EXPONENT = 700.0
-"""Below the logarithm of the largest number; the probability is 0 long before."""
+"""Just below the logarithm of the largest double; the probability is 0 long before."""
 
 DIGITS = 4
-"""Decimals in JSON: a hundredth of a per cent, far below what a dozen takes can tell."""
+"""Decimals in JSON: a hundredth of a per cent, far below the estimates' accuracy."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,8 @@ class RateEstimate:
     rate
         In [0, 1].
     low, high
-        Its interval, 95 %, as far as the number of rehearsals goes. That people may differ in
-        other ways than was foreseen is not in it.
+        Its 95 % interval for the number of simulated takes; errors of the simulation itself are
+        not included.
 
     """
 
@@ -46,20 +45,20 @@ class RateEstimate:
 
     @classmethod
     def of_margins(
-        cls, margins: FloatArray, unforeseen: VariantBias, astray: float = 1.0
+        cls, margins: FloatArray, bias: VariantBias, astray: float = 1.0
     ) -> RateEstimate:
         """Estimate the probability of a margin below 0.
 
         Parameters
         ----------
         margins
-            ``(N,)``, N >= 2, finite: of the rehearsed takes.
-        unforeseen
-            How real takes stray from rehearsed ones: the share e of takes that are not what was
-            shown, and the scale h by which the margins of the others scatter about the mean of the
-            rehearsed ones. Their distribution is logistic, with heavier tails than the normal one.
+            ``(N,)``, N >= 2, finite: of the simulated takes.
+        bias
+            How real takes differ from simulated ones: the share e of takes that show something
+            else, and the scale h of the logistic distribution (heavier tails than the normal one)
+            of the others' margins about the mean of the simulated ones.
         astray
-            In [0, 1]: how probable it is for a take that is not what was shown.
+            In [0, 1]: the probability for a take that shows something else.
 
         Returns
         -------
@@ -69,9 +68,8 @@ class RateEstimate:
         mean = float(margins.mean())
         error = STANDARD_ERRORS * float(margins.std(ddof=1)) / math.sqrt(len(margins))
         rate, low, high = (
-            unforeseen.otherwise * astray
-            + (1 - unforeseen.otherwise)
-            / (1 + math.exp(min(end / unforeseen.scatter, LARGEST_EXPONENT)))
+            bias.otherwise * astray
+            + (1 - bias.otherwise) / (1 + math.exp(min(end / bias.scatter, LARGEST_EXPONENT)))
             for end in (mean, mean + error, mean - error)
         )
         return cls(rate, low, high)
@@ -83,8 +81,14 @@ class RateEstimate:
         square = STANDARD_ERRORS**2 / count
         middle = (share + square / 2) / (1 + square)
         half = math.sqrt(share * (1 - share) * square + square * square / 4) / (1 + square)
-        # Rounding may push an end past the share it belongs to.
+        # Rounding may move an end past the rate.
         return cls(share, max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half)))
+
+    @property
+    def words(self) -> str:
+        """The estimate in words: "about 1 of 5 takes (9 to 35 %)"."""
+        few = f"1 of {1 / self.rate:.0f}" if 0 < self.rate < 0.4 else f"{10 * self.rate:.0f} of 10"
+        return f"about {few} takes ({100 * self.low:.0f} to {100 * self.high:.0f} %)"
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types, rounded."""

@@ -1,6 +1,6 @@
-"""How real takes stray from the variants that stand for them in forecasts.
+"""Variant bias: how real takes differ from simulated variants, for estimated rates.
 
-Calibration and the health report both forecast from variants, and both must allow for the same.
+Used by both calibration and the check.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from app.recognition.simulation.variation import Person
 
 @dataclass(frozen=True)
 class VariantBias:
-    """What no variant of one demonstration can tell.
+    """Measured differences between real takes and variants of one demonstration.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class VariantBias:
         Scale > 0 of the logistic distribution of real takes' margins about the mean of the
         variants', see `RateEstimate.of_margins`.
     otherwise
-        Share in [0, 1] of takes that are not what was shown: a letter drawn with other strokes,
+        Share in [0, 1] of takes that show something else: a letter drawn with other strokes,
         another sign.
 
     """
@@ -38,6 +38,6 @@ VARIANT_BIASES: Final[Mapping[Person, VariantBias]] = MappingProxyType(
         "another": VariantBias(scatter=0.25, otherwise=0.04),
     }
 )
-"""By whose takes they are: the likeliest on recorded takes of five sets, where the scatter is from
-0.25 to 0.3 for either, and from 0.03 to 0.05 of other people's takes are not what was shown
-(`docs/health.md`)."""
+"""By performer: maximum likelihood on recorded takes of five sets, where the scatter is 0.25 to 0.3
+for either, and 0.03 to 0.05 of other people's takes show something else
+(`benchmarks/studies/predictions.md`)."""

@@ -1,22 +1,19 @@
-"""Variation: plausible other takes of one demonstration.
+"""Variation: random variants of a demonstration, as further takes by the same or another person.
 
-A gesture is shown once; how it would have looked another time, or from another person, is drawn at
-random. As in Cabrera and Wachs (2017), the places that make up the figure are moved with a spread,
-and what lies between them follows smoothly. Their spreads were set by hand for each gesture; ours
-are measured on pairs of takes of one gesture (`SPREADS`), and no places are singled out: all of
-them are moved by a smooth random field along the way. By the voters' distances that is as near to
-people as salient points, stochastic resampling (Taranta et al. 2016) or varied strokes, or nearer
-(`docs/results.md`).
+As in Cabrera and Wachs (2017), the points of the figure are moved at random and what lies between
+them follows smoothly; but the spreads are measured on pairs of takes of one gesture (`SPREADS`),
+and a smooth random field moves all points. By the voters' distances the variants are as close to
+people's takes as those of other models, or closer (`benchmarks/studies/variants.md`).
 
-1. **Habit**: size, slant, stretch and shear of each arm's movement about its own mean place.
-2. **Waver**: a displacement along the way, a sum of cosines with random coefficients.
-3. **Sway**: a slow drift of each landmark by itself, which also moves what rests. A hand's
-   landmarks drift with their wrist, and about it no farther than a wrist gives.
+1. **Habit**: size, slant, stretch and shear of each arm's movement about its own mean position.
+2. **Waver**: a displacement along the path, a sum of cosines with random coefficients.
+3. **Sway**: a slow drift of each landmark, also of those at rest. A hand's landmarks drift with
+   their wrist, and about it no farther than a wrist bends.
 4. **Tempo**: another duration.
 
-All landmarks of an arm share their habit and their waver, each in proportion to its own motion, so
-that an elbow follows its wrist. A hand is carried by its forearm and turns with it. No bone of an
-arm looks longer than it can.
+All landmarks of an arm share habit and waver, each in proportion to its own motion, so that an
+elbow follows its wrist. A hand turns with its forearm. No bone of an arm becomes longer than
+possible (`limb_length`).
 """
 
 from __future__ import annotations
@@ -40,7 +37,7 @@ Person = Literal["same", "another"]
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """Standard deviations of what differs between two takes of a gesture.
+    """Standard deviations of the differences between two takes of a gesture.
 
     Attributes
     ----------
@@ -49,16 +46,16 @@ class Spread:
     size
         Doublings of the size.
     slant
-        Radians by which the movement is turned.
+        Rotation in radians.
     stretch
-        Doublings of width, and as many halvings of height.
+        Doublings of width, with as many halvings of height.
     shear
         Sideways shift per height.
     waver
-        Displacement along the way, x or y, in sizes of the landmark's movement (root of its mean
-        squared distance from its mean place).
+        Displacement along the path, x or y, in sizes of the landmark's movement (root of its mean
+        squared distance from its mean position).
     care
-        Natural logarithm of a take's waver: now people are careful, now they are not.
+        Natural logarithm of the factor on a take's waver, as people are more or less careful.
     sway
         Coefficient of each cosine of a landmark's own drift, in sizes of the whole movement.
     """
@@ -97,38 +94,31 @@ SPREADS: Final[Mapping[Person, Spread]] = MappingProxyType(
         ),
     }
 )
-"""By whom the other take is: the person who demonstrated, or somebody else.
+"""By performer of the variant: the demonstrator, or another person.
 
-Tempo, size and habit are measured directly on pairs of takes of one class, by affine fits after
-alignment: air-drawn digits, letters and commands for both, two-handed figures and aircraft
-marshalling, where people are not told apart, for the second. Waver and sway are chosen, and the
-habit enlarged by 1.3, such that the voters' distances between demonstration and variant are those
-between two takes: a fifth more or less fits worse (`docs/results.md`, Variants against people).
-Care is chosen such that about as many variants as takes lie beyond the thresholds: 2.6 and 3.5 %,
-in the mean over the sets but other people's letters, who use other strokes. With 0.6 it is nearly
-twice as many variants as takes."""
+Tempo, size and habit are measured on pairs of takes by affine fits; waver, sway and care are fitted
+to the voters' distances and rejections between takes (`benchmarks/studies/variants.md`,
+Constants)."""
 
 WAVES = 12
-"""Cosines along the way: at the twelfth, real takes differ by 1.5 to 2.5 % of the size, and less
+"""Cosines along the path: at the twelfth, real takes differ by 1.5 to 2.5 % of the size, and less
 beyond."""
 
 SLOW_WAVES = 6.0
-"""Cosine about which the displacement between real takes falls off, as the inverse of its number;
-the slower ones are equally strong."""
+"""Number of the cosine from which the strength falls off as the inverse of the number; lower ones
+are equally strong."""
 
 DRIFTS = 2
-"""Cosines of a landmark's own drift, of which the first is another place: the body sways about once
+"""Cosines of a landmark's own drift, the first of them a constant offset: the body sways about once
 in a gesture."""
 
 MOST_SWAYED = 10.0
-"""Size, in lengths of the bone, of the widest movement that makes a hand drift more about its
-wrist: that of both arms at their widest. Without a bound, a wrist whose arm swings far, or whose
-body is recorded with more landmarks, would also bend far."""
+"""Largest size of a movement, in lengths of the bone, in proportion to which a hand drifts about
+its wrist: both arms at their widest. Without a bound, large movements would bend wrists far."""
 
 POINTING = 0.3
-"""Apparent length, as a share of its longest, at which a forearm that points at the camera turns
-its hand by about half of what its image turns: the image of a short bone turns round for a shift
-by which the arm itself hardly does. That of a forearm held across the view turns with it."""
+"""Visible length of a forearm, as a share of its longest, at which its hand turns by about half of
+the turn in the image: a small shift turns the image of a foreshortened forearm far."""
 
 HAND_PARTS = frozenset({"hand", "hand_tip", "index", "pinky", "thumb"})
 """Landmarks that a wrist carries, by the part of the body without its side."""
@@ -137,27 +127,27 @@ ARM_PARTS = HAND_PARTS | {"elbow", "wrist"}
 """Landmarks that an arm moves together."""
 
 TRUNK_AND_LEGS = frozenset({"shoulder", "hip", "knee", "ankle", "heel", "foot_index"})
-"""Landmarks that carry no gesture: they only sway."""
+"""Landmarks that gestures do not use: they only sway."""
 
 
 def draw_variants(
     trajectory: Trajectory, count: int, *, seed: int = 0, person: Person = "same"
 ) -> tuple[Trajectory, ...]:
-    """Draw plausible other takes of a demonstration.
+    """Draw random variants of a demonstration.
 
-    They differ from the demonstration as another take would, so that distances to them are
-    distances between takes; among each other they differ by more than takes do.
+    They differ from the demonstration as much as another take does, and from each other by more
+    than takes do.
 
     Parameters
     ----------
     trajectory
-        The demonstration. A landmark that is not seen (NaN) is not seen in its variants either.
+        The demonstration. Landmarks that are not seen (NaN) are not seen in its variants either.
     count
-        How many. The first so many of a larger number are the same.
+        How many; a larger count begins with the same variants.
     seed
         Of the random generator; the same seed gives the same variants.
     person
-        Whose: the demonstrator's own further takes, or somebody else's.
+        Who performs: the demonstrator, or another person.
 
     Returns
     -------
@@ -176,15 +166,15 @@ def draw_variants(
 def vary(
     trajectory: Trajectory, count: int, spread: Spread, *, seed: int = 0
 ) -> tuple[Trajectory, ...]:
-    """Draw variants with a spread of one's own; parameters and errors as for `variants`."""
+    """Draw variants with a given spread; parameters and errors as for `draw_variants`."""
     if count < 0:
-        raise OsgError(f"cannot draw {count} variants: ask for none or more")
+        raise OsgError(f"cannot draw {count} variants: give 0 or more")
     if len(trajectory) < 2:
         return (trajectory,) * count
-    xy = _bridged(trajectory)
+    xy = _bridge_gaps(trajectory)
     centre = xy.mean(axis=0)
     draws = _Draws(np.random.default_rng(seed), count, len(trajectory.landmarks))
-    paths = _displaced(xy, trajectory.landmarks, draws, spread)
+    paths = _displace(xy, trajectory.landmarks, draws, spread)
     if trajectory.unit == "extent":
         paths *= (_extent(xy) / np.maximum(_extent(paths), 1e-12))[:, None, None, None]
     paths = limit_limbs(centre + paths, trajectory)
@@ -198,7 +188,7 @@ def vary(
 
 
 class _Draws:
-    """The random numbers of all variants, one row each, so that more variants begin alike."""
+    """Random numbers of all variants, one row each, so that a larger count begins alike."""
 
     def __init__(self, generator: np.random.Generator, count: int, landmarks: int) -> None:
         shapes = {
@@ -218,50 +208,50 @@ class _Draws:
         }
 
     def __getitem__(self, name: str) -> FloatArray:
-        """Return the standard normal numbers for one purpose, ``(count, ...)``."""
+        """Return the standard normal numbers of one name, ``(count, ...)``."""
         return self._of[name]
 
 
-def _displaced(
+def _displace(
     xy: FloatArray, landmarks: Sequence[str], draws: _Draws, spread: Spread
 ) -> FloatArray:
-    """Vary paths ``(T, K, 2)``: ``(count, T, K, 2)``, each relative to its mean place in `xy`."""
+    """Vary paths ``(T, K, 2)``: ``(count, T, K, 2)``, relative to their mean positions in `xy`."""
     moved = xy - xy.mean(axis=0)
-    leaders = _leaders(landmarks)
+    leaders = _find_leaders(landmarks)
     gesturing = np.array([_may_gesture(name) for name in landmarks])
     own_size = np.sqrt((moved**2).sum(axis=2).mean(axis=0)) * gesturing
-    habits = _habits(draws, spread)[:, leaders]
+    habits = _draw_habits(draws, spread)[:, leaders]
     habits[:, ~gesturing] = np.eye(2)
     formed = np.moveaxis(np.moveaxis(moved, 0, 1) @ np.swapaxes(habits, -1, -2), 2, 1)
-    way = _way(moved)
+    way = _measure_way(moved)
     waves = np.arange(1, WAVES + 1)
     strength = 1 / np.sqrt(1 + (waves / SLOW_WAVES) ** 2)
     strength *= spread.waver / np.sqrt((strength**2).sum())
     care = np.exp(spread.care * draws["care"])[:, None, None, None]
-    waver = care * _along(way, waves, strength, draws["waver"][:, leaders])
+    waver = care * _sum_cosines(way, waves, strength, draws["waver"][:, leaders])
     whole_size = np.sqrt((own_size**2).sum())
-    drift = _along(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
-    wrists = _wrists(landmarks)
+    drift = _sum_cosines(way, np.arange(DRIFTS), np.ones(DRIFTS), draws["sway"])
+    wrists = _find_wrists(landmarks)
     bones = np.sqrt(((xy - xy[:, wrists]) ** 2).sum(axis=2)).mean(axis=0)
     sway = spread.sway * whole_size * drift[:, :, wrists]
     swayed = np.sqrt(2) * np.minimum(whole_size, MOST_SWAYED * bones)  # two landmarks drift
-    varied = _carried(xy, formed + own_size[:, None] * waver + sway, landmarks, wrists)
+    varied = _turn_hands(xy, formed + own_size[:, None] * waver + sway, landmarks, wrists)
     return np.asarray(varied + spread.sway * swayed[:, None] * drift)
 
 
-def _carried(
+def _turn_hands(
     xy: FloatArray, varied: FloatArray, landmarks: Sequence[str], wrists: npt.NDArray[np.intp]
 ) -> FloatArray:
-    """Turn hands as their forearms are turned; a hand whose forearm is not seen goes its own way.
+    """Turn hands with their forearms; a hand whose forearm is not seen is unchanged.
 
     Parameters
     ----------
     xy
-        ``(T, K, 2)``: the demonstration, see `_bridged`.
+        ``(T, K, 2)``: the demonstration, see `_bridge_gaps`.
     varied
-        ``(count, T, K, 2)``: variants, each relative to its mean place in `xy`.
+        ``(count, T, K, 2)``: variants, relative to the mean positions in `xy`.
     landmarks, wrists
-        The K names, and `_wrists` of them.
+        The K names, and `_find_wrists` of them.
 
     """
     parts = [parse_body_part(name) for name in landmarks]
@@ -289,21 +279,21 @@ def _carried(
 
 
 def _complex(vectors: FloatArray) -> npt.NDArray[np.complex128]:
-    """Write ``(..., 2)`` as complex numbers, whose product with a unit one is a turn."""
+    """Return ``(..., 2)`` as complex numbers, which a unit complex factor rotates."""
     return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
 
 
-def _along(
+def _sum_cosines(
     way: FloatArray, numbers: npt.NDArray[np.intp], strength: FloatArray, draws: FloatArray
 ) -> FloatArray:
-    """Sum cosines along the way, ``(count, T, K, 2)``, with random coefficients.
+    """Sum cosines along the path, ``(count, T, K, 2)``, with random coefficients.
 
     Parameters
     ----------
     way
-        ``(T,)`` share of the way.
+        ``(T,)`` share of the path.
     numbers, strength
-        ``(W,)`` half waves along the way, and the standard deviation of their coefficients.
+        ``(W,)`` half waves along the path, and the standard deviations of their coefficients.
     draws
         ``(count, K, W, 2)`` standard normal numbers.
 
@@ -314,8 +304,8 @@ def _along(
     return np.asarray((cosines @ flat).reshape(count, len(way), landmarks, 2))
 
 
-def _habits(draws: _Draws, spread: Spread) -> FloatArray:
-    """Return ``(count, K, 2, 2)`` matrices that size, turn, stretch and shear."""
+def _draw_habits(draws: _Draws, spread: Spread) -> FloatArray:
+    """Return ``(count, K, 2, 2)`` matrices that scale, rotate, stretch and shear."""
     habit = draws["habit"]
     slant = spread.slant * habit[..., 0]
     stretch = np.exp2(spread.stretch * habit[..., 1])
@@ -327,19 +317,19 @@ def _habits(draws: _Draws, spread: Spread) -> FloatArray:
     return np.asarray(scale * (turn.reshape(square) @ bent.reshape(square)))
 
 
-def _leaders(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
-    """Return ``(K,)``: per landmark the index of the one whose draws it shares: its arm's first."""
+def _find_leaders(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
+    """Return ``(K,)``: the index of the landmark whose draws each one shares, its arm's first."""
     first: dict[str, int] = {}
     return np.array(
-        [first.setdefault(_limb(name), index) for index, name in enumerate(landmarks)],
+        [first.setdefault(_name_limb(name), index) for index, name in enumerate(landmarks)],
         dtype=np.intp,
     )
 
 
-def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
+def _find_wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
     """Return ``(K,)``: the index of the wrist that carries each of a hand's landmarks.
 
-    A landmark beyond no wrist, or whose wrist is not among them, carries itself.
+    A landmark that is no part of a hand, or whose wrist is missing, has its own index.
     """
     parts = [parse_body_part(name) for name in landmarks]
     index = {part: number for number, part in enumerate(parts)}
@@ -352,24 +342,24 @@ def _wrists(landmarks: Sequence[str]) -> npt.NDArray[np.intp]:
 
 
 def _may_gesture(landmark: str) -> bool:
-    """Tell whether a landmark may carry a gesture."""
+    """Return whether a landmark may carry a gesture."""
     return _without_side(parse_body_part(landmark)) not in TRUNK_AND_LEGS
 
 
-def _limb(landmark: str) -> str:
-    """Name the arm that a landmark belongs to, or the landmark itself."""
+def _name_limb(landmark: str) -> str:
+    """Return the name of the arm that a landmark belongs to, or the landmark's own name."""
     part = parse_body_part(landmark)
     bare = _without_side(part)
     return part.removesuffix(bare) + "arm" if bare in ARM_PARTS else landmark
 
 
 def _without_side(part: str) -> str:
-    """Drop the side of a part's name."""
+    """Return the name of a body part without its side."""
     return next((part.removeprefix(side) for side in SIDES if part.startswith(side)), part)
 
 
-def _bridged(trajectory: Trajectory) -> FloatArray:
-    """Return ``(T, K, 2)`` without gaps: bridged, held at the ends, at 0 where never seen."""
+def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
+    """Return ``(T, K, 2)`` without gaps: bridged, constant at the ends, 0 where never seen."""
     xy = np.zeros_like(trajectory.xy)
     for index in range(len(trajectory.landmarks)):
         path = trajectory.xy[:, index]
@@ -382,8 +372,8 @@ def _bridged(trajectory: Trajectory) -> FloatArray:
     return xy
 
 
-def _way(xy: FloatArray) -> FloatArray:
-    """Return ``(T,)``: the share of the joint path of all landmarks travelled so far."""
+def _measure_way(xy: FloatArray) -> FloatArray:
+    """Return ``(T,)``: the share of the landmarks' joint path up to each moment."""
     steps = np.sqrt((np.diff(xy, axis=0) ** 2).sum(axis=(1, 2)))
     travelled = np.concatenate([[0.0], np.cumsum(steps)])
     return np.asarray(travelled / max(travelled[-1], 1e-12))

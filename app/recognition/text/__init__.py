@@ -1,1 +1,1 @@
-"""Text formats without knowledge of gestures: strict JSON, hashing, wording."""
+"""Text: strict JSON, file hashes and wording of lists; nothing in it knows gestures."""

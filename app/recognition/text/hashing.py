@@ -1,4 +1,4 @@
-"""The SHA-256 of a file, which may be larger than memory."""
+"""File hashes: the SHA-256 of a file of any size, read in chunks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 from pathlib import Path
 
 CHUNK_BYTES = 2**18
-"""Read at a time, as `hashlib.file_digest` does, which Python 3.10 does not have yet."""
+"""Size of a chunk; `hashlib.file_digest`, which reads as much, needs Python 3.11."""
 
 
 def hash_file(path: Path) -> str:

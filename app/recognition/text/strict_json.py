@@ -1,4 +1,4 @@
-"""JSON from outside, read strictly; and the canonical form that is hashed."""
+"""Strict JSON: a parser with limits for untrusted files, and the canonical form (RFC 8785)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAX_SAFE_INTEGER = 2**53 - 1
 """Largest integer that every JSON reader keeps exactly (RFC 7493, I-JSON)."""
 
 MAX_FAULTS = 20
-"""Faults listed in one go: enough to mend a file by hand, few enough to read."""
+"""Most faults listed at once: enough to correct a file by hand, few enough to read."""
 
 _QUOTE = ord('"')
 _DEPTH_OF_BYTE = np.zeros(256, dtype=np.int8)
@@ -27,7 +27,7 @@ _DEPTH_OF_BYTE[list(b"]}")] = -1
 
 @dataclass(frozen=True)
 class Fault:
-    """Something in a JSON document that must not be there.
+    """An error in a JSON document, and where it is.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Fault:
 
 
 class StrictJSONError(ValueError):
-    """Raised when text is not the JSON that may be read; `faults` has at least one entry."""
+    """Raised when text is not acceptable JSON; `faults` has at least one entry."""
 
     def __init__(self, faults: list[Fault]) -> None:
         super().__init__("; ".join(f"{fault.pointer}: {fault.message}" for fault in faults))
@@ -51,13 +51,13 @@ class StrictJSONError(ValueError):
 
 
 class _ObjectWithDuplicates(dict[str, Any]):
-    """An object some of whose keys occur twice."""
+    """A JSON object in which a key occurs twice."""
 
     duplicates: list[str]
 
 
 def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
-    """Parse UTF-8 JSON that is neither huge nor deep nor ambiguous.
+    """Parse UTF-8 JSON of limited size and depth that every reader understands alike.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any
 
 
 def canonical_json(value: Any) -> str:
-    """Write JSON in the one form of RFC 8785, so that its hash means its content.
+    """Return a value as canonical JSON (RFC 8785): equal values give equal text and hashes.
 
     Keys sorted by UTF-16 code units, no white space, numbers as ECMAScript writes them.
     """
@@ -114,14 +114,14 @@ def canonical_json(value: Any) -> str:
 
 
 def build_pointer(*steps: str | int) -> str:
-    """Write a JSON pointer (RFC 6901), escaping ``~`` and ``/``."""
+    """Return a JSON pointer (RFC 6901), escaping ``~`` and ``/``."""
     return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in steps)
 
 
 def _depth(content: bytes) -> int:
     """Return the deepest nesting of brackets outside strings.
 
-    A backslash outside a string, where the parser stops, may hide what comes after it.
+    A backslash outside a string is invalid JSON; the depth after one may come out too small.
     """
     unescaped = content.replace(rb"\\", b"").replace(rb"\"", b"")
     characters = np.frombuffer(unescaped, dtype=np.uint8)
@@ -146,7 +146,7 @@ def _integer(digits: str) -> int | float:
 
 
 def _faults(value: Any, pointer: str) -> Iterator[Fault]:
-    """Find what the JSON grammar or Python's reader admits and other readers do not."""
+    """Yield values that Python's parser accepts and other JSON readers do not."""
     if isinstance(value, list):
         for index, entry in enumerate(value):
             if not _is_plain_number(entry):
@@ -173,7 +173,7 @@ def _faults_of_object(entries: dict[str, Any], pointer: str) -> Iterator[Fault]:
 
 
 def _is_plain_number(value: Any) -> bool:
-    """Tell quickly that there is no fault, for paths and images of many thousand numbers."""
+    """Return whether a value is a number without fault: a fast path for long arrays of numbers."""
     if type(value) is float:
         return math.isfinite(value)
     return type(value) is int and -MAX_SAFE_INTEGER <= value <= MAX_SAFE_INTEGER
@@ -188,7 +188,7 @@ def _string(text: str) -> str:
 
 
 def _number(number: float) -> str:
-    """Write a finite number as ECMAScript does (ECMA-262, Number::toString)."""
+    """Return a finite number as ECMAScript writes it (ECMA-262, Number::toString)."""
     if number == 0:
         return "0"
     if 1e-4 <= abs(number) < 1e16:  # Python and ECMAScript agree here but for a trailing ".0"

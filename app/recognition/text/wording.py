@@ -1,4 +1,4 @@
-"""How identifiers and lists are worded in sentences for people."""
+"""Wording: identifiers and lists as words in sentences."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Iterable, Sequence
 
 
 def humanize(identifier: str) -> str:
-    """Return the name of a landmark or voter as people say it: ``right_wrist`` is right wrist."""
+    """Return an identifier as words: ``right_wrist`` as "right wrist"."""
     return identifier.replace("_", " ")
 
 
 def humanize_all(identifiers: Iterable[str]) -> list[str]:
-    """Return each of the names as people say it."""
+    """Return each identifier as words."""
     return [humanize(identifier) for identifier in identifiers]
 
 
 def join_words(items: Sequence[str], last: str = "and") -> str:
-    """Say several things in a row: a, b and c."""
+    """Return items as one list in words: "a, b and c"."""
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} {last} {items[-1]}"

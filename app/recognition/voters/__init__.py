@@ -1,1 +1,1 @@
-"""Voters: one module each, with all that is known of it; `registry` lists them."""
+"""Voters: one module each, with the voter's distance and constants; `registry` lists them."""

@@ -1,4 +1,4 @@
-"""All voters, in the order of results. To add one, add its module and a line here."""
+"""Voter registry: all voters in the order of results. A new voter is a module and a line here."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
     PathLength(),
     Tempo(),
 )
-"""The voters of profile ``full`` beside the paper's seven."""
+"""The additional voters of profile ``full``."""
 
 VOTERS: Final[tuple[Voter, ...]] = (*PAPER_VOTERS, *MOTION_VOTERS)
 """All voters of profile ``full``."""

@@ -1,4 +1,4 @@
-"""The base of all voters: descriptors, their distances, and what is known of both."""
+"""Base class of voters: a distance between descriptors, with its measured constants."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 from app.recognition.poses.sequence import FloatArray
 
 CueGroup = Literal["figure", "posture", "wrist", "length"]
-"""What voters of one group look at; see `app.recognition.decision.rejection`."""
+"""Cue groups: voters that measure the same property (`app.recognition.decision.rejection`)."""
 
 
 @dataclass(frozen=True)
 class Cue:
-    """How a voter's distance counts towards the rejection of a query.
+    """The use of a voter's distance in rejection.
 
     Attributes
     ----------
     group
-        The cue group it is averaged in: voters of a group make up for each other's noise.
+        The cue group it is averaged in, which evens out the voters' noise.
     weight
         Its weight in the mean of its group.
     reach
@@ -29,7 +29,7 @@ class Cue:
     squared
         Whether distances are squares, which grow faster from one person to another.
     varies_by_gesture
-        Whether the typical distance is measured on the gesture; else it is `Voter.within`.
+        Whether the typical distance is measured on each gesture; else it is `Voter.within`.
 
     """
 
@@ -41,26 +41,26 @@ class Cue:
 
 
 class Voter(ABC):
-    """One voter: a distance between a query and each reference, with its statistics.
+    """One voter: a distance between a query and each reference, with measured constants.
 
-    The statistics are measured on air-drawn digits, letters and commands, two-handed figures and
+    The constants were measured on air-drawn digits, letters and commands, two-handed figures and
     aircraft marshalling by other people: the geometric mean over the sets
-    (``benchmarks/studies``).
+    (``benchmarks/studies/voters.md``).
 
     Attributes
     ----------
     name
         In results and language files, in snake_case.
     unit
-        What a distance of 1 means, for people.
+        What a distance of 1 means, in words.
     prior
-        Weight before any language is known; `path` has 1.
+        Importance before it is adapted to a language; `path` has 1.
     within
         Within-class distance: mean between two people's takes of one gesture.
     between
         Between-class distance: median between two gestures; stands in where a language has one.
     cue
-        How its distance counts towards rejection; None: it does not.
+        Its use in rejection; None: not used.
 
     """
 
@@ -72,12 +72,12 @@ class Voter(ABC):
     cue: ClassVar[Cue | None] = None
 
     def prior_for(self, landmarks: int) -> float:
-        """Return the prior in a language that follows so many landmarks."""
+        """Return the prior in a language that follows `landmarks` landmarks."""
         return self.prior
 
     @abstractmethod
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Measure how far the query lies from each reference.
+        """Compute the distance of the query to each reference.
 
         Parameters
         ----------
@@ -94,14 +94,14 @@ class Voter(ABC):
 
 
 def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray:
-    """Measure the Euclidean distance of ``(D,)`` to each row of ``(G, D)``: ``(G,)``.
+    """Return the Euclidean distances of ``(D,)`` to each row of ``(G, D)``: ``(G,)``.
 
-    The paper's choice (Sec. IV-D1): cosine similarity would ignore magnitudes.
+    As in the paper (Sec. IV-D1), because cosine similarity ignores magnitudes.
     """
     apart = references - query
     return np.asarray(np.sqrt(np.vecdot(apart, apart)), dtype=np.float64)
 
 
 def absolute_differences(query: FloatArray, references: FloatArray) -> FloatArray:
-    """Measure by how much ``(1,)`` differs from each row of ``(G, 1)``: ``(G,)``."""
+    """Return the absolute differences of ``(1,)`` to each row of ``(G, 1)``: ``(G,)``."""
     return np.asarray(np.abs(references - query)[:, 0], dtype=np.float64)

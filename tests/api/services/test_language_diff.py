@@ -46,7 +46,7 @@ def test_every_edit_of_a_gesture_has_its_words(circle: Gesture, line: Gesture) -
     assert words(followed, circle) == ("left wrist is not followed any more",)
     assert words(circle, replace(line, label="circle"))[-1].startswith("another demonstration")
     assert words(circle, replace(circle, trajectory=None))[-1] == "another demonstration"
-    assert words(circle, circle.redrawn(simplification=0.2)) == (
+    assert words(circle, circle.redraw(simplification=0.2)) == (
         "drawn anew from the same demonstration",
     )
 

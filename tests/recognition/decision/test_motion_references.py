@@ -48,7 +48,7 @@ def test_a_closed_figure_is_found_wherever_it_begins_and_whichever_way_it_goes(
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.6])
 def test_most_readings_are_spared_and_never_the_one_as_shown(share: float) -> None:
     query = described(begun_at(share, circle, backward=False))
-    rows = REFERENCES.promising(query["path"])
+    rows = REFERENCES.find_promising(query["path"])
     assert set(REFERENCES.as_shown) <= set(rows)
     assert len(rows) < len(REFERENCES) / 2
     compared = np.isfinite(REFERENCES.distances(query)[PATH])
@@ -57,7 +57,7 @@ def test_most_readings_are_spared_and_never_the_one_as_shown(share: float) -> No
 
 def test_voters_asked_together_measure_what_each_measures_alone() -> None:
     query = described(wedge)
-    rows = REFERENCES.promising(query["path"])
+    rows = REFERENCES.find_promising(query["path"])
     together = REFERENCES.distances(query)[:, rows]
     for voter, row in zip(MOTION_VOTERS, together, strict=True):
         alone = voter.distances(query[voter.name], REFERENCES.descriptors[voter.name][rows])

@@ -101,7 +101,7 @@ def test_fourier_descriptors_are_real_numbers_of_one_length_for_any_contour() ->
     tiny = LANGUAGE.gestures[0].image.copy()
     tiny[:] = 0
     tiny[100:102, 100:102] = 255
-    speck = Gesture(label="speck", salient=("right_wrist",), image=tiny).redrawn()
+    speck = Gesture(label="speck", salient=("right_wrist",), image=tiny).redraw()
     assert speck.descriptors["fourier"].dtype == np.float64
     assert speck.descriptors["fourier"].shape == LANGUAGE.gestures[0].descriptors["fourier"].shape
     result = Recognizer(LANGUAGE.with_gesture(speck)).recognize(recording(wedge, jitter=0.01))

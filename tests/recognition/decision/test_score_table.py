@@ -62,7 +62,7 @@ def test_the_mirror_image_that_fits_is_named() -> None:
         frame_size=query.frame_size,
     )
     assert not compared(recognizer, shown).mirrored.any()
-    trajectory = condense(Trajectory.from_poses(shown)).mirrored()
+    trajectory = condense(Trajectory.from_poses(shown)).mirror()
     assert recognizer.compare(trajectory).mirrored.tolist() == [
         label == "wedge" for label in LANGUAGE.labels
     ]

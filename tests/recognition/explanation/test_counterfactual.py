@@ -28,20 +28,20 @@ RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 def found_for(
     poses: PoseSequence, expected: str, recognizer: Recognizer, whole: PoseSequence | None = None
 ) -> Counterfactuals:
-    situation = RecognitionContext(recognizer=recognizer, poses=poses, whole=whole or poses)
-    assert situation.result.label != expected
-    return find_counterfactuals(situation, expected)
+    context = RecognitionContext(recognizer=recognizer, poses=poses, whole=whole or poses)
+    assert context.result.label != expected
+    return find_counterfactuals(context, expected)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
     query = recording(wedge, jitter=0.02)
-    situation = RecognitionContext(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
-    told = find_counterfactuals(situation, "circle")
+    context = RecognitionContext(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
+    told = find_counterfactuals(context, "circle")
     assert told.found
     assert told.tried >= len(told.found)
     for each in told.found:
-        after = each.change.apply(situation).result
+        after = each.change.apply(context).result
         assert after.label == each.label == "circle"
         assert after.confidence == each.confidence
 

@@ -25,12 +25,12 @@ LANGUAGE = Language(
 RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 
 
-def situation(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
+def context(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
     return RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)
 
 
 def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanation:
-    return explain(situation(poses, RECOGNIZERS[profile]), expected, with_counterfactuals=False)
+    return explain(context(poses, RECOGNIZERS[profile]), expected, with_counterfactuals=False)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
@@ -41,7 +41,7 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
     profile: str, expected: str, query: PoseSequence
 ) -> None:
     explanation = why(query, expected, profile)
-    scores = situation(query, RECOGNIZERS[profile]).comparison.scores
+    scores = context(query, RECOGNIZERS[profile]).score_table.scores
     assert explanation.other is not None
     difference = scores[LANGUAGE.labels.index(expected)]
     difference -= scores[LANGUAGE.labels.index(explanation.other)]
@@ -103,7 +103,7 @@ def test_moments_are_those_of_the_querys_clock() -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_what_was_right_is_held_against_the_runner_up(profile: str) -> None:
-    explanation = explain(situation(recording(circle, jitter=0.01), RECOGNIZERS[profile]), "circle")
+    explanation = explain(context(recording(circle, jitter=0.01), RECOGNIZERS[profile]), "circle")
     assert explanation.right
     assert explanation.other != "circle"
     assert explanation.margin > 0
@@ -124,7 +124,7 @@ def test_an_explanation_is_plain_json(profile: str) -> None:
 
 def test_a_language_of_one_gesture_has_nothing_to_hold_against() -> None:
     language = Language("one", LANGUAGE.gestures[:1])
-    explanation = explain(situation(recording(circle), Recognizer(language, "full")), "circle")
+    explanation = explain(context(recording(circle), Recognizer(language, "full")), "circle")
     assert explanation.other is None
     assert explanation.right
     assert explanation.to_dict()["margin"] is None
@@ -136,7 +136,7 @@ def test_a_gesture_that_cannot_be_compared_is_told() -> None:
     landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
     for profile in PROFILES:
         query = recording(line, landmarks=landmarks)
-        explanation = explain(situation(query, Recognizer(language, profile)), "left")
+        explanation = explain(context(query, Recognizer(language, profile)), "left")
         assert explanation.margin == -np.inf
         assert "missing or does not move" in explanation.sentence
         json.dumps(explanation.to_dict(), allow_nan=False)
@@ -147,7 +147,7 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
     language = Language("pictures", pictures)
     for profile in PROFILES:
         query = recording(wedge, jitter=0.02)
-        explanation = explain(situation(query, Recognizer(language, profile)), "circle")
+        explanation = explain(context(query, Recognizer(language, profile)), "circle")
         assert explanation.alignments == ()
         assert explanation.differences == ()
         assert explanation.verdicts[0].against > 0
@@ -155,18 +155,19 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
 
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
     with pytest.raises(OsgError, match=r"no gesture 'spiral'.*circle, wedge"):
-        explain(situation(recording(circle), RECOGNIZERS["full"]), "spiral")
+        explain(context(recording(circle), RECOGNIZERS["full"]), "spiral")
 
 
 def test_who_was_rejected_is_told_by_how_much() -> None:
     zigzag = corners((-1.2, -0.4), (-0.3, -0.3), (-1.2, -0.2), (-0.3, -0.1), (-1.2, 0.0))
-    examined = situation(recording(zigzag), RECOGNIZERS["full"])
+    examined = context(recording(zigzag), RECOGNIZERS["full"])
     assert examined.result.label is None
     nearest = examined.result.nearest
     explanation = explain(examined, nearest, with_counterfactuals=False)
     assert (explanation.label, explanation.other != nearest) == (None, True)
     assert explanation.novelty > 1.0
-    assert f"{explanation.novelty:.1f} times as far as its thresholds allow" in explanation.sentence
+    allowed = f"{explanation.novelty:.1f} times as far from it as its thresholds allow"
+    assert allowed in explanation.sentence
     limits = {verdict.voter: verdict.limit for verdict in explanation.verdicts}
     assert limits["path"] == LANGUAGE.calibrated().gesture(nearest).thresholds["path"]
     assert limits["hu"] is None
@@ -179,7 +180,7 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
     poor = PoseSequence(
         landmarks=query.landmarks, xy=xy, time=query.time, frame_size=query.frame_size
     )
-    explanation = explain(situation(poor, RECOGNIZERS["full"]), "circle")
+    explanation = explain(context(poor, RECOGNIZERS["full"]), "circle")
     assert explanation.label is None
     assert explanation.fault is not None
     assert explanation.fault in explanation.sentence
@@ -189,7 +190,7 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
 def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
     mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
     unrepaired = Recognizer(LANGUAGE, profile, tuning=Tuning(keypoints_repaired=False))
-    explanation = explain(situation(mistaken, unrepaired), "wedge")
+    explanation = explain(context(mistaken, unrepaired), "wedge")
     assert not explanation.right
     cause = explanation.differences[0]
     assert (cause.kind, cause.words in explanation.sentence) == ("exchanged_sides", True)
@@ -206,7 +207,7 @@ def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
 def test_votes_without_weight_are_not_counted() -> None:
     tuning = Tuning(weights={"hu": 0.0, "zernike": 0.0})
     silent = Recognizer(LANGUAGE, "paper", tuning=tuning)
-    explanation = explain(situation(recording(circle, jitter=0.01), silent), "circle")
+    explanation = explain(context(recording(circle, jitter=0.01), silent), "circle")
     assert sum(explanation.votes.values()) == 5
     assert "of five voters" in explanation.sentence
     assert not any(each.wrong for each in explanation.verdicts if each.voter in tuning.weights)

@@ -1,4 +1,4 @@
-"""Changes: each makes of a situation the one that it says."""
+"""Changes: each makes of a context the one that it says."""
 
 import json
 from dataclasses import replace
@@ -27,55 +27,55 @@ LANGUAGE = Language(
 
 
 @pytest.fixture(scope="module")
-def situation() -> RecognitionContext:
+def context() -> RecognitionContext:
     recognizer = Recognizer(LANGUAGE, "full", tuning=Tuning(weights={"hu": 3.0}))
     whole = recording(wedge)
     return RecognitionContext(recognizer=recognizer, poses=whole.between(0.5, 1.5), whole=whole)
 
 
 def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(
-    situation: RecognitionContext,
+    context: RecognitionContext,
 ) -> None:
-    changed = Trim(size=0.5, start=0.2, end=1.0).apply(situation)
+    changed = Trim(size=0.5, start=0.2, end=1.0).apply(context)
     assert (changed.poses.time[0], changed.poses.time[-1]) == pytest.approx((0.2, 1.0))
-    assert changed.recognizer is situation.recognizer
+    assert changed.recognizer is context.recognizer
 
 
-def test_a_weight_multiplies_the_one_there_is(situation: RecognitionContext) -> None:
+def test_a_weight_multiplies_the_one_there_is(context: RecognitionContext) -> None:
     for voter, expected in (("hu", {"hu": 1.5}), ("path", {"hu": 3.0, "path": 0.5})):
-        changed = VoterWeight(size=0.1, voter=voter, factor=0.5).apply(situation)
+        changed = VoterWeight(size=0.1, voter=voter, factor=0.5).apply(context)
         assert changed.tuning.weights == expected
 
 
-def test_tuning_changes_one_thing_and_keeps_the_rest(situation: RecognitionContext) -> None:
-    coarser = Simplification(size=0.5, tolerance=8.0).apply(situation)
+def test_tuning_changes_one_thing_and_keeps_the_rest(context: RecognitionContext) -> None:
+    coarser = Simplification(size=0.5, tolerance=8.0).apply(context)
     assert (coarser.tuning.simplification, coarser.tuning.weights) == (8.0, {"hu": 3.0})
-    unrepaired = KeypointRepair(size=0.1, on=False).apply(situation)
+    unrepaired = KeypointRepair(size=0.1, on=False).apply(context)
     assert (unrepaired.recognizer.repairs, unrepaired.tuning.weights) == (False, {"hu": 3.0})
 
 
 def test_another_profile_drops_weights_of_voters_it_may_not_have(
-    situation: RecognitionContext,
+    context: RecognitionContext,
 ) -> None:
-    changed = OtherProfile(size=1.0, profile="paper").apply(situation)
+    changed = OtherProfile(size=1.0, profile="paper").apply(context)
     assert (changed.profile, dict(changed.tuning.weights)) == ("paper", {})
 
 
-def test_other_salient_keypoints_are_drawn_anew(situation: RecognitionContext) -> None:
+def test_other_salient_keypoints_are_drawn_anew(context: RecognitionContext) -> None:
     both = ("left_wrist", "right_wrist")
     change = SalientKeypoints(size=0.5, label="circle", salient=both)
-    changed = change.apply(situation).language.gesture("circle")
+    changed = change.apply(context).language.gesture("circle")
     assert changed.salient == both
     assert (changed.image != LANGUAGE.gesture("circle").image).any()
     with pytest.raises(GestureError, match="not in this recording"):
-        replace(change, salient=("left_knee",)).apply(situation)
+        replace(change, salient=("left_knee",)).apply(context)
 
 
 def test_a_switch_is_the_only_thing_that_changes_about_a_gesture(
-    situation: RecognitionContext,
+    context: RecognitionContext,
 ) -> None:
     change = SwitchPosition(size=1 / 3, label="wedge", switch="mirror", position="on")
-    switches = change.apply(situation).language.gesture("wedge").switches
+    switches = change.apply(context).language.gesture("wedge").switches
     assert (switches.mirror, switches.direction, switches.tempo) == ("on", "auto", "auto")
 
 
@@ -94,10 +94,10 @@ def test_a_new_demonstration_keeps_what_the_author_wrote() -> None:
     assert after.result.label == "circle"  # of two that are now the same, the first
 
 
-def test_nothing_can_be_demonstrated_by_a_hand_at_rest(situation: RecognitionContext) -> None:
+def test_nothing_can_be_demonstrated_by_a_hand_at_rest(context: RecognitionContext) -> None:
     still = recording(lambda share: circle(0 * share))
     with pytest.raises(GestureError, match="nothing moves"):
-        NewDemonstration(size=1.0, label="circle").apply(replace(situation, poses=still))
+        NewDemonstration(size=1.0, label="circle").apply(replace(context, poses=still))
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_a_change_is_plain_json_to_apply_and_words_to_read(
     assert words in told["words"]
 
 
-def test_a_situation_of_a_take_can_be_cut_to_all_of_it(situation: RecognitionContext) -> None:
+def test_a_situation_of_a_take_can_be_cut_to_all_of_it(context: RecognitionContext) -> None:
     def take(poses: PoseSequence) -> Take:
         return Take(
             start=0.0,
@@ -146,5 +146,5 @@ def test_a_situation_of_a_take_can_be_cut_to_all_of_it(situation: RecognitionCon
             untrimmed=poses,
         )
 
-    cut = RecognitionContext.of_take(situation.recognizer, take(recording(wedge)))
-    assert (len(cut.poses), len(cut.whole)) == (len(situation.poses), len(situation.whole))
+    cut = RecognitionContext.of_take(context.recognizer, take(recording(wedge)))
+    assert (len(cut.poses), len(cut.whole)) == (len(context.poses), len(context.whole))

@@ -73,7 +73,7 @@ def test_mirroring_a_recording_mirrors_its_image(poses: PoseSequence) -> None:
 @given(recordings())
 def test_twice_the_frame_rate_gives_the_same_shape(poses: PoseSequence) -> None:
     trajectory = Trajectory.from_poses(poses).select(["right_wrist"])
-    doubled = trajectory.resampled_in_time(2 * len(trajectory) - 1)
+    doubled = trajectory.resample_in_time(2 * len(trajectory) - 1)
     assert overlap(draw(condense(doubled)).image, draw(condense(trajectory)).image) > SAME_SHAPE
 
 

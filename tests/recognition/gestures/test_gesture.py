@@ -174,7 +174,7 @@ def test_of_a_large_set_of_landmarks_the_salient_ones_are_kept() -> None:
 @given(recordings())
 def test_redrawing_a_gesture_changes_nothing(poses: PoseSequence) -> None:
     gesture = Gesture.from_demonstration("stroke", poses)
-    again = gesture.redrawn()
+    again = gesture.redraw()
     np.testing.assert_array_equal(again.image, gesture.image)
     for name, descriptor in gesture.descriptors.items():
         np.testing.assert_array_equal(again.descriptors[name], descriptor)
@@ -199,7 +199,7 @@ def test_condensing_twice_is_condensing_once() -> None:
 
 def test_a_gesture_known_by_its_image_alone_is_described_from_it() -> None:
     drawn = Gesture.from_demonstration("circle", recording(circle))
-    seen = Gesture(label="circle", salient=drawn.salient, image=drawn.image).redrawn()
+    seen = Gesture(label="circle", salient=drawn.salient, image=drawn.image).redraw()
     assert seen.trajectory is None
     for name, descriptor in drawn.descriptors.items():
         np.testing.assert_array_equal(seen.descriptors[name], descriptor)

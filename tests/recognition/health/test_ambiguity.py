@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from app.recognition.health.ambiguity import find_ambiguities
-from app.recognition.phrases.automaton import Reading
+from app.recognition.phrases.automaton import Parse
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.phrases.phrase import Phrase, Slot, SlotType
@@ -79,7 +79,7 @@ def test_phrases_that_run_together_are_told() -> None:
     assert (found.kind, found.gestures) == ("run_together", ("a", "a", "end"))
 
 
-def understood(grammar: Grammar) -> dict[tuple[str, ...], set[Reading]]:
+def understood(grammar: Grammar) -> dict[tuple[str, ...], set[Parse]]:
     readings = defaultdict(set)
     for labels, reading in sentences(grammar):
         readings[labels].add(reading)

@@ -45,7 +45,7 @@ def test_two_gestures_that_are_the_same_are_found_with_a_remedy(confused: Health
 
 def test_a_remedy_that_is_followed_ends_the_confusion() -> None:
     circle_shown, ring, line_shown = CONFUSED.gestures
-    mended = replace(CONFUSED, gestures=[circle_shown, ring.mirrored(), line_shown])
+    mended = replace(CONFUSED, gestures=[circle_shown, ring.mirror(), line_shown])
     report = check_health(mended, takes=6, person="same")
     assert not CONFUSIONS & {finding.code for finding in report.findings}
 
@@ -79,8 +79,8 @@ def test_each_landmark_a_gesture_depends_on_is_told_with_its_visibility() -> Non
 
 def test_a_gesture_without_demonstration_is_told_and_not_judged() -> None:
     imported = Gesture(
-        label="old", salient=("right_wrist",), image=shown("line", line).redrawn().image
-    ).redrawn()
+        label="old", salient=("right_wrist",), image=shown("line", line).redraw().image
+    ).redraw()
     report = check_health(Language("mixed", [shown("circle", circle), imported]), takes=4)
     assert report.gestures[1].missed is None
     assert "no_demonstration" in {finding.code for finding in report.findings}

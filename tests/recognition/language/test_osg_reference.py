@@ -114,7 +114,7 @@ def test_a_gesture_without_keypoints_or_strokes_is_kept_and_matches_nothing(
 def test_landmarks_it_does_not_know_cannot_be_exported() -> None:
     marker = recording(circle, hand="marker", landmarks=("marker",))
     language = Language("lab", [Gesture.from_demonstration("circle", marker)])
-    with pytest.raises(LanguageError, match="'circle' follows 'marker', and osg-reference files"):
+    with pytest.raises(LanguageError, match="'circle' uses the keypoint 'marker'"):
         to_reference(language)
 
 

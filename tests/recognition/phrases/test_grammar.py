@@ -13,7 +13,8 @@ import pytest
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
 from app.recognition.language.schema import load_schema
-from app.recognition.phrases.grammar import DEFAULT_TIMEOUT, Grammar
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.grammar_parts import DEFAULT_TIMEOUT
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.phrases.phrase import OneOf
 from tests.recognition.grammars import MISSIONS
@@ -98,7 +99,7 @@ def phrase(**changes: object) -> Callable[[Entry], object]:
         (part(1, default="one"), "/phrases/0/parts/1/default", "reads number, got 'one'"),
         (part(1, slot="depth"), "/phrases/0/parts/2/parts/1/slot", "a second slot 'depth'"),
         (part(2, parts=[]), "/phrases/0/parts/2/parts", "at least 1 item"),
-        (part(2, most=2), "/phrases/0/parts/2/parts/1/most", "and so may its group"),
+        (part(2, most=2), "/phrases/0/parts/2/parts/1/most", "may both be repeated"),
         (
             part(2, parts=[{"gestures": ["down"], "least": 0}]),
             "/phrases/0/parts/2/parts",
@@ -114,7 +115,11 @@ def phrase(**changes: object) -> Callable[[Entry], object]:
         (phrase(command={"a": [{"b": "{speed}"}]}), "/phrases/0/command", "{speed} is no slot"),
         (phrase(command={"text": "x" * 5000}), "/phrases/0/command", "too large"),
         (phrase(says="photo {speed}"), "/phrases/0/says", "{speed} is no slot here"),
-        (phrase(says="photo at {depth}"), "/phrases/0/says", r"put what is then not said in \[ \]"),
+        (
+            phrase(says="photo at {depth}"),
+            "/phrases/0/says",
+            "put the text that depends",
+        ),
         (phrase(says="photo [now]"), "/phrases/0/says", "no slot in it"),
         (phrase(says="photo [[{depth}]]"), "/phrases/0/says", "do not pair up"),
         (lambda grammar: grammar.update(start="wave"), "/start", "the start gesture needs"),

@@ -96,31 +96,31 @@ def test_select_and_between_keep_what_is_asked_for() -> None:
 
 
 def test_recentring_moves_the_centroid_to_the_origin() -> None:
-    recentred = trajectory([[1, 2], [np.nan, np.nan], [3, 6]]).recentred()
+    recentred = trajectory([[1, 2], [np.nan, np.nan], [3, 6]]).recentre()
     np.testing.assert_allclose(recentred.xy[:, 0], [[-1.0, -2.0], UNSEEN, [1.0, 2.0]])
     nothing = trajectory([[np.nan, np.nan]])
-    assert nothing.recentred() is nothing
+    assert nothing.recentre() is nothing
 
 
 def test_a_short_gap_is_bridged_by_a_straight_line_in_time() -> None:
-    filled = trajectory([[0, 0], UNSEEN, UNSEEN, [4, 8]], time=[0.0, 0.1, 0.2, 0.4]).filled()
+    filled = trajectory([[0, 0], UNSEEN, UNSEEN, [4, 8]], time=[0.0, 0.1, 0.2, 0.4]).fill_gaps()
     np.testing.assert_allclose(filled.xy[:, 0], [[0, 0], [1, 2], [2, 4], [4, 8]])
 
 
 def test_a_long_gap_and_the_ends_stay_unseen() -> None:
     path: list[list[float]] = [UNSEEN, [0, 0], UNSEEN, [4, 8], UNSEEN]
     late = [0.0, 0.1, 0.2, 0.2 + MAX_GAP_SECONDS, 1.0]
-    np.testing.assert_array_equal(trajectory(path, late).filled().xy, trajectory(path).xy)
+    np.testing.assert_array_equal(trajectory(path, late).fill_gaps().xy, trajectory(path).xy)
 
 
 def test_resampling_in_time_is_linear_between_samples() -> None:
-    resampled = trajectory([[0, 0], [1, 2], [4, 2]], time=[0.0, 0.1, 0.4]).resampled_in_time(5)
+    resampled = trajectory([[0, 0], [1, 2], [4, 2]], time=[0.0, 0.1, 0.4]).resample_in_time(5)
     np.testing.assert_allclose(resampled.time, [0.0, 0.1, 0.2, 0.3, 0.4])
     np.testing.assert_allclose(resampled.xy[:, 0], [[0, 0], [1, 2], [2, 2], [3, 2], [4, 2]])
 
 
 def test_resampling_leaves_gaps_as_gaps() -> None:
-    resampled = trajectory([[0, 0], [1, 0], UNSEEN, [3, 0], [4, 0]]).resampled_in_time(9)
+    resampled = trajectory([[0, 0], [1, 0], UNSEEN, [3, 0], [4, 0]]).resample_in_time(9)
     unseen = np.isnan(resampled.xy[:, 0, 0])
     np.testing.assert_array_equal(np.flatnonzero(unseen), [3, 4, 5])
 
@@ -128,7 +128,7 @@ def test_resampling_leaves_gaps_as_gaps() -> None:
 @given(poses=recordings(), count=st.integers(2, 80))
 def test_resampling_keeps_the_ends_and_stays_on_the_path(poses: PoseSequence, count: int) -> None:
     whole = Trajectory.from_poses(poses).select(HAND_ONLY)
-    for resampled in (whole.resampled_in_time(count), whole.resampled_in_arc_length(count)):
+    for resampled in (whole.resample_in_time(count), whole.resample_in_arc_length(count)):
         assert len(resampled) == count
         np.testing.assert_allclose(resampled.xy[[0, -1]], whole.xy[[0, -1]], atol=1e-6)
         assert (resampled.xy >= whole.xy.min(axis=0) - 1e-9).all()
@@ -137,31 +137,31 @@ def test_resampling_keeps_the_ends_and_stays_on_the_path(poses: PoseSequence, co
 
 def test_arc_length_steps_are_equal_whatever_the_speed() -> None:
     hurried = trajectory([[0, 0], [0.1, 0], [0.2, 0], [3, 0], [4, 0], [4, 0]])
-    resampled = hurried.resampled_in_arc_length(9)
+    resampled = hurried.resample_in_arc_length(9)
     np.testing.assert_allclose(np.diff(resampled.xy[:, 0, 0]), 0.5, atol=1e-6)
     assert (np.diff(resampled.time) > 0).all()
 
 
 def test_arc_length_resampling_of_stillness_is_in_time() -> None:
-    resampled = trajectory([[1, 1], [1, 1], [1, 1]]).resampled_in_arc_length(5)
+    resampled = trajectory([[1, 1], [1, 1], [1, 1]]).resample_in_arc_length(5)
     np.testing.assert_allclose(resampled.time, np.linspace(0, 0.2, 5))
 
 
 @pytest.mark.parametrize("count", [0, 1])
 def test_fewer_than_two_moments_cannot_be_asked_for(count: int) -> None:
     with pytest.raises(PoseError, match=f"cannot resample 2 moments to {count}"):
-        trajectory([[0, 0], [1, 1]]).resampled_in_time(count)
+        trajectory([[0, 0], [1, 1]]).resample_in_time(count)
     with pytest.raises(PoseError, match="cannot resample 1 moments"):
-        trajectory([[0, 0]]).resampled_in_arc_length(3)
+        trajectory([[0, 0]]).resample_in_arc_length(3)
 
 
 @given(recordings())
 def test_a_mirror_image_of_a_mirror_image_is_the_movement_itself(poses: PoseSequence) -> None:
     seen = Trajectory.from_poses(poses)
-    mirrored = seen.mirrored()
+    mirrored = seen.mirror()
     right = seen.select(HAND_ONLY).xy
     np.testing.assert_array_equal(mirrored.select(["left_wrist"]).xy, right * (-1, 1))
-    again = mirrored.mirrored()
+    again = mirrored.mirror()
     assert again.landmarks == seen.landmarks
     np.testing.assert_array_equal(again.xy, seen.xy)
 
@@ -173,6 +173,6 @@ def test_what_was_worked_out_once_is_kept_for_this_trajectory_alone() -> None:
         asked.append("once more")
         return len(asked)
 
-    assert [seen.once("number", work_out) for _ in range(3)] == [1, 1, 1]
-    assert seen.once(("number", 2), work_out) == 2
-    assert seen.between(0, 1).once("number", work_out) == 3
+    assert [seen.compute_once("number", work_out) for _ in range(3)] == [1, 1, 1]
+    assert seen.compute_once(("number", 2), work_out) == 2
+    assert seen.between(0, 1).compute_once("number", work_out) == 3

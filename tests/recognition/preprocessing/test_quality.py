@@ -113,5 +113,5 @@ def test_the_mirror_image_is_judged_by_the_hand_that_shows_it(recognizer: Recogn
 
 
 def test_a_poor_demonstration_is_refused_with_the_reason() -> None:
-    with pytest.raises(GestureError, match="too poor to learn from: the right wrist leaps"):
+    with pytest.raises(GestureError, match="too poor to use: the right wrist leaps"):
         Gesture.from_demonstration("circle", leaping(recording(circle)))

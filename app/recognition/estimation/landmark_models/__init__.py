@@ -1,1 +1,1 @@
-"""The neural networks that find bodies and hands in a picture, and what surrounds them."""
+"""Landmark models: neural networks for bodies and hands, with pre- and post-processing."""

@@ -1,4 +1,4 @@
-"""Where the pose says that a hand is: at the end of an arm."""
+"""Hand regions from the pose: the regions of hands at the ends of the arms."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from app.recognition.poses.frame import Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 LEAST_VISIBILITY: Final = 0.1
-"""Visibility of a wrist from which its hand is looked for, as in MediaPipe Holistic."""
+"""Least visibility of a wrist whose hand is searched, as in MediaPipe Holistic."""
 
 WRIST_SCALE: Final = 2.0
-"""Side of the region over twice the way from the wrist to the middle knuckle. MediaPipe Holistic
-takes 2.7, to search in with a re-crop model of its own; the landmark model itself expects the hand
-to fill its region, and finds twice as many at 2.0."""
+"""Side of the region over twice the distance from the wrist to the middle knuckle. MediaPipe
+Holistic uses 2.7 with a re-crop model; the landmark model alone expects the hand to fill its
+region, and finds twice as many at 2.0 (`benchmarks/studies/hands-and-water.md`)."""
 
 WRIST_SHIFT: Final = 0.1
 """Shift towards the finger tips, over the same length, as in MediaPipe Holistic."""
 
 REACH: Final = 1.0
-"""Palm sizes between the pose's wrist and the hand's own, at most. Of hands on the arms of the body
-that is tracked 95 % are nearer than 0.6; those of bystanders are several palms away."""
+"""Largest distance between the pose's wrist and the hand's own, in palm sizes. Of hands on the
+tracked body's arms 95 % are nearer than 0.6; those of bystanders are several palms away."""
 
 
 def region_of_wrist(body: Body, side: Side) -> Region | None:
@@ -43,7 +43,7 @@ def region_of_wrist(body: Body, side: Side) -> Region | None:
 
     Returns
     -------
-    None where the pose does not see the wrist, or gives no usable region.
+    None where the wrist is not visible, or the region is not usable.
 
     """
     wrist, pinky, index = (
@@ -60,6 +60,6 @@ def region_of_wrist(body: Body, side: Side) -> Region | None:
 
 
 def wrist_distance(hand: Hand, body: Body, side: Side) -> float:
-    """Return how far the hand's wrist is from the arm's, in sizes of the hand's palm."""
+    """Return the distance between the hand's wrist and the arm's, in sizes of the hand's palm."""
     wrist = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
     return float(np.linalg.norm(hand.xy[0] - wrist)) / max(palm_size(hand.xy), 1e-9)

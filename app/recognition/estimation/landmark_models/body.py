@@ -1,4 +1,4 @@
-"""The body: found by the person detector once, then tracked from frame to frame."""
+"""Body tracker: finds a body with the person detector, then tracks it from frame to frame."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ INPUT_SIZE: Final = 256
 """Side of the landmark model's input in pixels."""
 
 LANDMARKS: Final = 39
-"""The model's points: 33 landmarks, then the two that say where the body is, and four unused."""
+"""The model's points: 33 landmarks, two for the body's region, and four unused."""
 
 USED_LANDMARKS: Final = 35
-"""Of these, the ones read here: all but the last four."""
+"""The points that are used: all but the last four."""
 
 HEATMAP_SIZE: Final = 64
 """Cells along a side of the heat maps."""
@@ -30,7 +30,7 @@ POSE_SIGNATURE: Final = Signature(
     INPUT_SIZE,
     outputs=((1, LANDMARKS * 5), (1, 1), (1, HEATMAP_SIZE, HEATMAP_SIZE, LANDMARKS)),
 )
-"""Landmarks (x, y, z, visibility, presence), belief that there is a person, heat maps."""
+"""Landmarks (x, y, z, visibility, presence), probability of a person, heat maps."""
 
 MID_HIPS, REACH_POINT = 33, 34
 """Auxiliary points: the middle of the hips, and a point on the circle around the whole body."""
@@ -42,13 +42,13 @@ LEAST_PRESENCE: Final = 0.5
 """Below it there is no body; MediaPipe's default minimum presence confidence."""
 
 VISIBILITY_WEIGHT: Final = 0.1
-"""Weight of a new visibility in MediaPipe's smoothing: it follows within about ten frames."""
+"""Weight of a new visibility in MediaPipe's smoothing, which lags by about ten frames."""
 
 
 class BodyTracker:
-    """Follows the one most certain person through the frames of a clip.
+    """Tracks the most certain person through the frames of a clip.
 
-    Detection runs only on frames where nobody is tracked. The landmarks of a frame give the
+    Detection runs only on frames where no body is tracked. The landmarks of a frame give the
     region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
     at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
     landmark moves fast against the size of the body.
@@ -70,7 +70,7 @@ class BodyTracker:
         self._region: Region | None = None
 
     def reset(self) -> None:
-        """Forget the person."""
+        """Reset the tracking."""
         self._region = None
         self._position.reset()
         self._visibility.reset()

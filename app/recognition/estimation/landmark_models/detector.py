@@ -1,4 +1,4 @@
-"""Single-shot detectors: where in the whole image a person or a palm is."""
+"""Single-shot detectors: find persons or palms in a whole image."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LEAST_SCORE: Final = 0.5
 
 @dataclass(frozen=True)
 class DetectorLayout:
-    """How a single-shot detector lays out what it finds (Liu et al. 2016).
+    """Layout of a single-shot detector's output (Liu et al. 2016).
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class DetectorLayout:
     keypoints
         Keypoints per candidate.
     lowest
-        What a black pixel is scaled to; white is 1.
+        Scaled value of a black pixel; white is 1.
     overlap
         Intersection over union above which two candidates are the same object.
 
@@ -92,7 +92,7 @@ class Detector:
     session
         The model, loaded with the layout's own signature.
     layout
-        How to read its output.
+        Layout of its output.
 
     """
 
@@ -102,7 +102,7 @@ class Detector:
         self._anchors = layout.anchors()
 
     def detect(self, image: Image) -> tuple[Detection, ...]:
-        """Return what is found in `image`, best first, in pixels of the image."""
+        """Return the detections in `image`, best first, in pixels of the image."""
         size, layout = self._layout.input_size, self._layout
         whole = Region.around(image)
         whole.crop(image, size, ZERO_BORDER, out=self._session.pixels)
@@ -111,7 +111,7 @@ class Detector:
         chosen = np.flatnonzero(scores >= LEAST_SCORE)
         if not len(chosen):
             return ()
-        points = self._decoded(raw[0, chosen], self._anchors[chosen])
+        points = self._decode(raw[0, chosen], self._anchors[chosen])
         found = blend_overlapping(points, scores[chosen], layout.overlap)
         return tuple(
             Detection(
@@ -122,7 +122,7 @@ class Detector:
             for detection in found
         )
 
-    def _decoded(
+    def _decode(
         self, raw: npt.NDArray[np.float32], anchors: npt.NDArray[np.float32]
     ) -> npt.NDArray[np.float64]:
         """``(N, 2 + K, 2)`` box corners and keypoints in input pixels, from offsets to anchors."""

@@ -1,4 +1,4 @@
-"""The paper's own hands: a YOLOv7 hand detector and a classifier with heat maps of hand keypoints.
+"""The paper's hand models: a YOLOv7 hand detector and a classifier with keypoint heat maps.
 
 Shapes and preparation are those of the repository the pair comes from (MeCO-AUV/robo_chat_gest):
 detector 416 x 416, RGB, letterboxed; classifier 192 x 192, the square around the box, BGR. The
@@ -104,8 +104,8 @@ class DiverHands:
         image
             ``(height, width, 3)`` RGB, upright.
         body
-            The body in the image, which tells a hand's side by its nearer wrist; the models do
-            not. Without one every hand is called a right one, which the salute does not ask for.
+            The body in the image, whose nearer wrist gives a hand's side; the models do not.
+            Without one every hand is a right one, which makes no difference to the salute.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class DiverHands:
         return tuple(sorted((hand for hand in found if hand), key=lambda hand: -hand.size))
 
     def reset(self) -> None:
-        """Do nothing: every image is looked at by itself."""
+        """Do nothing: images are processed independently."""
 
     def _hand(self, image: Image, box: FloatArray, score: float, body: Body | None) -> Hand | None:
         centre, side = box.mean(axis=0), float((box[1] - box[0]).max())
@@ -178,7 +178,7 @@ def _boxes(outputs: list[npt.NDArray[np.float32]], path: Path) -> FloatArray:
 
 
 def _heat_maps(outputs: list[npt.NDArray[np.float32]], path: Path) -> npt.NDArray[np.float32]:
-    """Return the heat maps ``(21, rows, columns)``, wherever among the outputs they stand."""
+    """Return the heat maps ``(21, rows, columns)``, from whichever output they are."""
     for output in outputs:
         if output.ndim == 4 and output.shape[:2] == (1, len(HAND_LANDMARKS)):
             return np.asarray(output[0])

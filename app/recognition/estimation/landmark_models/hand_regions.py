@@ -1,4 +1,4 @@
-"""Where a whole hand is: from its palm, or from its landmarks in the frame before."""
+"""Hand regions: the region of a whole hand, from its palm or from its previous landmarks."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ These two and the next two are what MediaPipe's landmark model was trained with.
 PALM_TURN: Final = 90 - 14 * 2 * math.pi - math.pi / 2
 """Radians, about 0.46: how far MediaPipe turns a palm's region beyond upright.
 
-Its graph gives the angle to turn the hand to as 90 where radians are expected, and so turns it
-to 90 radians. The next frame's region, made from landmarks, is upright again. Kept, for which
-hands are found at all depends on it, and parity with the library is what users can check.
+Its graph gives the target angle as 90 where radians are expected, and so turns the hand to 90
+radians. The next frame's region is upright again. Kept for parity with the library: it affects
+which hands are found.
 """
 
 HAND_SCALE: Final = 2.0
@@ -33,7 +33,7 @@ HAND_SHIFT: Final = 0.1
 WRIST, INDEX_KNUCKLE, MIDDLE_KNUCKLE, RING_KNUCKLE, PINKY_KNUCKLE = 0, 5, 9, 13, 17
 
 STEADY: Final = (0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18)
-"""Landmarks that bound the region: the palm and the fingers' first joints, which tips outrun."""
+"""Landmarks that bound the region: the palm and the fingers' first joints, slower than the tips."""
 
 
 def region_of_palm(palm: Detection) -> Region:
@@ -46,7 +46,7 @@ def region_of_palm(palm: Detection) -> Region:
 
 
 def region_of_hand(xy: FloatArray) -> Region:
-    """Return the region to look for a hand in next, from its landmarks ``(21, 2)``."""
+    """Return the region of a hand in the next frame, from its landmarks ``(21, 2)``."""
     knuckles = ((xy[INDEX_KNUCKLE] + xy[RING_KNUCKLE]) / 2 + xy[MIDDLE_KNUCKLE]) / 2
     rotation = upright(xy[WRIST], knuckles)
     right, up = right_of(rotation), up_of(rotation)
@@ -60,7 +60,7 @@ def region_of_hand(xy: FloatArray) -> Region:
 
 
 def palm_size(xy: FloatArray) -> float:
-    """Longest side of the triangle of wrist, index knuckle and little finger's knuckle."""
+    """Return the longest side of the triangle of wrist, index and little finger's knuckles."""
     sides = xy[[INDEX_KNUCKLE, PINKY_KNUCKLE, WRIST]] - xy[[WRIST, INDEX_KNUCKLE, PINKY_KNUCKLE]]
     return float(np.hypot(sides[:, 0], sides[:, 1]).max())
 

@@ -1,4 +1,4 @@
-"""Hands: first seen by the palm detector or at the end of an arm, then tracked."""
+"""Hand tracker: finds hands with the palm detector or at the ends of arms, then tracks them."""
 
 from __future__ import annotations
 
@@ -28,26 +28,25 @@ INPUT_SIZE: Final = 224
 HAND_SIGNATURE: Final = Signature(
     INPUT_SIZE, outputs=((1, 3 * len(HAND_LANDMARKS)), (1, 1), (1, 1))
 )
-"""Landmarks (x, y, z), belief that there is a hand, belief that it is a right one."""
+"""Landmarks (x, y, z), probability of a hand, probability that it is a right one."""
 
 MOST_HANDS: Final = 2
-"""A diver has two, and each costs a run of the landmark model per frame."""
+"""Most hands: a diver has two, and each costs a run of the landmark model per frame."""
 
 LEAST_PRESENCE: Final = 0.5
 """Below it there is no hand; MediaPipe's default minimum presence confidence."""
 
 WORTH_A_SECOND_LOOK: Final = 0.1
-"""Presence from which the region of an arm is corrected by what was seen in it and looked at again.
-A hand that is off centre or of another size than its region scores between this and 0.5, what is
-no hand scores below 0.01. It takes the place of the re-crop model of MediaPipe Holistic."""
+"""Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
+hand that is off centre scores between this and 0.5, no hand below 0.01. Replaces the re-crop model
+of MediaPipe Holistic."""
 
 SAME_REGION: Final = 0.5
-"""Overlap above which a proposal shows a hand that is tracked already (MediaPipe's default)."""
+"""Overlap above which a candidate is a hand that is tracked already (MediaPipe's default)."""
 
 PALM_PAUSE: Final = 4
-"""Frames from one search for palms to the next while a body is seen, whose arms are searched in
-every frame. Palm detection costs as much as the body, and what it alone finds is lost by the pose
-for longer than a seventh of a second."""
+"""Frames between palm detections while a body is seen, whose arms are searched in every frame. Palm
+detection costs as much as the body model."""
 
 DUPLICATE_DISTANCE: Final = 0.2
 DUPLICATE_LANDMARKS: Final = 10
@@ -56,8 +55,8 @@ DUPLICATE_OVERLAP: Final = 0.2
 other and their boxes overlap by that much; MediaPipe found the three values by experiment."""
 
 HandSearch = Literal["pose", "palm"]
-"""Where hands are looked for that are not tracked yet: at the ends of the body's arms and, now and
-then, with the palm detector; or with the palm detector alone, as MediaPipe's hand landmarker."""
+"""Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
+detector; or with the palm detector alone, as MediaPipe's hand landmarker."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +68,7 @@ class SeenHand:
     hand
         Its landmarks.
     following
-        The region to look for it in the next frame.
+        Its region in the next frame.
 
     """
 
@@ -91,14 +90,14 @@ class HandModel:
         self._session = session
 
     def look(self, image: Image, region: Region) -> SeenHand | None:
-        """Return the hand in a usable `region` of `image`, or None where the model sees none."""
+        """Return the hand in a usable `region` of `image`, or None where the model finds none."""
         seen = self._landmarks(image, region)
         return seen if seen.hand.score >= LEAST_PRESENCE else None
 
     def look_twice(self, image: Image, region: Region) -> SeenHand | None:
         """Return the hand near a `region`, which need not fit it well.
 
-        Where the first look shows something, a second one at the region of its landmarks decides.
+        If the first run finds something, a second one at the region of its landmarks decides.
         """
         first = self._landmarks(image, region)
         if not first.hand.score >= WORTH_A_SECOND_LOOK or not first.following.usable:
@@ -117,7 +116,7 @@ class HandModel:
 
 
 class HandTracker:
-    """Follows up to two hands through the frames of a clip.
+    """Tracks up to two hands through the frames of a clip.
 
     Palms are detected only while fewer hands than `MOST_HANDS` are tracked; the landmarks of a
     frame give the regions of the next. Hands are not smoothed: the model's own output is steady,
@@ -134,7 +133,7 @@ class HandTracker:
     model
         The hand landmark model.
     search
-        Where to look for hands that are not tracked yet.
+        How to find untracked hands.
 
     """
 
@@ -145,14 +144,14 @@ class HandTracker:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the hands."""
+        """Reset the tracking."""
         self._regions: tuple[Region, ...] = ()
         self._until_palms = 0
 
     def follow(self, image: Image) -> tuple[SeenHand, ...]:
-        """Return what the palm detector and the frame before say about the hands in `image`.
+        """Return the hands in `image` by tracking and palm detection.
 
-        It needs no body, so it can run beside the body's models.
+        It needs no body, so it can run in parallel with the body's models.
         """
         kept: list[SeenHand] = []
         for region in self._candidates(image):
@@ -169,7 +168,7 @@ class HandTracker:
         Parameters
         ----------
         image
-            The image that `followed` was seen in.
+            The image of `followed`.
         followed
             What `follow` returned.
         body
@@ -201,10 +200,10 @@ class HandTracker:
     def _on_arms(
         self, image: Image, followed: tuple[SeenHand, ...], body: Body
     ) -> tuple[SeenHand, ...]:
-        """Give each arm the hand at its end, looking there where none was followed.
+        """Assign each arm the hand at its end, searching there if none was followed.
 
-        A second hand at the end of one arm is dropped; hands at no arm (of somebody else, or where
-        the pose errs) fill what is left of `MOST_HANDS`.
+        A second hand at the end of one arm is dropped; hands at no arm (of others, or where the
+        pose is wrong) fill up to `MOST_HANDS`.
         """
         arms = _arms_of(followed, body)
         for side in SIDES:
@@ -241,7 +240,7 @@ def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:
 
 
 def find_duplicates(one: Hand, other: Hand) -> bool:
-    """Tell whether two results show the same hand."""
+    """Return whether two results show the same hand."""
     near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
     distances = np.linalg.norm(one.xy - other.xy, axis=1)
     if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:

@@ -1,4 +1,4 @@
-"""A whole image in a model's input: scaled without distortion, with bars where it does not fill."""
+"""Letterbox: fits an image into a model's input without distortion, with bars at the sides."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 
 BAR: Final = (114, 114, 114)
-"""The grey of the bars: what YOLO's models saw there while they were trained."""
+"""The grey of the bars, as in the training of YOLO models."""
 
 
 @dataclass(frozen=True)
 class Letterbox:
-    """Where an image lies in a model's input.
+    """Position of an image in a model's input.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""One ONNX model in memory: loaded once, checked against what it should be, run per frame."""
+"""ONNX session: loads a model once, checks its shapes, and runs it per frame."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ _RUNTIME_NAMES: Final[dict[Provider, tuple[str, ...]]] = {
 """ONNX Runtime's names, first choice first; what the first cannot run falls to the next."""
 
 ONLY_FATAL: Final = 4
-"""ONNX Runtime's log level: it prints what it also raises, and the raised error is enough."""
+"""ONNX Runtime's log level; other messages repeat the raised errors."""
 
 
 @dataclass(frozen=True)
 class Signature:
-    """The shapes by which a model file is told from any other.
+    """The input and output shapes that identify a model file.
 
     Attributes
     ----------
@@ -59,11 +59,11 @@ class ModelSession:
     path
         The model file.
     signature
-        What the file must look like.
+        The shapes that the file must have.
     threads
         Processor threads within one run of the model.
     provider
-        What runs it.
+        The execution provider.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class ModelSession:
         self._session = open_session(
             path, threads, provider, remedy="run `osg-studio models install`"
         )
-        self._input, self._outputs = _matched(path, self._session, signature)
+        self._input, self._outputs = _match_signature(path, self._session, signature)
         self._pixels = np.empty((self.input_size, self.input_size, 3), np.uint8)
         self._tensor = np.empty((1, self.input_size, self.input_size, 3), np.float32)
 
@@ -94,7 +94,7 @@ class ModelSession:
         return self._pixels
 
     def run(self, lowest: float = 0.0) -> list[Tensor]:
-        """Run the model on what `pixels` holds, scaled from `lowest` to 1.
+        """Run the model on `pixels`, scaled from `lowest` to 1.
 
         Returns
         -------
@@ -110,7 +110,7 @@ class ModelSession:
 
 
 def check_provider(provider: str) -> None:
-    """Refuse a provider that does not exist or that this installation cannot use.
+    """Check that a provider exists and that this installation can use it.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
     path, threads, provider
         As in `ModelSession`.
     remedy
-        What to do about a file that cannot be loaded, for the message.
+        Remedy in the message if the file cannot be loaded.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1
     options.log_severity_level = ONLY_FATAL
-    # A waiting thread that spins gains microseconds and takes a core from decoder and server.
+    # Spinning threads would gain microseconds and take a core from decoder and server.
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     chain = _RUNTIME_NAMES[provider]
     try:
@@ -171,7 +171,7 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
     return session
 
 
-def _matched(path: Path, session: Any, signature: Signature) -> tuple[str, list[str]]:
+def _match_signature(path: Path, session: Any, signature: Signature) -> tuple[str, list[str]]:
     """Return the names of the input and of the outputs that the signature asks for."""
     inputs, outputs = session.get_inputs(), session.get_outputs()
     side = signature.input_size

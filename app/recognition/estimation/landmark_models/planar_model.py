@@ -1,7 +1,7 @@
-"""A user's own ONNX model on colour planes: loaded once, asked what shapes it has, run per frame.
+"""Planar model: a user's ONNX model that takes colour planes, loaded once and run per frame.
 
-MediaPipe's pinned models are in `session`; these are files that the user brings, so a wrong one is
-the usual mistake, and the message tells the shape seen beside the shape needed.
+MediaPipe's pinned models use `onnx_session`. A wrong file is the usual mistake here, so errors
+state the shape found and the shape needed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class PlanarModel:
     path
         The user's model file.
     purpose
-        What the file should be, for messages: ``"a YOLO-pose export"``.
+        The expected kind of file, for messages: ``"a YOLO-pose export"``.
     side
         Pixels of the input where the file leaves them open (dynamic axes).
     threads, provider
@@ -47,7 +47,7 @@ class PlanarModel:
     Raises
     ------
     ModelError
-        When the file is missing, damaged, or takes something else.
+        When the file is missing, damaged, or takes another input.
     EstimatorError
         When the provider is not available here.
 
@@ -91,11 +91,11 @@ class PlanarModel:
         return [np.asarray(output, dtype=np.float32) for output in outputs]
 
     def blank(self) -> list[npt.NDArray[np.float32]]:
-        """Run the model on black: files with dynamic axes tell their output's shape only so."""
+        """Run the model on black: with dynamic axes, only a run shows the output's shape."""
         width, height = self.input_size
         return self.run(np.zeros((3, height, width), np.float32))
 
 
 def _takes_planes(shape: tuple[int | str | None, ...]) -> bool:
-    """Tell whether an input is a batch of one, or of a size left open, of three planes."""
+    """Return whether an input is a batch of one, or of a size left open, of three planes."""
     return shape[1] == 3 and (shape[0] == 1 or not isinstance(shape[0], int))

@@ -1,4 +1,4 @@
-"""Landmarks corrected by the heat maps that the pose model gives along with them."""
+"""Landmark refinement: corrects landmarks by the pose model's heat maps."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy.typing as npt
 from app.recognition.poses.sequence import FloatArray
 
 REACH: Final = 3
-"""Heat-map cells looked at on each side of a landmark: the 7 x 7 window of MediaPipe Tasks."""
+"""Heat-map cells used on each side of a landmark: the 7 x 7 window of MediaPipe Tasks."""
 
 LEAST_PEAK: Final = 0.5
-"""A heat map whose highest cell in the window is below this leaves the landmark as it is."""
+"""Least highest cell of the window; below it the landmark is not changed."""
 
 _OFFSETS: Final = np.arange(-REACH, REACH + 1)
 
@@ -28,7 +28,7 @@ def refine(xy: FloatArray, heatmap: npt.NDArray[np.float32]) -> FloatArray:
     """Move each landmark to the centre of gravity of its heat map around it.
 
     Regressed coordinates are steady but coarse, heat maps exact but local (Bazarevsky et al.
-    2020, BlazePose, Sec. 2.3): the one says where to look in the other.
+    2020, BlazePose, Sec. 2.3): the coordinates select the window of the heat map.
 
     Parameters
     ----------

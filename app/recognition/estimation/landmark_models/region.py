@@ -1,4 +1,4 @@
-"""A square of the image, turned upright for a model: the crop and the way back."""
+"""Image region: a rotated square that is cropped for a model, with the mapping back."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 
 TINIEST_SIDE: Final = 1.0
-"""Pixels. A region smaller than one pixel shows nothing, whatever the model answers to it."""
+"""Smallest side of a usable region, pixels."""
 
 ZERO_BORDER: Final = cv2.BORDER_CONSTANT
-"""Black where the region leaves the image: what the detectors were trained on."""
+"""Black beyond the image, as in the detectors' training."""
 
 REPLICATED_BORDER: Final = cv2.BORDER_REPLICATE
-"""The image's edge drawn out where the region leaves it: what the landmark models expect."""
+"""The image's edge repeated beyond the image, as in the landmark models' training."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Region:
 
     @property
     def usable(self) -> bool:
-        """Tell whether the region is finite and of a size that an image can have."""
+        """Whether the region is finite and of a possible size."""
         return (
             math.isfinite(self.x + self.y + self.rotation)
             and abs(self.x) < LARGEST_SIDE
@@ -103,7 +103,7 @@ class Region:
         size
             Side of the result in pixels.
         border
-            `ZERO_BORDER` or `REPLICATED_BORDER`: what to show beyond the image.
+            `ZERO_BORDER` or `REPLICATED_BORDER`, used beyond the image.
         out
             ``(size, size, 3)`` array to write into, so that no memory is taken per frame.
 
@@ -115,12 +115,11 @@ class Region:
         return np.asarray(cropped, dtype=np.uint8)
 
     def _positions(self, size: int) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint16]]:
-        """Tell where in the image each pixel of the crop lies, in OpenCV's fixed-point form.
+        """Return the position in the image of each pixel of the crop, in OpenCV's fixed point.
 
-        Whole pixels and 1/32 of them: that is how OpenCV up to 4.x and MediaPipe sample every
-        crop. From 5 on OpenCV's `warpAffine` samples exactly, which moves landmarks by up to
-        0.04 of the frame in hard images; positions that are rounded already look the same to
-        every version.
+        In 1/32 of a pixel, as OpenCV up to 4.x and MediaPipe sample crops. From version 5 on
+        OpenCV's `warpAffine` samples exactly, which moves landmarks by up to 0.04 of the frame in
+        hard images; rounded positions give the same result in every version.
         """
         steps = np.arange(size)
         x, y = (
@@ -146,11 +145,11 @@ class Region:
     def overlap(self, other: Region) -> float:
         """Return intersection over union of the two squares, both taken as if upright.
 
-        Like MediaPipe's association of regions: the rotation is left out, for near-square
-        regions of one object turn little against each other.
+        As in MediaPipe's association of regions, which ignores rotation because regions of one
+        object are rotated alike.
         """
-        across = _shared(self.x, self.side, other.x, other.side)
-        down = _shared(self.y, self.side, other.y, other.side)
+        across = _measure_overlap(self.x, self.side, other.x, other.side)
+        down = _measure_overlap(self.y, self.side, other.y, other.side)
         union = self.side**2 + other.side**2 - across * down
         return across * down / union if union > 0 else 0.0
 
@@ -161,8 +160,8 @@ def upright(base: FloatArray, top: FloatArray) -> float:
     return (angle + math.pi) % (2 * math.pi) - math.pi
 
 
-def _shared(one: float, one_side: float, other: float, other_side: float) -> float:
-    """Length two intervals share, each given by its middle and its length."""
+def _measure_overlap(one: float, one_side: float, other: float, other_side: float) -> float:
+    """Return the overlap of two intervals, each given by its middle and its length."""
     end = min(one + one_side / 2, other + other_side / 2)
     start = max(one - one_side / 2, other - other_side / 2)
     return max(0.0, end - start)

@@ -1,4 +1,4 @@
-"""Filters that take the jitter out of landmarks over time."""
+"""Smoothing filters: remove the jitter of landmarks over time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.recognition.poses.sequence import FloatArray
 
 @dataclass
 class _Memory:
-    """What the one-euro filter keeps between two calls."""
+    """State of the one-euro filter between two calls."""
 
     time: float
     raw: FloatArray
@@ -56,12 +56,12 @@ class OneEuroFilter:
         values
             Array of any shape, the same in every call.
         time
-            Seconds. A time that does not come after the one before starts the filter anew:
-            no speed can be told from it.
+            Seconds. A time not after the previous one restarts the filter, since there is no
+            speed.
         scale
-            What a speed is multiplied with before `beta`: one over the object's size makes the
-            filter treat a near and a far body alike. Filtering ``k * values`` with
-            ``scale / k`` gives ``k`` times the result.
+            Factor on speeds before `beta`: one over the object's size makes the filter independent
+            of the distance. Filtering ``k * values`` with ``scale / k`` gives ``k`` times the
+            result.
 
         Returns
         -------
@@ -101,5 +101,5 @@ class ExponentialFilter:
 
 
 def _weight(cutoff: float, step: float) -> float:
-    """Weight of the new value in a first-order low pass of `cutoff` Hz after `step` seconds."""
+    """Return the weight of a new value in a first-order low pass of `cutoff` Hz, `step` seconds."""
     return 1 / (1 + 1 / (2 * math.pi * cutoff * step))

@@ -1,4 +1,4 @@
-"""Non-maximum suppression: many overlapping boxes of one object become one."""
+"""Non-maximum suppression: merges overlapping boxes of one object."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Detection:
     keypoints
         ``(K, 2)`` keypoints of the object, in the unit of the box.
     score
-        The detector's belief in [0, 1].
+        The detector's confidence in [0, 1].
 
     """
 
@@ -67,8 +67,7 @@ def blend_overlapping(
 def measure_overlaps(box: FloatArray, boxes: FloatArray) -> FloatArray:
     """Return ``(N,)`` intersection over union of one box ``(2, 2)`` with ``(N, 2, 2)`` others.
 
-    Boxes are given by their corners (left, top) and (right, bottom). Boxes without any area
-    share nothing: 0.
+    Boxes are given by their corners (left, top) and (right, bottom). Boxes without area give 0.
     """
     start = np.maximum(box[0], boxes[:, 0])
     end = np.minimum(box[1], boxes[:, 1])

@@ -1,9 +1,9 @@
-"""From MediaPipe's TensorFlow Lite files to what runs here: ONNX models and task bundles.
+"""Model conversion: MediaPipe's TensorFlow Lite files to ONNX models and task bundles.
 
-Only the installation needs this package, and only it needs the libraries `onnx` and `flatbuffers`:
-a robot that gets the finished files runs without. It converts just the operators that MediaPipe's
-pose and hand models use; no TensorFlow is involved. The same input always gives the same bytes,
-which is why `app.recognition.models.catalogue` can pin the results.
+Only the installation uses this package and its libraries `onnx` and `flatbuffers`; a robot with the
+converted files needs neither. It converts only the operators of MediaPipe's pose and hand models,
+without TensorFlow. Conversion is deterministic, so `app.recognition.models.catalogue` pins the
+results.
 """
 
 from app.recognition.models.conversion.onnx_model import to_onnx

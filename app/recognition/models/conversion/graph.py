@@ -1,4 +1,4 @@
-"""Building an ONNX graph from TensorFlow Lite tensors, with the order of axes kept in view."""
+"""ONNX graph builder: nodes and weights from TensorFlow Lite tensors, in the right axis order."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class GraphBuilder:
         self._values[index, layout] = name
 
     def layout(self, index: int) -> Layout:
-        """Return the layout in which a tensor is at hand."""
+        """Return the layout in which a tensor was computed."""
         return "stored" if (index, "stored") in self._values else "channels_first"
 
     def value(self, index: int, layout: Layout) -> str:
-        """Return the ONNX value of a computed tensor, transposed when need be."""
+        """Return the ONNX value of a computed tensor, transposed if necessary."""
         if (index, layout) not in self._values:
             other = self._values[index, self.layout(index)]
             self._values[index, layout] = self.add(

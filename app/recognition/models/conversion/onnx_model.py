@@ -1,4 +1,4 @@
-"""A whole TensorFlow Lite model as an ONNX model."""
+"""ONNX model: conversion of a whole TensorFlow Lite model."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OPERATOR_SET: Final = 13
 also those that ship with a robot's older CUDA."""
 
 FILE_VERSION: Final = 8
-"""ONNX file format version of the same age of runtime as the operator set, and later ones."""
+"""ONNX file format version that the same runtimes support."""
 
 
 def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[str] = ()) -> bytes:
@@ -37,8 +37,8 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
     credit
         Origin and licence, kept in the model's description.
     unused
-        Names of outputs to leave out, with all that only they need: ONNX Runtime computes every
-        output of a file, asked for or not.
+        Names of outputs to leave out, with the nodes that only they need: ONNX Runtime computes
+        every output of a file, even if it is not requested.
 
     Returns
     -------
@@ -62,14 +62,14 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
         graph.nodes.append(
             helper.make_node("Identity", [graph.value(index, "stored")], [name], name=name)
         )
-    nodes = _needed(graph.nodes, {model.tensors[index].name for index in outputs})
+    nodes = _select_needed(graph.nodes, {model.tensors[index].name for index in outputs})
     read = {name for node in nodes for name in node.input}
     converted = helper.make_model(
         helper.make_graph(
             nodes,
             "mediapipe",
-            _described(model, model.inputs),
-            _described(model, outputs),
+            _describe_values(model, model.inputs),
+            _describe_values(model, outputs),
             [weight for weight in graph.weights if weight.name in read],
         ),
         opset_imports=[helper.make_opsetid("", OPERATOR_SET)],
@@ -82,8 +82,8 @@ def to_onnx(tflite: bytes, schema: ModuleType, credit: str, unused: Collection[s
     return content
 
 
-def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
-    """Return the nodes, which stand in the order of computation, that any wanted value needs."""
+def _select_needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
+    """Return the nodes, in the order of computation, that any wanted value needs."""
     needed = []
     wanted = set(wanted)
     for node in reversed(nodes):
@@ -93,7 +93,7 @@ def _needed(nodes: list[NodeProto], wanted: set[str]) -> list[NodeProto]:
     return needed[::-1]
 
 
-def _described(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
+def _describe_values(model: TfliteModel, indices: tuple[int, ...]) -> list[ValueInfoProto]:
     return [
         helper.make_tensor_value_info(
             model.tensors[index].name, TensorProto.FLOAT, model.tensors[index].shape

@@ -1,4 +1,4 @@
-"""How each TensorFlow Lite operator of MediaPipe's models is written in ONNX.
+"""Operator conversion: the ONNX nodes of each TensorFlow Lite operator of MediaPipe's models.
 
 Sources: TensorFlow Lite's ``schema.fbs`` and reference kernels; ONNX operators, opset 13.
 """
@@ -19,7 +19,7 @@ _VALID_PADDING: Final = 1
 """``Padding.VALID``: no border. The other value, SAME, adds one so that stride alone shrinks."""
 
 _NO_ACTIVATION, _RELU, _RELU6 = 0, 1, 3
-"""``ActivationFunctionType``: what is applied to the result within the same operator."""
+"""``ActivationFunctionType``: the activation fused into an operator."""
 
 Converter = Callable[[GraphBuilder, Operator], None]
 
@@ -73,7 +73,7 @@ def _add_convolution(
         group=groups,
         pads=_border(graph, operator, extent, strides),
     )
-    graph.set_value(operator.output, _activated(graph, operator, name), "channels_first")
+    graph.set_value(operator.output, _add_activation(graph, operator, name), "channels_first")
 
 
 def _max_pooling(graph: GraphBuilder, operator: Operator) -> None:
@@ -87,13 +87,13 @@ def _max_pooling(graph: GraphBuilder, operator: Operator) -> None:
         strides=strides,
         pads=_border(graph, operator, window, strides),
     )
-    graph.set_value(operator.output, _activated(graph, operator, name), "channels_first")
+    graph.set_value(operator.output, _add_activation(graph, operator, name), "channels_first")
 
 
 def _addition(graph: GraphBuilder, operator: Operator) -> None:
     layout = graph.layout(operator.inputs[0])
     name = graph.add("Add", [graph.value(index, layout) for index in operator.inputs])
-    graph.set_value(operator.output, _activated(graph, operator, name), layout)
+    graph.set_value(operator.output, _add_activation(graph, operator, name), layout)
 
 
 def _parametric_relu(graph: GraphBuilder, operator: Operator) -> None:
@@ -143,7 +143,7 @@ def _reshaping(graph: GraphBuilder, operator: Operator) -> None:
 def _concatenation(graph: GraphBuilder, operator: Operator) -> None:
     parts = [graph.value(index, "stored") for index in operator.inputs]
     name = graph.add("Concat", parts, axis=operator.options.axis)
-    graph.set_value(operator.output, _activated(graph, operator, name), "stored")
+    graph.set_value(operator.output, _add_activation(graph, operator, name), "stored")
 
 
 def _logistic(graph: GraphBuilder, operator: Operator) -> None:
@@ -172,10 +172,10 @@ def _fully_connected(graph: GraphBuilder, operator: Operator) -> None:
         ],
         transB=1,
     )
-    graph.set_value(operator.output, _activated(graph, operator, name), "stored")
+    graph.set_value(operator.output, _add_activation(graph, operator, name), "stored")
 
 
-def _activated(graph: GraphBuilder, operator: Operator, name: str) -> str:
+def _add_activation(graph: GraphBuilder, operator: Operator, name: str) -> str:
     """Apply the operator's fused activation to the value `name`."""
     activation = operator.options.fusedActivationFunction
     if activation == _NO_ACTIVATION:

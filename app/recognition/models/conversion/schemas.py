@@ -1,4 +1,4 @@
-"""The generated readers of TensorFlow Lite's file format, which MediaPipe's wheel carries."""
+"""TensorFlow Lite schemas: the generated readers of its file format, from MediaPipe's wheel."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Schemas:
 
     @classmethod
     def from_source(cls, model: bytes, metadata: bytes) -> Schemas:
-        """Make the modules from their Python source.
+        """Create the modules from their Python source.
 
-        The source is run: pass only what was checked against its pinned SHA-256.
+        The source is executed: pass only source that was checked against its pinned SHA-256.
         """
         return cls(
             model=_module("tflite_schema", model), metadata=_module("tflite_metadata", metadata)

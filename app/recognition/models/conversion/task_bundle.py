@@ -1,8 +1,8 @@
-"""MediaPipe's task bundles: two models in one file, as the library's Tasks interface wants them.
+"""Task bundles: two models in one file for MediaPipe's Tasks interface.
 
-The wheel holds the bundles' parts. Of these only the pose landmark model lacks the description of
-its input that the Tasks interface insists on; it is added as MediaPipe's own metadata writer
-does it, by packing the model anew with one more buffer.
+The wheel contains the bundles' parts. Only the pose landmark model lacks the description of its
+input that the Tasks interface requires; it is added as MediaPipe's metadata writer does, by packing
+the model again with one more buffer.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from app.recognition.models.conversion.schemas import Schemas
 from app.recognition.models.conversion.tflite import FILE_IDENTIFIER
 
 METADATA_BUFFER: Final = b"TFLITE_METADATA"
-"""Name under which TensorFlow Lite's tools look for a model's description."""
+"""Buffer name of a model's description in TensorFlow Lite's tools."""
 
 METADATA_IDENTIFIER: Final = b"M001"
 """``file_identifier`` of ``metadata_schema.fbs``."""
@@ -50,8 +50,8 @@ def task_bundle(parts: Mapping[str, bytes], schemas: Schemas) -> bytes:
     Parameters
     ----------
     parts
-        TensorFlow Lite models by their name in the bundle. A model without description gets one
-        that says: RGB image, scaled to [0, 1].
+        TensorFlow Lite models by their name in the bundle. A model without description gets one:
+        an RGB image, scaled to [0, 1].
     schemas
         The generated modules of TensorFlow Lite's schemas.
 
@@ -85,7 +85,7 @@ def described(content: bytes, schemas: Schemas) -> bytes:
     buffer = schema.BufferT()
     buffer.data = _description(len(model.subgraphs[0].outputs), schemas)
     model.buffers.append(buffer)
-    builder = _SteadyBuilder(len(content))
+    builder = _DeterministicBuilder(len(content))
     builder.Finish(model.Pack(builder), FILE_IDENTIFIER)
     return bytes(builder.Output())
 
@@ -111,13 +111,13 @@ def _description(outputs: int, schemas: Schemas) -> bytes:
     graph.outputTensorMetadata = [schema.TensorMetadataT() for _ in range(outputs)]
     description = schema.ModelMetadataT()
     description.subgraphMetadata = [graph]
-    builder = _SteadyBuilder(0)
+    builder = _DeterministicBuilder(0)
     builder.Finish(description.Pack(builder), METADATA_IDENTIFIER)
     return bytes(builder.Output())
 
 
-class _SteadyBuilder(flatbuffers.Builder):  # type: ignore[misc]
-    """Aligns data as TensorFlow Lite wants it, and writes the same bytes in every release.
+class _DeterministicBuilder(flatbuffers.Builder):  # type: ignore[misc]
+    """Aligns data as TensorFlow Lite requires, and writes the same bytes in every release.
 
     Releases of `flatbuffers` differ in which tables may share the description of their fields
     (25.12.19 changed it); here no two share one, which costs 20 kB of 6 MB.

@@ -1,4 +1,4 @@
-"""Reading a TensorFlow Lite model: its tensors, constants and operators in order of execution."""
+"""TensorFlow Lite reader: the tensors, constants and operators of a model in execution order."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ELEMENT_TYPES: Final[dict[int, npt.DTypeLike]] = {
 """NumPy's types by TensorFlow Lite's ``TensorType``, as far as the models use them."""
 
 _FOLDED: Final = frozenset({"DEQUANTIZE", "DENSIFY"})
-"""Operators that only unpack a stored constant; they are carried out while reading."""
+"""Operators that only unpack a stored constant; they are evaluated while reading."""
 
 _DENSE: Final = 0
 """``DimensionType.DENSE``: every index of the dimension is stored."""
@@ -129,7 +129,7 @@ def read_tflite(content: bytes, schema: ModuleType) -> TfliteModel:
 def _operator(stored: Any, codes: Any, kinds: dict[int, str]) -> Operator:
     code = codes[stored.opcodeIndex]
     return Operator(
-        # The operator's number outgrew one byte; writers fill whichever field the number fits.
+        # Operator numbers beyond one byte are in a second field; writers fill the one that fits.
         kind=kinds[max(code.builtinCode, code.deprecatedBuiltinCode)],
         options=stored.builtinOptions,
         inputs=tuple(int(index) for index in stored.inputs),

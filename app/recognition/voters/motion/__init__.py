@@ -1,1 +1,1 @@
-"""Voters that compare movements: path, posture, order and time."""
+"""Motion voters: compare movements by path, posture, order of steps and time."""

@@ -1,4 +1,4 @@
-"""Voter: the figure as a cloud of points, whatever the order of its steps."""
+"""Voter `cloud`: the figure as a point cloud, independent of the order of its steps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.recognition.voters.motion.motion_voter import UnorderedVoter
 
 
 class Cloud(UnorderedVoter):
-    """Distance between the figures as clouds of points, whatever the order ($P, Vatavu 2012).
+    """Distance between the figures as point clouds, without order ($P, Vatavu 2012).
 
     The mean distance of each step of either figure to the nearest step of the other one
     (chamfer distance, Barrow et al. 1977).
@@ -30,7 +30,7 @@ class Cloud(UnorderedVoter):
     def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
         """Return the chamfer distances, ``(M,)``."""
         squares = references.squared_distances(query)
-        # Turned before: along the first axis numpy finds the least in a fifth of the time.
+        # Transposed first: numpy's minimum along the first axis takes a fifth of the time.
         turned = np.ascontiguousarray(squares.swapaxes(0, 1))
         nearest = np.concatenate([turned.min(axis=0), squares.min(axis=0)])
         nearest[nearest < ROUNDING] = 0.0

@@ -1,4 +1,4 @@
-"""Voter: the direction of travel, aligned by DTW."""
+"""Voter `direction`: the direction of travel at each step, aligned by DTW."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from app.recognition.voters.voter import Cue
 class Direction(DtwVoter):
     """DTW distance between the directions of travel (Taranta et al. 2017, Jackknife).
 
-    The joint unit vector of all landmarks' velocities at equal steps: of no size, so that small
-    details count as much as large ones.
+    The joint unit vector of all landmarks' velocities at equal steps. Without size, small details
+    count as much as large ones.
     """
 
     name = "direction"

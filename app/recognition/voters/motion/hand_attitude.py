@@ -1,4 +1,4 @@
-"""Voter: the attitude of the hands, aligned by DTW."""
+"""Voter `hand_attitude`: where fingers and thumbs point, aligned by DTW."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from app.recognition.voters.motion.motion_voter import DtwVoter
 from app.recognition.voters.voter import Cue
 
 HAND_BONES = [index for index, (inner, _) in enumerate(LIMBS) if inner == "wrist"]
-"""Bones beyond the wrist, of each arm's."""
+"""Indices of an arm's bones beyond the wrist."""
 
 
 class HandAttitude(DtwVoter):
     """DTW distance between the hands' attitudes: where fingers and thumb point (as `Posture`).
 
-    Only the bones beyond the wrist, divided by their own size, and only under way: a thumb up
-    against a thumb down is small beside the arm that raises it.
+    Only the bones beyond the wrist, divided by their own size, because a thumb up or down is small
+    beside the arm that raises it. Steps weigh more the farther they are from the start.
     """
 
     name = "hand_attitude"

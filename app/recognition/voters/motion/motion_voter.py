@@ -1,4 +1,4 @@
-"""The bases of voters that compare movements: aligned by DTW, unordered, or by one descriptor."""
+"""Base classes of motion voters: aligned by DTW, unordered, or with one descriptor."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
 BAND = 8
-"""Steps of 32 that one movement may be ahead of the other (Sakoe-Chiba band): a quarter, the radius
-at which accuracy on drawn figures levels off; without it, a loop could match a corner."""
+"""Steps of 32 that one movement may be ahead of the other (Sakoe-Chiba band): a quarter, where
+accuracy on drawn figures levels off; without a band, a loop could match a corner."""
 
 
 class MotionVoter(Voter):
-    """A voter that compares a query's movement with each gesture's."""
+    """Base of voters that compare a query's movement with each gesture's."""
 
     @abstractmethod
     def describe(self, movement: Movement) -> FloatArray:
-        """Describe a movement by an array whose shape is the same for all of a language."""
+        """Return the descriptor of a movement: of one shape for all gestures of a language."""
 
 
 class DtwVoter(MotionVoter):
-    """A voter that aligns two movements step by step by dynamic time warping (DTW).
+    """Base of voters that align two movements step by step by dynamic time warping (DTW).
 
-    All of them are asked together, which costs hardly more than one.
+    All of them are computed together, which costs hardly more than one.
     """
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
@@ -35,7 +35,7 @@ class DtwVoter(MotionVoter):
 
 
 class UnorderedVoter(MotionVoter):
-    """A voter whose distance does not depend on the order of the steps."""
+    """Base of voters whose distance does not depend on the order of the steps."""
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the distances, ``(M,)``."""
@@ -43,4 +43,4 @@ class UnorderedVoter(MotionVoter):
 
     @abstractmethod
     def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
-        """Return the distances to references that were prepared, ``(M,)``."""
+        """Return the distances to prepared references, ``(M,)``."""

@@ -1,4 +1,4 @@
-"""Voter: the path of the salient landmarks, aligned by DTW."""
+"""Voter `path`: the paths of the salient landmarks, aligned by DTW."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.recognition.voters.voter import Cue
 
 
 class Path(DtwVoter):
-    """DTW distance between the paths, free of place and size (Sakoe and Chiba 1978).
+    """DTW distance between the paths, independent of position and size (Sakoe and Chiba 1978).
 
     Each landmark's path is relative to its own mean; all are divided by one size, the root of the
     mean over the steps of the summed squares. ``1/N sum |q - r|^2`` along the best alignment.

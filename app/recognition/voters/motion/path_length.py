@@ -1,4 +1,4 @@
-"""Voter: the length of the path for its size."""
+"""Voter `path_length`: the length of the path relative to its size."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from app.recognition.voters.motion.motion_voter import MotionVoter
 from app.recognition.voters.voter import Cue, absolute_differences
 
 SHORTEST_LENGTH = 1.0
-"""Shortest path taken seriously, in sizes: a straight stroke is three and a half of its sizes long,
-and only what does not move is shorter."""
+"""Shortest length, in sizes; a straight stroke has 3.5, so only a movement at rest is shorter."""
 
 
 class PathLength(MotionVoter):
-    """How long the way is, for its size: a line against a zigzag (Rubine 1991, total length).
+    """Difference of path lengths relative to size: line or zigzag (Rubine 1991, total length).
 
     The joint path of all landmarks, in sizes.
     """

@@ -1,4 +1,4 @@
-"""Voter: the posture of the arms, aligned by DTW."""
+"""Voter `posture`: where the arms' bones point at each step, aligned by DTW."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from app.recognition.voters.motion.motion_voter import DtwVoter
 from app.recognition.voters.voter import Cue
 
 RESTING_WEIGHT = 0.3
-"""Weight of a posture at the place where the movement starts; at the farthest place it is 1 more.
+"""Weight of a posture where the movement starts; at the farthest step it is greater by 1.
+
 From 0.2 to 0.5 the result is the same."""
 
 
 class Posture(DtwVoter):
     """DTW distance between the arms' postures: where the bones point, step by step.
 
-    Vectors along upper arm, forearm, hand and thumb, divided by one size. Unlike a path they tell
-    a raised hand from a lowered one. Steps count from `RESTING_WEIGHT` at the starting place to
-    more at the farthest one: a gesture's meaning lies in its stroke, not in how the arm rests
-    before and after (Kendon 2004).
+    Vectors along upper arm, forearm, hand and thumb, divided by one size. Unlike a path they
+    distinguish a raised hand from a lowered one. Steps weigh more the farther they are from the
+    start, because a gesture's meaning lies in its stroke, not in the arm at rest (Kendon 2004).
     """
 
     name = "posture"

@@ -1,4 +1,4 @@
-"""Voter: the sense of rotation, and the way from start to end."""
+"""Voter `stroke_direction`: the sense of rotation and the vector from start to end."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from app.recognition.voters.voter import euclidean_distances
 
 
 class StrokeDirection(MotionVoter):
-    """Which way the stroke goes: its sense of rotation, and from where to where.
+    """Difference of the sense of rotation and of the vector from start to end.
 
-    Signed area (positive: clockwise in the image) in squared sizes, and the way from start to end
-    in sizes, of each landmark: left against right, clockwise against counter-clockwise.
+    Of each landmark the signed area (positive: clockwise in the image) in squared sizes, and the
+    vector from start to end in sizes: separates clockwise from counter-clockwise, left from right.
     """
 
     name = "stroke_direction"
@@ -24,7 +24,7 @@ class StrokeDirection(MotionVoter):
     between = 2.5
 
     def describe(self, movement: Movement) -> FloatArray:
-        """Return ``(3 L,)``: per landmark the signed area, then x and y of the way."""
+        """Return ``(3 L,)``: per landmark the signed area, then x and y from start to end."""
         paths = movement.figure
         before, after = paths[:-1], paths[1:]
         cross = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]

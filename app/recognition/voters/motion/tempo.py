@@ -1,4 +1,4 @@
-"""Voter: the duration of the movement."""
+"""Voter `tempo`: the duration of the movement."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from app.recognition.voters.motion.motion_voter import MotionVoter
 from app.recognition.voters.voter import absolute_differences
 
 SHORTEST_SECONDS = 0.05
-"""Shortest duration taken seriously, two frames: a logarithm needs a floor."""
+"""Lower limit of durations, two frames, for the logarithm."""
 
 
 class Tempo(MotionVoter):
-    """How long the movement takes."""
+    """Difference of durations."""
 
     name = "tempo"
     unit = "doublings of the duration"
@@ -22,7 +22,7 @@ class Tempo(MotionVoter):
     within = 0.35
     between = 0.5
     weight_where_needed = 0.3
-    """What a doubling of the duration adds to the score of a gesture whose tempo counts: more than
+    """Added to the score per doubling of the duration, of a gesture whose tempo counts: more than
     the distance of two takes (0.1), less than that of two gestures (1)."""
 
     def describe(self, movement: Movement) -> FloatArray:

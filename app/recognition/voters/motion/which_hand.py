@@ -1,4 +1,4 @@
-"""Voter: the share of each landmark in the motion."""
+"""Voter `which_hand`: the share of each landmark in the motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.recognition.voters.voter import euclidean_distances
 
 
 class WhichHand(MotionVoter):
-    """Which landmarks move: each one's share of the motion, as a unit vector."""
+    """Difference of the landmarks' shares in the motion, as unit vectors."""
 
     name = "which_hand"
     unit = "distance between unit vectors of the landmarks' shares, at most sqrt 2"

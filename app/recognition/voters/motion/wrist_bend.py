@@ -1,4 +1,4 @@
-"""The voter that sees how the wrist is bent: where the hand points, seen from the forearm."""
+"""Voter `wrist_bend`: the angle between forearm and hand."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ FOREARM = LIMBS.index(("elbow", "wrist"))
 HAND = [
     index for index, (inner, outer) in enumerate(LIMBS) if inner == "wrist" and outer != "thumb"
 ]
-"""Bones whose mean is the hand's axis: the thumb stands off it, and is placed least well."""
+"""Bones whose mean is the hand's axis: without the thumb, which is off it and detected worst."""
 
 UNCERTAINTY = 0.2
-"""Standard deviation of a bend that a landmark's own uncertainty causes: a knuckle lies 0.2 torso
-lengths from the wrist, and a pose model places it to about a fifth of that. From 0.1 to 0.3 the
-result is the same."""
+"""Standard deviation of a bend caused by the landmarks' own error: a knuckle lies 0.2 torso lengths
+from the wrist, and a pose model's error is about a fifth of that. From 0.1 to 0.3 the result is
+the same."""
 
 LEAST_WEIGHT = 1e-6
-"""Weight of a step at which the forearm lies as at the start: where no forearm ever turns, all
-steps count alike."""
+"""Weight of a step whose forearm points as at the start; if no forearm ever turns, all steps weigh
+alike."""
 
 
 class WristBend(MotionVoter):
-    """How the wrist is bent during the stroke, whichever way the body leans.
+    """Difference of the wrists' mean bend during the stroke, independent of the body's lean.
 
-    The sine of the angle from forearm to hand (positive: clockwise in the image), averaged over
-    the steps of each arm. A step counts by the square of how far the forearm has turned, for a
-    gesture's meaning lies in its stroke (Kendon 2004), times how long it looks, for one that points
-    at the camera points nowhere. Two means differ by as much as they exceed what both
-    vary by on the way and `UNCERTAINTY` (Welch 1947), so that a wrist that waves, or that is seen
-    badly, has little to tell. Of two arms it is the root of the mean square; one that rests counts
-    as little as it turns.
+    The bend is the sine of the angle from forearm to hand (positive: clockwise in the image),
+    averaged over the steps of each arm. A step's weight is the square of the forearm's turn from
+    the start, because a gesture's meaning lies in its stroke (Kendon 2004), times the forearm's
+    visible length, because one that points at the camera has no direction. The difference of two
+    means is divided by their standard deviations and `UNCERTAINTY` together (Welch 1947), so that
+    a waving or badly seen wrist counts little. Two arms give the root of the mean square, weighted
+    by how far each turns.
 
-    Marshallers who turn a thumb up or down raise the same arm, and bend the wrist either way.
+    It separates aircraft marshallers' thumb up and thumb down, which raise the same arm.
     """
 
     name = "wrist_bend"
     unit = "differences of the mean bend, in standard deviations of the bend on the way"
-    # Half of hand_attitude's: measured on marshalling alone, and wrists that mean nothing are bent
-    # somehow in every demonstration.
+    # Half of hand_attitude's: measured on marshalling only, and every demonstration bends the
+    # wrists, mostly without meaning.
     prior = 0.5
     within = 0.45
     between = 0.58
     cue = Cue("wrist", weight=1.0, reach=3.5, squared=False, varies_by_gesture=False)
 
     def describe(self, movement: Movement) -> FloatArray:
-        """Return ``(3 A,)``: of each arm the mean bend, its standard deviation and its part.
+        """Return ``(3 A,)``: of each arm the mean bend, its standard deviation and its share.
 
-        The part is in [0, 1], 1 for the arm whose forearm turns most. NaN for an arm whose forearm
-        or hand was not seen.
+        The share is in [0, 1], 1 for the arm whose forearm turns most. NaN for an arm whose
+        forearm or hand was not seen.
         """
-        # As complex numbers x + jy, of which one product gives the sine and both lengths.
+        # As complex numbers x + jy: one product gives the sine and both lengths.
         limbs = np.ascontiguousarray(movement.limbs).view(np.complex128)
         arms = limbs.reshape(len(limbs), -1, len(LIMBS))
         forearm, hand = arms[..., FOREARM], _mean_of_known(arms[..., HAND])
@@ -90,7 +90,7 @@ class WristBend(MotionVoter):
 
 
 def _mean_of_known(bones: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
-    """Average ``(N, A, B)`` over the bones seen: ``(N, A)``, NaN where none is."""
+    """Average ``(N, A, B)`` over the bones that are seen: ``(N, A)``, NaN where none is."""
     known = np.isfinite(bones)
     total = np.add.reduce(np.where(known, bones, 0.0), axis=2)
     count = np.add.reduce(known, axis=2, dtype=np.float64)

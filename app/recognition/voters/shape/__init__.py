@@ -1,1 +1,1 @@
-"""Voters that compare drawings: the trajectory images of a query and a gesture."""
+"""Shape voters: compare the trajectory images of a query and a gesture."""

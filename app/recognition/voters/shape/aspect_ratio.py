@@ -1,4 +1,4 @@
-"""Voter: the aspect ratio of the drawing."""
+"""Voter `aspect_ratio`: width over height of the drawing."""
 
 from math import log2
 
@@ -7,9 +7,10 @@ from app.recognition.voters.shape.proportion import Proportion
 
 
 class AspectRatio(Proportion):
-    """``log2(width / height)`` of the box around the strokes.
+    """Difference of ``log2(width / height)`` of the box around the strokes.
 
-    The logarithm is ours: twice as wide and twice as high are then equally far from square.
+    The paper has no logarithm; with it, twice as wide and twice as high are equally far from
+    square.
     """
 
     name = "aspect_ratio"

@@ -1,4 +1,4 @@
-"""Voter: the circularity of the contour."""
+"""Voter `circularity`: how close the contour is to a circle."""
 
 from math import pi
 
@@ -7,7 +7,7 @@ from app.recognition.voters.shape.proportion import Proportion
 
 
 class Circularity(Proportion):
-    """``4 pi a / p^2`` of the outline's area a and perimeter p: 1 for a disc, 0.79 for a square."""
+    """``4 pi a / p^2`` of the contour's area a and perimeter p: 1 for a disc, 0.79 for a square."""
 
     name = "circularity"
     unit = "share of the area of a disc with the same perimeter"

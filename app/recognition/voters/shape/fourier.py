@@ -1,4 +1,4 @@
-"""Voter: Fourier descriptors of the outline."""
+"""Voter `fourier`: Fourier descriptors of the contour."""
 
 import math
 
@@ -13,17 +13,17 @@ from app.recognition.voters.shape.shape_voter import ShapeVoter
 ComplexArray = npt.NDArray[np.complex128]
 
 HARMONICS = 10
-"""Harmonics kept on either side of zero.
+"""Harmonics kept on either side of zero (paper: "low-frequency coefficients").
 
-The tenth has ten waves around the outline, a detail of about a tenth of the drawing; finer ones
-are jitter (paper: "low-frequency coefficients").
+The tenth has ten waves around the contour, details of a tenth of the drawing; finer ones are
+jitter.
 """
 
 SAMPLES = 256
-"""Points at equal steps along the outline: far more than the highest harmonic needs."""
+"""Points at equal steps along the contour: far more than the highest harmonic needs."""
 
 START_POINTS = 128
-"""Start points tried when two outlines are compared: a step of 1/128 turns the highest harmonic
+"""Start points tried when two contours are compared: a step of 1/128 turns the highest harmonic
 by less than a twelfth of its period."""
 
 _KEPT = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
@@ -31,18 +31,18 @@ _KEPT = np.concatenate([np.arange(1, HARMONICS + 1), np.arange(-HARMONICS, 0)])
 
 _TURNS = 2 * np.pi / START_POINTS * np.outer(_KEPT, np.arange(START_POINTS))
 _BEGUN = np.concatenate([np.cos(_TURNS), -np.sin(_TURNS)])
-"""``(40, START_POINTS)``: what beginning elsewhere does to the real and the imaginary part of each
-harmonic's product with another outline's."""
+"""``(40, START_POINTS)``: rotation of the real and imaginary part of each harmonic's product with
+another contour's, for each start point."""
 
 
 class FourierDescriptors(ShapeVoter):
-    """Low harmonics of the outline as a complex signal (Granlund 1972; paper, Sec. IV-D1).
+    """Low harmonics of the contour as a complex signal (Granlund 1972; paper, Sec. IV-D1).
 
-    The outer contours, from left to right, are walked as one closed curve ``z = x + jy`` in 256
-    equal steps and transformed. Dropping harmonic 0 frees them of translation, division by their
-    norm of scale. The start point is arbitrary: the distance of two outlines is the least over
-    all start points, found for all references at once by cross-correlation. Rotation is kept, so
-    a 6 is no 9.
+    The outer contours, from left to right, are sampled as one closed curve ``z = x + jy`` in 256
+    equal steps and transformed. Leaving out harmonic 0 makes them independent of translation,
+    division by their norm of scale. The distance of two contours is the least over all start
+    points, computed for all references at once by cross-correlation. Rotation counts, so that 6
+    and 9 differ.
     """
 
     name = "fourier"
@@ -52,7 +52,7 @@ class FourierDescriptors(ShapeVoter):
     between = 0.8
 
     def length(self, keypoints: int) -> int:
-        """Return the number of descriptors, whatever the number of keypoints."""
+        """Return the length of the descriptor, the same for any number of landmarks."""
         return 2 * len(_KEPT)
 
     def describe(self, drawing: Drawing) -> FloatArray:
@@ -72,7 +72,7 @@ class FourierDescriptors(ShapeVoter):
         )
         correlation = (products @ _BEGUN).max(axis=1)
         energy = query @ query + np.vecdot(references, references)
-        # The difference of nearly equal sums: what is below rounding error is 0.
+        # A difference of nearly equal sums: rounding errors are set to 0.
         squares = energy - 2 * correlation
         squares[squares < 1e-12 * energy] = 0.0
         return np.asarray(np.sqrt(squares), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Voter: Hu's seven moment invariants."""
+"""Voter `hu`: Hu's seven moment invariants."""
 
 import numpy as np
 
@@ -11,17 +11,16 @@ FLOOR = 1e-2
 """Magnitude below which an invariant counts as zero.
 
 Invariants of strokes lie between 1 and 1e-10. Those that are zero in theory, for symmetric
-figures, come out anywhere up to this when a person draws them, and on a plain logarithm their
-noise would outweigh the invariants that mean something.
+figures, reach this value when people draw them; on a plain logarithm their noise would dominate.
 """
 
 
 class HuMoments(ShapeVoter):
     """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
 
-    From the normalised central moments of the stroke's pixels, on a logarithmic scale that keeps
-    the sign: ``sign(h) log10(1 + |h| / FLOOR)``, for they span ten decades and unscaled the
-    first would outvote the other six.
+    From the normalised central moments of the stroke's pixels, on a logarithmic scale with sign,
+    ``sign(h) log10(1 + |h| / FLOOR)``: they span ten decades, and unscaled the first would
+    dominate the other six.
     """
 
     name = "hu"
@@ -31,13 +30,13 @@ class HuMoments(ShapeVoter):
     between = 4.7
 
     def length(self, keypoints: int) -> int:
-        """Return the number of descriptors, whatever the number of keypoints."""
+        """Return the length of the descriptor, the same for any number of landmarks."""
         return 7
 
     def describe(self, drawing: Drawing) -> FloatArray:
         """Return the seven invariants, ``(7,)``."""
         nu = drawing.moments.central
-        # Hu's sums are products of complex moments, which a rotation merely turns (Flusser 2000).
+        # Hu's sums are products of complex moments, whose phase a rotation turns (Flusser 2000).
         spread, ellipse = nu(2, 0) + nu(0, 2), complex(nu(2, 0) - nu(0, 2), 2 * nu(1, 1))
         lean = complex(nu(3, 0) + nu(1, 2), nu(2, 1) + nu(0, 3))
         triangle = complex(nu(3, 0) - 3 * nu(1, 2), 3 * nu(2, 1) - nu(0, 3))

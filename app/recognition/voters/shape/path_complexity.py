@@ -1,11 +1,11 @@
-"""Voter: the length of the contour for the size of its box."""
+"""Voter `path_complexity`: the length of the contour relative to its bounding box."""
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.voters.shape.proportion import Proportion
 
 
 class PathComplexity(Proportion):
-    """Length of the outline over the perimeter of its bounding box: high for a zigzag."""
+    """Length of the contour over the perimeter of its bounding box: high for a zigzag."""
 
     name = "path_complexity"
     unit = "perimeters of the bounding box"

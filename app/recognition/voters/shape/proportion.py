@@ -1,4 +1,4 @@
-"""The base of voters whose descriptor is one proportion of the drawing."""
+"""Base class of shape voters whose descriptor is one number, a proportion of the drawing."""
 
 from abc import abstractmethod
 
@@ -11,10 +11,10 @@ from app.recognition.voters.voter import absolute_differences
 
 
 class Proportion(ShapeVoter):
-    """A voter whose descriptor is one number, compared by its difference (paper, Sec. IV-D2)."""
+    """Base of voters with one number as descriptor, compared by difference (paper, Sec. IV-D2)."""
 
     def length(self, keypoints: int) -> int:
-        """Return the number of descriptors, whatever the number of landmarks."""
+        """Return the length of the descriptor, the same for any number of landmarks."""
         return 1
 
     def describe(self, drawing: Drawing) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The base of voters that compare drawings: trajectory images of salient landmarks."""
+"""Base class of shape voters, which compare trajectory images."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
 DESCRIPTOR_DIGITS = 6
-"""Decimals of a descriptor: files stay small, and a saved language decides as before saving."""
+"""Decimals of a descriptor: files stay small, and a saved language gives the same results."""
 
 
 class ShapeVoter(Voter):
-    """A voter that compares a query's drawing with each gesture's.
+    """Base of voters that compare a query's drawing with each gesture's.
 
-    It sees drawings only through its descriptors, so that each drawing is described once.
+    They compare descriptors only, so that each drawing is described once.
     """
 
     @abstractmethod
     def length(self, keypoints: int) -> int:
-        """Return the length D of the descriptor of a drawing with so many salient landmarks."""
+        """Return D, the length of the descriptor for a number of salient landmarks."""
 
     @abstractmethod
     def describe(self, drawing: Drawing) -> FloatArray:
-        """Describe a drawing that has a stroke by ``(D,)`` finite numbers."""
+        """Return the descriptor of a drawing that has a stroke: ``(D,)`` finite numbers."""
 
 
 def describe_drawing(drawing: Drawing, voters: Sequence[ShapeVoter]) -> dict[str, FloatArray]:
-    """Describe a drawing once for each voter.
+    """Compute the descriptors of a drawing for several voters.
 
     Returns
     -------
-    Per voter's name its descriptor, rounded; empty for an empty drawing.
+    The rounded descriptors by the voters' names; empty for an empty drawing.
 
     """
     if drawing.empty:
         return {}
     described = [voter.describe(drawing) for voter in voters]
-    # Adding 0 turns -0.0 into 0.0, which files could not tell apart.
+    # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
     rounded = np.round(np.concatenate([*described, []]), DESCRIPTOR_DIGITS) + 0.0
     ends = accumulate(len(each) for each in described)
     return {

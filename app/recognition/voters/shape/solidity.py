@@ -1,11 +1,11 @@
-"""Voter: the solidity of the contour."""
+"""Voter `solidity`: the contour's area relative to its convex hull."""
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.voters.shape.proportion import Proportion
 
 
 class Solidity(Proportion):
-    """Area inside the outline over the area of its convex hull: 1 for a disc, small for a V."""
+    """Area of the contour over the area of its convex hull: 1 for a disc, small for a V."""
 
     name = "solidity"
     unit = "share of the convex hull's area"

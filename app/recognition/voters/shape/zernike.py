@@ -1,4 +1,4 @@
-"""Voter: magnitudes of Zernike moments."""
+"""Voter `zernike`: magnitudes of Zernike moments."""
 
 from math import comb, factorial
 
@@ -11,8 +11,8 @@ from app.recognition.voters.shape.shape_voter import ShapeVoter
 from app.recognition.voters.voter import euclidean_distances
 
 DEGREE = 8
-"""Highest degree n, 25 moments: the customary order for shapes drawn by hand (Khotanzad and Hong
-1990 find 8 to 12 enough for characters); higher ones describe the stroke's edge."""
+"""Highest degree n, 25 moments: the usual order for handwritten shapes (Khotanzad and Hong 1990: 8
+to 12 for characters); higher degrees describe the stroke's edge."""
 
 ORDERS = tuple((n, m) for n in range(DEGREE + 1) for m in range(n % 2, n + 1, 2))
 """Degree n and repetition m of each moment: ``n - m`` is even, negative m mirror positive ones."""
@@ -22,8 +22,8 @@ class ZernikeMoments(ShapeVoter):
     """Zernike moments up to degree 8 (Zernike 1934, Khotanzad and Hong 1990; paper, Sec. IV-D1).
 
     ``Z = (n + 1) / pi * sum of V*(rho, theta) over the stroke's pixels / their number``, on the
-    unit disc around the stroke's centroid that reaches its farthest pixel: free of translation
-    and scale. The magnitude is free of rotation.
+    unit disc around the stroke's centroid that reaches its farthest pixel: independent of
+    translation and scale. The magnitude is independent of rotation.
     """
 
     name = "zernike"
@@ -33,7 +33,7 @@ class ZernikeMoments(ShapeVoter):
     between = 0.62
 
     def length(self, keypoints: int) -> int:
-        """Return the number of descriptors, whatever the number of keypoints."""
+        """Return the length of the descriptor, the same for any number of landmarks."""
         return len(ORDERS)
 
     def describe(self, drawing: Drawing) -> FloatArray:
@@ -46,10 +46,10 @@ class ZernikeMoments(ShapeVoter):
 
 
 def zernike_magnitudes(means: FloatArray) -> FloatArray:
-    """Return ``|Z|``, ``(25,)``, of what lies in the unit disc.
+    """Return ``|Z|``, ``(25,)``, from the moments in the unit disc.
 
-    Zernike's polynomials are sums of products of powers of x and y, and their means are the same
-    sums of the means of those.
+    Zernike's polynomials are sums of products of powers of x and y, so their means are the same
+    sums of the moments.
 
     Parameters
     ----------

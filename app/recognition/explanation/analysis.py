@@ -1,0 +1,79 @@
+"""Recognition analysis: everything measured about one recognition for its explanation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from app.recognition.explanation.alignment import Alignment
+from app.recognition.explanation.counterfactual import Counterfactuals
+from app.recognition.explanation.differences import Difference
+from app.recognition.explanation.vote_breakdown import VoterBreakdown
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Analysis:
+    """Everything measured about one recognition for its explanation.
+
+    Attributes
+    ----------
+    profile
+        The recogniser's.
+    expected
+        The gesture that should have been recognised.
+    label, nearest, confidence
+        The recognition.
+    other
+        The gesture that the expected one is compared with: the nearest one, or the runner-up where
+        the expected one is nearest; None in a language of one gesture.
+    score, other_score
+        Of the expected gesture and of the other, see `ScoreTable.scores`; infinite where not
+        comparable.
+    novelty
+        Distance of the query relative to the expected gesture's thresholds: above 1 it is
+        rejected; NaN without thresholds, as in profile ``paper``.
+    fault
+        Why the poses are too poor to recognise; None: they are not.
+    votes
+        By label the number of voters with weight that voted for it.
+    verdicts
+        The breakdown by voter, those most against the expected gesture first.
+    turned
+        Share of `score` minus `other_score` that comes from the penalties of traversals.
+    alignments
+        Of the query with the expected gesture and with the other: of the paths, and in profile
+        ``full`` of the postures.
+    differences
+        Differences between the query and the expected gesture, the largest share first; empty
+        where the gesture has no demonstration.
+    counterfactuals
+        Interventions that would have corrected the recognition.
+
+    """
+
+    profile: str
+    expected: str
+    label: str | None
+    nearest: str
+    confidence: float
+    other: str | None
+    score: float
+    other_score: float
+    novelty: float
+    fault: str | None
+    votes: Mapping[str, int]
+    verdicts: tuple[VoterBreakdown, ...]
+    turned: float
+    alignments: tuple[Alignment, ...]
+    differences: tuple[Difference, ...]
+    counterfactuals: Counterfactuals
+
+    @property
+    def right(self) -> bool:
+        """Whether the expected gesture was recognised."""
+        return self.label == self.expected
+
+    @property
+    def margin(self) -> float:
+        """How much nearer the expected gesture is than the other; negative: farther."""
+        return self.other_score - self.score
