@@ -38,7 +38,7 @@ def positions(poses: PoseSequence) -> FloatArray:
     """Return ``(N, D)`` positions of arms in time, free of place and size."""
     trajectory = Trajectory.from_poses(poses)
     arms = [name for name in trajectory.landmarks if name.split("_", 1)[-1] in MOVING]
-    paths = trajectory.select(arms or trajectory.landmarks).filled().resampled_in_time(STEPS).xy
+    paths = trajectory.select(arms or trajectory.landmarks).fill_gaps().resample_in_time(STEPS).xy
     paths = np.nan_to_num(paths - np.nanmean(paths, axis=0))
     return np.asarray(paths.reshape(STEPS, -1) / max(float(np.sqrt((paths**2).mean())), 1e-9))
 

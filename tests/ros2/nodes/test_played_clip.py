@@ -89,7 +89,7 @@ def process(executable: str, environment: dict[str, str], parameters: Path) -> I
     started = [
         sys.executable,
         "-c",
-        f"from osg_ros.{executable} import main; main()",
+        f"from osg_ros.nodes.{executable} import main; main()",
         "--ros-args",
         "--params-file",
         str(parameters),
