@@ -37,7 +37,7 @@ from app.robot import (
     Notice,
     Runtime,
     Source,
-    SpokenLanguage,
+    ActiveLanguage,
     TakeRecognized,
     TakeRejected,
 )
@@ -322,7 +322,7 @@ def main() -> None:
     with closing(create_estimator()) as models:
         once = chosen.models_once
         estimator = FirstLoopEstimator(models, source.frames) if once else models
-        laps = endure(source, estimator, Listener(SpokenLanguage.load(chosen.language)))
+        laps = endure(source, estimator, Listener(ActiveLanguage.load(chosen.language)))
     report(laps, source.period)
 
 

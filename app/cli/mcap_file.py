@@ -1,4 +1,4 @@
-"""What `osg-studio recognize --mcap` writes: the clip and all that was recognised, in one file."""
+"""MCAP file of `osg-studio recognize --mcap`: holds the clip and its recognitions."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ def save_session(
     recording: Recording,
     recognitions: Sequence[NamedRecognition],
 ) -> None:
-    """Write a session to `target`, all of it or nothing.
+    """Write a clip and its recognitions to `target`, completely or not at all.
 
     Parameters
     ----------
     target
         The MCAP file.
     clip, topic
-        Where `recording` was read from, as for `app.cli.clip_argument.read_clip`.
+        Source of `recording`, as for `app.cli.clip_argument.read_clip`.
     recording, recognitions
-        What was found in the clip, and recognised.
+        Landmarks of the clip, and its recognised takes.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def save_session(
     path, named = bag_and_topic(str(clip))
     with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as made:
         partial = Path(made, "session")
-        video = _video(path, topic or named, Path(made, "video"))
+        video = _find_video(path, topic or named, Path(made, "video"))
         with progress_bar(target.name) as advance:
             write_session(
                 partial, recording, recognitions, video=video, name=path.name, progress=advance
@@ -52,10 +52,10 @@ def save_session(
     people.print(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove", markup=False)
 
 
-def named_recognitions(
+def name_recognitions(
     language: Language, expected: str | None, results: Sequence[tuple[Take, Recognition]]
 ) -> list[NamedRecognition]:
-    """Return what was recognised in each take, with the language's name and revision."""
+    """Return the recognition of each take with the language's name and revision."""
     return [
         NamedRecognition(
             take.stroke_start, take.end, language.name, language.revision, result, expected
@@ -64,8 +64,8 @@ def named_recognitions(
     ]
 
 
-def _video(path: Path, topic: str | None, copy: Path) -> Path | None:
-    """Return the video of a clip; of a dive recording, a copy; None: it has none."""
+def _find_video(path: Path, topic: str | None, copy: Path) -> Path | None:
+    """Return the video of a clip; for a bag a copy at `copy`; None where there is no video."""
     if is_bag(path):
         write_video(path, topic, copy)
         return copy
