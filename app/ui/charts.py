@@ -149,7 +149,8 @@ def _vote_row(
 
 
 def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
-    shade = f"background:rgba(var(--osg-chosen-rgb),{0.04 + 0.42 * nearness**2:.2f})"
+    share = f"{0.04 + 0.42 * nearness**2:.0%}"
+    shade = f"background:color-mix(in srgb,var(--osg-accent) {share},transparent)"
     kind = " class='choice'" if chosen else ""
     return f"<td{kind} style='{shade}'>{short_number(distance)}</td>"
 

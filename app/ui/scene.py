@@ -12,7 +12,8 @@ import viser
 from app.recognition import PoseSequence
 from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry, Points, seen
-from app.ui.theme import Rgb, Theme, linear, time_colours
+from app.ui.palette import Rgb
+from app.ui.theme import Theme, map_time_colours, to_linear
 
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""
@@ -94,7 +95,7 @@ class SpaceTimeCube:
             self._cube, self._salient = cube, salient
             self._poses, self._first = poses, first
             share = cube.depth / cube.back if len(cube.depth) > 1 else np.zeros(1)
-            self._colours = time_colours(np.asarray(share, dtype=np.float64))
+            self._colours = map_time_colours(np.asarray(share, dtype=np.float64))
             self._draw_cube(cube)
             self._draw_trails(cube)
             if wall is not None:
@@ -172,7 +173,7 @@ class SpaceTimeCube:
             scene.add_line_segments(
                 f"/trails/{name}/ahead",
                 whole[known],
-                linear(ahead.astype(np.uint8)),
+                to_linear(ahead.astype(np.uint8)),
                 thickness=0.008,
             )
             segments, bright = self._bright_trail(cube, name, 0)
@@ -186,7 +187,7 @@ class SpaceTimeCube:
         stop = min(max(frame, 1), len(cube.depth) - 1)
         segments = cube.trail(name, stop)
         known = seen(segments)
-        colours = linear(self._segment_colours(cube.trail_frames(stop)))
+        colours = to_linear(self._segment_colours(cube.trail_frames(stop)))
         return in_front(segments[known], "trail"), colours[known]
 
     def _segment_colours(self, frames: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
