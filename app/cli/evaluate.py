@@ -21,9 +21,9 @@ from app.cli.terminal import people, progress_bar
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
-from app.evaluation.labelled_takes import Collection, collected
-from app.evaluation.one_shot import one_shot, read_by
-from app.evaluation.protocols import recognised_variants
+from app.evaluation.labelled_takes import Collection, collect_takes
+from app.evaluation.one_shot import one_shot, recognize_takes
+from app.evaluation.protocols import recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
 
@@ -106,7 +106,7 @@ def evaluate(
     if source.is_dir():
         keypoints = keypoint_options(frame_rate, frame_size, landmark)
         with progress_bar("clips") as advance:
-            collection = collected(
+            collection = collect_takes(
                 labelled_files(source, layout), keypoints=keypoints, progress=advance
             )
         problems = collection.problems
@@ -133,7 +133,7 @@ def _evaluate_variants(
 ) -> Iterator[Evaluation]:
     for profile in profiles:
         with progress_bar(f"profile {profile}") as advance:
-            matrix = recognised_variants(
+            matrix = recognize_variants(
                 language,
                 count,
                 profile=profile,
@@ -154,7 +154,7 @@ def _evaluate_takes(
     for profile in profiles:
         with progress_bar(f"profile {profile}") as advance:
             if given is not None:
-                matrix = read_by(given, takes, profile=profile, progress=advance)
+                matrix = recognize_takes(given, takes, profile=profile, progress=advance)
                 yield Evaluation(profile, f"takes named by {given.name}", matrix)
                 continue
             result = one_shot(takes, profile=profile, progress=advance)
