@@ -1,4 +1,4 @@
-"""A recognition as one HTML file that plays without a server, to be sent to a colleague."""
+"""Recognition page: exports a recognition as one HTML file that plays without a server."""
 
 from __future__ import annotations
 
