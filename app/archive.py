@@ -1,6 +1,6 @@
-"""Zip archives that people send: what one says about itself is not believed.
+"""Zip archives from users: opened and unpacked without trusting their names and sizes.
 
-Names never become paths, and sizes are counted while they are written.
+Names never become paths, and sizes are counted while files are written.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _DAMAGE = (
     zlib.error,
     lzma.LZMAError,
 )
-"""What reading a damaged, encrypted or unusual archive raises, beside some of `OSError`."""
+"""Errors of reading a damaged, encrypted or unusual archive, besides some of `OSError`."""
 
 _DAMAGE_NUMBERS = (None, errno.EINVAL)
-"""Of an `OSError` by damage: bz2's own has none, and a place before the file's start is invalid.
-All others are the disk's."""
+"""Numbers of an `OSError` by damage: bz2's has none, and an offset before the file's start is
+invalid. All others come from the disk."""
 
 _PIECE = 1024 * 1024
-"""Bytes unpacked at once, so that what is too much is noticed before it fills memory or disk."""
+"""Bytes unpacked at once; a file over the limit is detected before it fills memory or disk."""
 
 
 class UnpackedTooLarge(Exception):
@@ -40,7 +40,7 @@ class UnpackedTooLarge(Exception):
     Parameters
     ----------
     name
-        Plain name of the file at which it was noticed.
+        Plain name of the file that exceeds the limit.
 
     """
 
@@ -51,21 +51,21 @@ class UnpackedTooLarge(Exception):
 
 @contextmanager
 def open_archive(path: Path, called: str, refusal: type[OsgError]) -> Iterator[ZipFile]:
-    """Open an archive to look at and unpack it.
+    """Open an archive.
 
     Parameters
     ----------
     path
         The archive.
     called
-        What to call it in the error.
+        Name of the archive in the error.
     refusal
-        The error to raise.
+        Class of the error to raise.
 
     Raises
     ------
     OsgError
-        Of the kind `refusal`, when it turns out to be damaged, encrypted or of an unusual kind.
+        An error of class `refusal`, when the archive is damaged, encrypted or of an unusual kind.
 
     """
     try:
@@ -81,12 +81,12 @@ def open_archive(path: Path, called: str, refusal: type[OsgError]) -> Iterator[Z
 
 
 def plain_name(entry: ZipInfo) -> str:
-    """Return the name of an entry without its folders, whichever way they are written."""
+    """Return the name of an entry without its folders, separated by slashes or backslashes."""
     return PurePosixPath(entry.filename.replace("\\", "/")).name
 
 
 def visible_files(archive: ZipFile) -> list[ZipInfo]:
-    """Return the entries that are files; hidden ones are notes of the Mac's Finder."""
+    """Return the entries that are files, without hidden ones such as those of the macOS Finder."""
     return [
         entry
         for entry in archive.infolist()
@@ -95,7 +95,7 @@ def visible_files(archive: ZipFile) -> list[ZipInfo]:
 
 
 def names_in(path: Path) -> list[str]:
-    """Return the plain names of an archive's visible files, none where it cannot be read."""
+    """Return the plain names of an archive's visible files; none when it cannot be read."""
     try:
         with open_archive(path, path.name, OsgError) as archive:
             return [plain_name(entry) for entry in visible_files(archive)]
@@ -116,20 +116,20 @@ def unpack(
     Parameters
     ----------
     archive
-        Where they are.
+        The open archive.
     entries
-        By the name that each gets in `folder`.
+        Entries by the name of the file to write.
     folder
-        Exists.
+        Existing folder.
     most_bytes
-        That may be written altogether.
+        Largest total size in bytes.
     most_bytes_each
-        That one file may have, if there is such a limit.
+        Largest size of one file in bytes; None for no limit.
 
     Raises
     ------
     UnpackedTooLarge
-        When it is more; files written until then stay.
+        When a limit is exceeded; files already written stay.
 
     """
     left = most_bytes
@@ -139,7 +139,7 @@ def unpack(
 
 
 def _write(archive: ZipFile, entry: ZipInfo, place: Path, allowed: int) -> int:
-    """Write an entry of at most `allowed` bytes, and return how many it has."""
+    """Write an entry of at most `allowed` bytes and return its size."""
     size = 0
     with archive.open(entry) as packed, place.open("wb") as file:
         while piece := packed.read(_PIECE):

@@ -1,7 +1,6 @@
-"""Where the files that are not Python lie: the page's static files and the sample languages.
+"""Resources: finds the page's static files and the sample languages.
 
-In a checkout they are folders beside the package, where the people who work on them look for
-them; a wheel has nothing beside the package, so there they are inside it (the mapping stands in
+In a checkout they are folders beside the package; in a wheel they are inside it (mapped in
 ``pyproject.toml`` under ``tool.hatch.build.targets.wheel``).
 """
 

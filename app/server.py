@@ -1,4 +1,4 @@
-"""The app: one process and one port for the page, the API and the viser workspaces."""
+"""Server: one process and one port for the page, the API and the viser workspaces."""
 
 from __future__ import annotations
 
@@ -58,20 +58,20 @@ from app.ui.workspace_registry import WorkspaceRegistry
 API = "/api/v1"
 
 BAD_STORE = 2
-"""Exit code when the data folder cannot be used: bad input, as everywhere in the command line."""
+"""Exit code when the data folder cannot be used; the command line's code for bad input."""
 
 GRACEFUL_SECONDS = 3
-"""Time for connections to close at the end, after `ENDING_SECONDS` for open answers; the whole
-server must be gone within ten seconds."""
+"""Seconds for connections to close at shutdown, after `ENDING_SECONDS` for open responses; the
+whole shutdown must take less than ten seconds."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
-    """Make the app; its store is opened when it starts to serve.
+    """Create the app; its store is opened when it starts to serve.
 
     Parameters
     ----------
     settings
-        How to serve; by default what the environment says.
+        Settings of the server; by default those of the environment.
 
     """
     settings = settings or Settings()
@@ -93,7 +93,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         version=__version__,
         summary="Gesture languages for divers and underwater robots",
         lifespan=lifespan,
-        # The documentation pages would load scripts from elsewhere; the description itself stays.
+        # FastAPI's documentation pages load scripts from other hosts; openapi.json is still served.
         docs_url=None,
         redoc_url=None,
     )
@@ -142,9 +142,9 @@ def run(settings: Settings, *, open_browser: bool) -> None:
     Parameters
     ----------
     settings
-        How to serve.
+        Settings of the server.
     open_browser
-        Whether to show the page to whoever sits at this machine, once it is up.
+        Whether to open the page in this machine's browser once the server is up.
 
     """
     app = create_app(settings)
@@ -154,10 +154,10 @@ def run(settings: Settings, *, open_browser: bool) -> None:
             host=settings.host,
             port=settings.port,
             log_level="warning",
-            # viser's messages are compressed already where it pays; twice costs half the rate.
+            # viser compresses its messages itself; compressing them twice halves the frame rate.
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=GRACEFUL_SECONDS,
-            # Our own Host check must see what the browser sent.
+            # The Host check needs the header that the browser sent.
             proxy_headers=False,
             server_header=False,
         ),
@@ -166,7 +166,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         open_browser=open_browser,
     )
     try:
-        # Before uvicorn, which would wrap the one line that says what is wrong in a traceback.
+        # Checked before uvicorn starts, which would print a traceback around the error message.
         check_store(settings)
     except StoreUnavailable as error:
         print(f"osg-studio: {error}", file=sys.stderr)
@@ -174,14 +174,14 @@ def run(settings: Settings, *, open_browser: bool) -> None:
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
     if any(thread.ident != threading.get_ident() for thread in threading.enumerate()):
-        # A computation that nobody waits for any more cannot be interrupted; all is stored and
-        # closed, and waiting for it could take a minute.
+        # A running computation cannot be interrupted and may take a minute. Its result is not
+        # needed any more, and everything is stored and closed.
         sys.stdout.flush()
         os._exit(0)
 
 
 class _AnnouncedServer(StudioServer):
-    """Says where it listens as soon as it does, and opens a browser there if asked."""
+    """Server that prints its address once it listens, and opens a browser if requested."""
 
     def __init__(
         self, config: uvicorn.Config, app: FastAPI, settings: Settings, *, open_browser: bool
@@ -217,9 +217,9 @@ def _serve_page(app: FastAPI) -> None:
 
 
 def _describe(app: FastAPI) -> None:
-    """Have ``/openapi.json`` say that errors are problem documents."""
+    """Add the schemas of problem documents to ``/openapi.json``."""
 
-    def described() -> dict[str, Any]:
+    def generate_openapi() -> dict[str, Any]:
         if app.openapi_schema is None:
             schema = get_openapi(
                 title=app.title, version=app.version, summary=app.summary, routes=app.routes
@@ -228,11 +228,11 @@ def _describe(app: FastAPI) -> None:
             app.openapi_schema = schema
         return app.openapi_schema
 
-    app.openapi = described  # type: ignore[method-assign]
+    app.openapi = generate_openapi  # type: ignore[method-assign]
 
 
 def _guard(app: FastAPI, settings: Settings) -> None:
-    """Put in front of the routes, outermost last, what every request must pass."""
+    """Add the middleware that checks every request, the outermost last."""
     limits = {
         f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
         f"{API}/uploads/*": settings.max_clip_bytes,

@@ -1,4 +1,4 @@
-"""What can be set about a running OSG Studio: by argument, or by environment as ``OSG_<NAME>``."""
+"""Settings of the server: from arguments, or from the environment as ``OSG_<NAME>``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MEBIBYTE = 1024 * 1024
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether `host` names this machine only."""
+    """Return whether `host` is reachable from this machine only."""
     if host == "localhost":
         return True
     try:
@@ -31,7 +31,7 @@ def _absolute(path: Path) -> Path:
 
 
 Place = Annotated[Path, AfterValidator(_absolute)]
-"""A folder; made absolute, since worker processes have another working directory."""
+"""A folder as an absolute path, because worker processes have another working directory."""
 
 
 class Settings(BaseSettings):
@@ -42,7 +42,7 @@ class Settings(BaseSettings):
     data_dir: Place = Field(
         default_factory=lambda: user_data_path("osg-studio", appauthor=False) / "studio"
     )
-    """Folder of the database and the clips; made when missing."""
+    """Folder of the database and the clips; created when missing."""
 
     database_url: str | None = None
     """SQLAlchemy URL of another database; ``None`` is SQLite inside `data_dir`."""
@@ -57,10 +57,10 @@ class Settings(BaseSettings):
     """Port to listen on; 0 lets the system choose."""
 
     token: SecretStr | None = None
-    """Secret that every caller must show; needed as soon as others can reach `host`."""
+    """Secret that every request must contain; required when other machines can reach `host`."""
 
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = ()
-    """More host names (comma separated in the environment) under which the app may be reached."""
+    """Further host names of the app, comma separated in the environment."""
 
     max_clip_bytes: Annotated[int, Field(gt=0)] = 512 * MEBIBYTE
     """Largest clip accepted. Ten minutes of a dive camera's 1080p at 6 Mbit/s are 450 MB."""
@@ -78,19 +78,19 @@ class Settings(BaseSettings):
     """Slowest upload tolerated after the grace of `upload_grace_seconds`; 0 tolerates any."""
 
     upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
-    """Seconds before the rate of an upload counts, and the longest silence within one."""
+    """Seconds before the rate of an upload is checked, and the longest pause within one."""
 
     water: WaterCorrection = "auto"
-    """Whether colour and contrast of clips are corrected: of murky frames, of all, or of none."""
+    """Correction of colour and contrast: auto for murky frames, on for all, off for none."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
     """Clips extracted at the same time, each in its own process (the models use all cores)."""
 
     max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
-    """Jobs that one address may have waiting: more than a language's clips, less than a flood."""
+    """Waiting jobs allowed for one address: enough for the clips of a language."""
 
     worker_memory_bytes: Annotated[int, Field(ge=0)] = 6 * 1024 * MEBIBYTE
-    """Address space of one worker; 0 is no limit, which GPU execution providers need."""
+    """Address space of one worker in bytes; 0 for no limit, which GPU providers need."""
 
     worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
     """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, and the most
@@ -101,10 +101,10 @@ class Settings(BaseSettings):
     no limit. As much as an archive may unpack to (`app.bags.staging.MOST_BYTES`)."""
 
     worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
-    """A worker that reports no progress for so long hangs, and is ended."""
+    """Seconds without progress after which a worker counts as hanging and is stopped."""
 
     undo_hours: Annotated[float, Field(ge=0)] = 24.0
-    """How long something deleted can be restored at least; the next start then removes it."""
+    """Hours for which deleted items can be restored; the next start then removes them."""
 
     @property
     def public(self) -> bool:

@@ -1,1 +1,1 @@
-"""Measurements. Speed is told as ratios of two things in one run, never as absolute times."""
+"""Benchmarks: speed as ratios of two things in one run, never as absolute times, and accuracy."""

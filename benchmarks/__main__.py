@@ -1,4 +1,4 @@
-"""Print every ratio that the documentation claims: ``make bench`` or ``python -m benchmarks``."""
+"""Benchmark runner: prints every ratio in the documentation (``make bench``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each voter of profile ``full`` contributes: alone, and left out.
+"""Ablation: accuracy of profile ``full`` with one voter alone and with one voter left out.
 
 One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
 distances are measured once and fused anew for every choice of voters, in the traversals that all of

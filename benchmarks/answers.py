@@ -1,4 +1,4 @@
-"""Whether two versions of the program give the same answers, number by number.
+"""Answers: compares the results of two versions of the program, number by number.
 
 Writes every answer that somebody may rely on: takes, recognitions, language files, reports,
 explanations, robot events, the HTTP schema, on the sample clips and on recorded sets. Written by

@@ -1,4 +1,4 @@
-"""Arguments that the benchmarks on recorded sets have in common."""
+"""Arguments that the benchmarks on recorded sets share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every method on the same demonstrations and queries, in one run: accuracy, time and memory.
+"""Comparison of methods: accuracy, time and memory on the same takes, in one run.
 
 One template a class; see `one_shot_draws` for who demonstrates and who is asked. Times are
 processor time of all threads, so other programs on the machine do not count, in shares of what

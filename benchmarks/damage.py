@@ -1,4 +1,4 @@
-"""What damaged keypoints cost profile ``full``, with the repair and without it.
+"""Damaged keypoints: accuracy of profile ``full`` with and without the repair.
 
 Clean demonstrations, damaged queries, the same for both. The recorded sets show hands or arms only;
 the takes of our own test clips (TAKES, from poses extracted once and kept there) show a whole body.

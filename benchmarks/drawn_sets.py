@@ -1,4 +1,4 @@
-"""Drawn movements that differ by nothing but their direction.
+"""Drawn sets: simulated movements that differ only in their direction.
 
 Ten simulated people draw with the right wrist before a still torso: each has a size, a slant, an
 aspect and a tempo of its own, and every take wavers a little.

@@ -1,4 +1,4 @@
-"""Whether the robot's runtime can listen for days: a clip over and over, as one stream.
+"""Endurance: runs the robot's runtime on a looped clip and measures its memory over days.
 
 ``python -m benchmarks.endurance`` runs 30 minutes of stream time as fast as it goes, and states how
 memory grows, how many frames are remembered, and whether every loop says the same. What the process
@@ -32,12 +32,12 @@ from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.recording.video import FrameReader
 from app.resources import samples_dir
 from app.robot import (
+    ActiveLanguage,
     Frame,
     Listener,
     Notice,
     Runtime,
     Source,
-    SpokenLanguage,
     TakeRecognized,
     TakeRejected,
 )
@@ -322,7 +322,7 @@ def main() -> None:
     with closing(create_estimator()) as models:
         once = chosen.models_once
         estimator = FirstLoopEstimator(models, source.frames) if once else models
-        laps = endure(source, estimator, Listener(SpokenLanguage.load(chosen.language)))
+        laps = endure(source, estimator, Listener(ActiveLanguage.load(chosen.language)))
     report(laps, source.period)
 
 

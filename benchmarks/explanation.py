@@ -1,4 +1,4 @@
-"""What an explanation costs, in recognitions by the same recogniser.
+"""Explanation: time of an explanation relative to a recognition.
 
 Of each gesture of the larger sample language a plausible take by another person is explained as if
 the next gesture had been meant: nothing but large changes help, so nearly all are tried.

@@ -1,4 +1,4 @@
-"""What everything around the models costs.
+"""Extraction: time of all code around the pose models.
 
 A whole-clip extraction (decode, pose, hands, salute) is compared with a bare loop that feeds the
 very same tensors to the very same models and does nothing else. 1.00 would mean that decoding,

@@ -1,4 +1,4 @@
-"""Does the health report foresee what gets confused and missed? Forecasts against real takes.
+"""Health check: compares its estimates with confusions and misses in real takes.
 
 Of each recorded set one take a class by one person makes a language. It is rehearsed as
 `osg-studio check` does; then real takes of each gesture are read, by the same person or by others.

@@ -1,4 +1,4 @@
-"""Whether explanations name a fault that is known: takes with one thing wrong, and what is told.
+"""Known faults: tests whether explanations name the one fault of a simulated take.
 
 Plausible takes by another person are drawn of every gesture of the larger sample language, and
 each is spoilt in one way. First: the first difference told is of that kind; named: any one is.

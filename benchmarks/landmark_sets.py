@@ -1,4 +1,4 @@
-"""What is lost with the landmarks that other pose estimators do not have.
+"""Landmark sets: accuracy without the landmarks that other pose estimators lack.
 
 First the sample clips, found by MediaPipe's 33 landmarks and cut down to the 17 of COCO (by name
 the same as OpenPose's 18, and all of BODY_25 that gestures follow): a language defined with either

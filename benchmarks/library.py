@@ -1,4 +1,4 @@
-"""What a large library costs the server.
+"""Library: server load with many languages and clips.
 
 The processor time that a server of 200 languages and 1000 clips takes for what a page asks of it,
 relative to a server of 10 and 10. The requests go through the whole app, without a network.

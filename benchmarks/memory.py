@@ -1,4 +1,4 @@
-"""Whether memory grows with the clip.
+"""Memory: tests whether the peak grows with the length of the clip.
 
 The peak resident memory of extracting one minute and ten minutes of the same looped clip, each in
 a process of its own.

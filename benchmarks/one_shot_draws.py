@@ -1,4 +1,4 @@
-"""Draws: which demonstrations make a language, and which recordings it is asked to name."""
+"""One-shot draws: random choice of demonstrations and queries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the time of one recognition grows with the language.
+"""Recognition: time as a function of the number of gestures.
 
 Rendering and describing the query happens once per distinct set of salient keypoints, so a
 thousand gestures must cost far less than a hundred and twenty-five times what eight cost. Processor

@@ -1,4 +1,4 @@
-"""Other people's recorded trajectories as pose sequences. Only x and y are used."""
+"""Recorded sets: other people's trajectories as pose sequences. Only x and y are used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rejection in numbers: how many foreign movements are accepted, and how many true takes refused.
+"""Rejection rates: out-of-vocabulary movements accepted and true takes rejected.
 
 A bar on the novelty can stand in three places: where it refuses `REFUSED` of the true takes of
 each set by itself, where one and the same bar refuses `REFUSED` on average over the sets, or where

@@ -1,4 +1,4 @@
-"""How far the confidence of profile ``full`` can be believed, and what it rejects.
+"""Reliability: calibration of the confidence of profile ``full``, and its rejection rates.
 
 Of each recorded set a random half of the classes makes a language, one template each by one
 person; queries come from all classes, so that about half of them mean no gesture of the language.

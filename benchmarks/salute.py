@@ -1,4 +1,4 @@
-"""How often the salute test and the published rule are right, side by side.
+"""Salute: accuracy of our test and of the published rule, side by side.
 
 Three kinds of hands: synthetic ones with joint angles known, the sample clips (a rendered diver,
 who salutes when the phases say so), and photographs and drawings of hands where such a folder is

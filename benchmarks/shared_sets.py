@@ -1,4 +1,4 @@
-"""Accuracy on other people's recorded trajectories and on drawn ones, one template a class.
+"""Shared sets: accuracy on recorded and drawn trajectories, one demonstration per class.
 
 Per draw, one template of each class comes from one person, and queries from the same person
 (UD, user-dependent) or from everyone else (UI, user-independent), through the public interface:

@@ -1,4 +1,4 @@
-"""What recognition by profile ``full`` costs, beside what it has to keep up with.
+"""Speed: time of a recognition by profile ``full`` relative to the other work on a frame.
 
 A language of twenty gestures, recordings of three seconds and 33 landmarks. Compared are one frame
 of pose estimation (body and hands of a sample clip), the published implementation's steps (draw,

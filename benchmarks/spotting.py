@@ -1,4 +1,4 @@
-"""Listening without salutes: what is found in continuous streams, and what is imagined.
+"""Spotting: precision, recall and false alarms in continuous streams without salutes.
 
 Half of a set's classes make a language, one template each by one person; streams are composed of
 that person's or of other people's takes, of the classes left out, and of accidental movements

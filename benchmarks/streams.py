@@ -1,4 +1,4 @@
-"""Continuous streams composed of other people's recorded gestures, with what happens between them.
+"""Streams: continuous recordings composed of other people's gestures and transitions.
 
 Gestures of a language, gestures that it does not have and accidental movements follow each other in
 random order. Before each the hands rest beside the body or come straight from what was before; they

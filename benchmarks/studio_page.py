@@ -1,4 +1,4 @@
-"""How the page keeps up with a long clip, in Chromium that draws WebGL in software.
+"""Studio page: frame rates with a long clip, in Chromium with software WebGL.
 
 A clip of 30 s in 1280 x 720, in which a rendered diver draws again and again:
 

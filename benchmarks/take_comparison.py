@@ -1,4 +1,4 @@
-"""How takes of a gesture compare with its demonstration: by all voters, and by their looks."""
+"""Take comparison: features of a take relative to its demonstration, by voters and by form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far two samples differ: cumulative distributions, coverage, and a classifier's eye."""
+"""Two-sample statistics: distribution difference, coverage, and a classifier."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What correcting colour and contrast brings under water.
+"""Underwater images: effect of the correction of colour and contrast.
 
 Our rendered test clips are mixed with the water's colour and noise, compressed again as a camera
 would, and read with and without the correction. ``--far`` shrinks the diver to half first, to

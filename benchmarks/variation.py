@@ -1,4 +1,4 @@
-"""Whether variants of a demonstration differ from it as people's further takes do.
+"""Variation: compares simulated variants with people's further takes.
 
 Of each recorded set, random pairs of takes of one class: a demonstration and a further take, by
 the same person, by another one, or by anybody where the set does not tell. Beside each stand

@@ -1,4 +1,4 @@
-"""Models of how takes of a gesture differ: ours, and others to compare it with.
+"""Variation models: our model of how takes differ, and models from the literature.
 
 The others change the shape of the way in their own manner; but for stochastic resampling, habit,
 sway and tempo are ours.

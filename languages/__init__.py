@@ -1,1 +1,1 @@
-"""Sample languages, the clips they came from, and what makes both."""
+"""Sample languages, their clips, and the programs that make both."""

@@ -1,4 +1,4 @@
-"""Build the two sample languages of the paper from their demonstration clips.
+"""Language builder: builds the two sample languages of the paper from demonstration clips.
 
 Run ``python -m languages.build`` from the repository's root; ``make languages`` does the same.
 """

@@ -1,4 +1,4 @@
-"""Record the landmarks of all sample clips on this processor, small enough for the repository.
+"""Recordings: extracts the landmarks of all sample clips, rounded for the repository.
 
 Pose models round differently on other processors, and tracking carries that along. The tests read
 the recordings of two (`tests/recordings`), so that nothing holds for one processor alone. Run

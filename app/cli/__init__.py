@@ -1,1 +1,1 @@
-"""The command line ``osg-studio``: one module a command, and what commands share."""
+"""Command line ``osg-studio``: one module for each command, and modules that commands share."""

@@ -1,7 +1,7 @@
-"""The command `osg-studio`: author, recognise, convert and serve from a terminal.
+"""Application `osg-studio`: defines the commands and turns errors into exit codes.
 
-Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing was recognised,
-2 bad use or bad input, told in one line that says what, why and what to do next.
+Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing was recognised or the
+check found an error, 2 bad use or bad input, with one line that names cause and next step.
 """
 
 from __future__ import annotations
@@ -32,11 +32,17 @@ from app.cli.clip_argument import (
 )
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
-from app.cli.mcap_file import named_recognitions, save_session
+from app.cli.mcap_file import name_recognitions, save_session
 from app.cli.phrase import phrase
 from app.cli.robot import robot
-from app.cli.ros_arguments import apart
-from app.cli.terminal import describe, people, progress_bar, show_explanation, show_recognition
+from app.cli.ros_arguments import split_ros_arguments
+from app.cli.terminal import (
+    describe_error,
+    people,
+    progress_bar,
+    show_explanation,
+    show_recognition,
+)
 from app.recognition import Gesture, Language, Recognition, Recognizer, Take
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
@@ -71,7 +77,7 @@ command_line.command()(phrase)
 def top(
     version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
 ) -> None:
-    """Answer options that stand before any command."""
+    """Handle options before any command."""
     if version:
         typer.echo(__version__)
         raise typer.Exit
@@ -87,7 +93,7 @@ def serve(
     token: Annotated[
         str | None,
         typer.Option(
-            envvar="OSG_TOKEN", help="Secret asked of every visitor; needed off loopback."
+            envvar="OSG_TOKEN", help="Secret that every visitor needs; required off loopback."
         ),
     ] = None,
     no_browser: Annotated[
@@ -118,12 +124,12 @@ def define(
         typer.Argument(
             metavar="LABEL=CLIP...",
             help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without. "
-            "A dive recording does too, as LABEL=BAG or LABEL=BAG@/TOPIC, and a keypoint file.",
+            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file.",
         ),
     ],
     name: Annotated[str, typer.Option(help="Name of the language.")],
     output: Annotated[Path, typer.Option(help="Language file to write.")],
-    author: Annotated[str, typer.Option(help="Who made it.")] = "",
+    author: Annotated[str, typer.Option(help="Author of the language.")] = "",
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -131,7 +137,7 @@ def define(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Make a language from one demonstration clip per gesture."""
+    """Create a language from one demonstration clip per gesture."""
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     reading = ClipReading(water, estimator, hands, keypoints=keypoints)
     gestures = []
@@ -164,7 +170,7 @@ def recognize(
     ] = None,
     expected: Annotated[
         str | None,
-        typer.Option(metavar="LABEL", help="The gesture that was meant: explain every take by it."),
+        typer.Option(metavar="LABEL", help="Gesture that was meant; prints an explanation."),
     ] = None,
     without_salutes: Annotated[
         bool, typer.Option("--without-salutes", help="Find gestures anywhere in the clip.")
@@ -172,11 +178,11 @@ def recognize(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     topic: Annotated[
         str | None,
-        typer.Option(help="Of a dive recording with several, the topic to look at."),
+        typer.Option(help="Topic of a bag that has several."),
     ] = None,
     mcap: Annotated[
         Path | None,
-        typer.Option(help="Write the session to this MCAP file, which opens in Foxglove."),
+        typer.Option(help="Write clip and recognitions to this MCAP file, for Foxglove."),
     ] = None,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
@@ -185,23 +191,23 @@ def recognize(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Name the gestures in a clip, with every voter's distance to every gesture."""
+    """Recognise the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
-    spoken = Language.load(language)
+    loaded = Language.load(language)
     if expected is not None:
-        spoken.gesture(expected)  # a mistyped label is told before the clip is read
-    recognizer = Recognizer(spoken, profile)
+        loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
+    recognizer = Recognizer(loaded, profile)
     spotter = Spotter(recognizer) if without_salutes else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), spoken)
+    read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), loaded)
     recording = read.recording
     if spotter is not None:
         results = spot_takes(spotter, recording, span)
     else:
         results = [(take, recognizer.recognize(take.poses)) for take in read.takes(span)]
     if mcap is not None:
-        told = named_recognitions(spoken, expected, results)
-        save_session(mcap, path, topic, recording, told)
+        named = name_recognitions(loaded, expected, results)
+        save_session(mcap, path, topic, recording, named)
     takes = [take for take, _ in results]
     explanations = [
         explain(RecognitionContext.of_take(recognizer, take), expected)
@@ -211,10 +217,10 @@ def recognize(
     if as_json:
         report = {
             "clip": str(path),
-            "language": spoken.name,
+            "language": loaded.name,
             "profile": recognizer.profile,
             "takes": [
-                take_report(take, result, explanation)
+                report_take(take, result, explanation)
                 for (take, result), explanation in zip_longest(results, explanations)
             ],
         }
@@ -226,13 +232,13 @@ def recognize(
                 show_explanation(explanation)
     if not takes and without_salutes:
         people.print(
-            f"{path}: no gesture of {spoken.name!r} found in {recording.poses.duration:.1f} s; "
-            f"pause before and after a gesture, or give the range by hand: {path}@START-END"
+            f"{path}: no gesture of {loaded.name!r} found in {recording.poses.duration:.1f} s; "
+            f"pause before and after a gesture, or give the range: {path}@START-END"
         )
     elif not takes:
         people.print(
             f"{path}: no salute found in {recording.poses.duration:.1f} s, so no take; hold the "
-            f"salute for at least 0.3 s, or give the range by hand: {path}@START-END"
+            f"salute for at least 0.3 s, or give the range: {path}@START-END"
         )
     if not any(result.label for _, result in results):
         raise typer.Exit(NOTHING_RECOGNISED)
@@ -240,7 +246,9 @@ def recognize(
 
 @command_line.command()
 def convert(
-    source: Annotated[Path, typer.Argument(metavar="IN", help="Language file, ours or published.")],
+    source: Annotated[
+        Path, typer.Argument(metavar="IN", help="Language file of osg-studio or osg-reference.")
+    ],
     target: Annotated[Path, typer.Argument(metavar="OUT", help="File to write.")],
     file_format: Annotated[
         FileFormat | None,
@@ -250,13 +258,13 @@ def convert(
         ),
     ] = None,
 ) -> None:
-    """Convert between our language file and the published implementation's, or write PROTEUS's."""
+    """Convert a language file: osg-studio, osg-reference (published implementation), proteus."""
     language = read_language(source)
     if file_format is None:
         proteus = target.suffix == FileFormat.PROTEUS.suffix
         file_format = FileFormat.PROTEUS if proteus else FileFormat.OSG_STUDIO
     if any(gesture.trajectory is None for gesture in language.gestures):
-        people.print(f"{source}: pictures only, no trajectories: the published format has none")
+        people.print(f"{source}: no trajectories, only images: osg-reference files have none")
     if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
     else:
@@ -266,14 +274,14 @@ def convert(
 
 @models_command.callback()
 def models(context: typer.Context) -> None:
-    """List the models when no other word follows."""
+    """List the models when no subcommand follows."""
     if context.invoked_subcommand is None:
         list_models()
 
 
 @models_command.command("list")
 def list_models() -> None:
-    """List the models with their state and place."""
+    """List the models with state, size and path."""
     from app.recognition.models import installed_models
 
     for model in installed_models():
@@ -286,7 +294,7 @@ def install_models_command(
         Path | None, typer.Option(help="Exported folder or wheel to install from, without network.")
     ] = None,
 ) -> None:
-    """Obtain the models from MediaPipe's wheel by pip, once; they work offline afterwards."""
+    """Install the models from MediaPipe's wheel with pip, once; afterwards no network is needed."""
     from app.recognition.models import install_models, models_dir
 
     with progress_bar("models") as advance:
@@ -308,12 +316,12 @@ def export_models_command(
 
 
 def read_language(source: Path) -> Language:
-    """Read a language file, ours or the published implementation's.
+    """Read a language file of OSG Studio or of the published implementation.
 
     Raises
     ------
     LanguageError
-        When it is neither; names the JSON pointer to the fault.
+        When the file is neither; contains the JSON pointer to the fault.
 
     """
     content = source.read_bytes()
@@ -322,23 +330,23 @@ def read_language(source: Path) -> Language:
     return Language.from_json(content)
 
 
-def take_report(
+def report_take(
     take: Take, result: Recognition, explanation: Explanation | None = None
 ) -> dict[str, Any]:
-    """Return the JSON object of one recognised take (contract, ``recognize --json``)."""
+    """Build the JSON object of one recognised take for ``recognize --json``."""
     span = {"start": take.start, "end": take.end, "closed": take.closed}
     explained = {} if explanation is None else {"explanation": explanation.to_dict()}
     return span | result.to_dict() | explained
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line and exit with its code; known errors become one line on stderr."""
+    """Run the command line and exit with its code; known errors print one line on stderr."""
     try:
         given = sys.argv[1:] if arguments is None else arguments
-        # Every other command refuses ROS arguments as it does all that it does not know.
-        own, ros = apart(given) if given[:1] == ["robot"] else (given, [])
+        # The other commands refuse ROS arguments like any unknown option.
+        own, ros = split_ros_arguments(given) if given[:1] == ["robot"] else (given, [])
         command_line(args=own, prog_name="osg-studio", obj=ros)
     except (OsgError, OSError) as error:
-        sys.stderr.write(f"osg-studio: {describe(error)}\n")
+        sys.stderr.write(f"osg-studio: {describe_error(error)}\n")
         sys.exit(BAD_INPUT)
     sys.exit(0)

@@ -1,4 +1,4 @@
-"""The command ``osg-studio check``: the health of a language before the dive."""
+"""Command ``osg-studio check``: runs the health check of a language."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from typing import Annotated
 
 import typer
 
-from app.cli.check_report import health_text
+from app.cli.check_report import format_report
 from app.cli.evaluate import Person
 from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
 
-BELOW_BAR = 1
-"""Exit code of a language that should not go to sea like that."""
+HAS_ERRORS = 1
+"""Exit code when the report has an error."""
 
 
 def check(
     file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file.")],
     person: Annotated[
-        Person, typer.Option(help="Who will dive: who demonstrated, or another.")
+        Person, typer.Option(help="Who will dive: the demonstrator or another person.")
     ] = Person.another,
-    seed: Annotated[int, typer.Option(min=0, help="Of the variants.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Random seed of the variants.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Predict what will be confused, missed or set off by accident, and what would help.
+    """Predict confusions, misses and false alarms, with remedies.
 
-    The exit code is 1 when anything is below the bar.
+    The exit code is 1 when the report has an error.
     """
     language = Language.load(file)
     with progress_bar("check") as advance:
@@ -41,6 +41,6 @@ def check(
     if as_json:
         typer.echo(json.dumps(report.to_dict(), allow_nan=False))
     else:
-        typer.echo(health_text(report), nl=False)
+        typer.echo(format_report(report), nl=False)
     if not report.ok:
-        raise typer.Exit(BELOW_BAR)
+        raise typer.Exit(HAS_ERRORS)

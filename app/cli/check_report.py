@@ -1,4 +1,4 @@
-"""The health report as text for a terminal: aligned columns, marks in words, no colour."""
+"""Health report as text for a terminal: aligned columns, kinds of findings in words, no colour."""
 
 from __future__ import annotations
 
@@ -14,53 +14,67 @@ from app.recognition.health.report import (
 from app.recognition.simulation.rate_estimate import RateEstimate
 
 MOST_PAIRS = 10
-"""Pairs listed, the most confused first: the rest is in the JSON."""
+"""Number of pairs listed, the most confused first; the JSON has all of them."""
 
 WORTH_LISTING = 0.001
-"""Predicted confusion from which a pair is listed."""
+"""Lowest predicted confusion rate of a pair that is listed."""
 
 
-def health_text(report: HealthReport) -> str:
-    """Lay the report out, a trailing line break included."""
-    return "\n".join([*_head(report), *_gestures(report), *_pairs(report), *_warnings(report), ""])
+def format_report(report: HealthReport) -> str:
+    """Format the report as text with a trailing line break."""
+    lines = [
+        *_format_head(report),
+        *_format_gestures(report),
+        *_format_pairs(report),
+        *_format_findings(report),
+    ]
+    return "\n".join([*lines, ""])
 
 
-def _head(report: HealthReport) -> Iterator[str]:
-    below = sum(finding.below_bar for finding in report.findings)
-    verdict = "ready" if report.ok else f"NOT READY, {below} below the bar"
-    yield f"{report.language}, revision {report.revision}: {verdict}"
-    who = "its demonstrator" if report.person == "same" else "somebody else"
+def _format_head(report: HealthReport) -> Iterator[str]:
+    errors = sum(finding.below_bar for finding in report.findings)
+    counted = "1 error" if errors == 1 else f"{errors} errors"
+    result = "ready" if report.ok else f"NOT READY, {counted}"
+    yield f"{report.language}, revision {report.revision}: {result}"
+    who = "its demonstrator" if report.person == "same" else "another person"
     yield f"predicted from {report.takes} variants of each gesture, as shown by {who}"
     yield (
-        f"bar: {MOST_CONFUSION:.0%} confusion of a pair, {MOST_MISSED:.0%} of a gesture's takes "
-        "missed"
+        f"thresholds: {MOST_CONFUSION:.0%} confusion of a pair, {MOST_MISSED:.0%} of a gesture's "
+        "takes missed"
     )
 
 
-def _gestures(report: HealthReport) -> Iterator[str]:
+def _format_gestures(report: HealthReport) -> Iterator[str]:
     if not report.gestures:
         return
     yield ""
-    head = ("gesture", "missed", "of it refused", "false alarms", "seconds", "depends on (visible)")
-    yield from _align([head, *(_gesture_row(gesture) for gesture in report.gestures)])
+    head = (
+        "gesture",
+        "missed",
+        "of it rejected",
+        "false alarms",
+        "seconds",
+        "depends on (visible)",
+    )
+    yield from _align([head, *(_format_gesture(gesture) for gesture in report.gestures)])
 
 
-def _gesture_row(gesture: GestureHealth) -> tuple[str, ...]:
+def _format_gesture(gesture: GestureHealth) -> tuple[str, ...]:
     seconds = "-" if gesture.seconds is None else f"{gesture.seconds:.1f}"
     needed = ", ".join(f"{each.landmark} ({each.visible:.0%})" for each in gesture.landmarks)
     return (
         gesture.label,
-        percentage(gesture.missed),
+        format_rate(gesture.missed),
         "-" if gesture.refused is None else f"{gesture.refused.rate:.1%}",
-        percentage(gesture.false_alarms),
+        format_rate(gesture.false_alarms),
         seconds,
         needed,
     )
 
 
-def _pairs(report: HealthReport) -> Iterator[str]:
+def _format_pairs(report: HealthReport) -> Iterator[str]:
     listed = [
-        (*pair.gestures, percentage(pair.first_as_second), percentage(pair.second_as_first))
+        (*pair.gestures, format_rate(pair.first_as_second), format_rate(pair.second_as_first))
         for pair in report.pairs
         if pair.confusion is not None and pair.confusion.rate >= WORTH_LISTING
     ]
@@ -70,28 +84,28 @@ def _pairs(report: HealthReport) -> Iterator[str]:
     if not listed:
         yield f"no pair is predicted to be confused more often than {WORTH_LISTING:.1%}"
         return
-    head = ("pair", "", "first read as second", "second as first")
+    head = ("pair", "", "first recognised as second", "second as first")
     yield from _align([head, *listed[:MOST_PAIRS]])
 
 
-def _warnings(report: HealthReport) -> Iterator[str]:
+def _format_findings(report: HealthReport) -> Iterator[str]:
     for finding in report.findings:
         yield ""
-        yield from _warning(finding)
+        yield from _format_finding(finding)
 
 
-def _warning(finding: Finding) -> Iterator[str]:
-    mark = "BELOW THE BAR" if finding.below_bar else "note"
-    yield f"{mark}: {finding.message}"
+def _format_finding(finding: Finding) -> Iterator[str]:
+    kind = "ERROR" if finding.below_bar else "note"
+    yield f"{kind}: {finding.message}"
     for remedy in finding.remedies:
-        yield f"  - {remedy.text}: {remedy.before.rate:.1%} becomes {percentage(remedy.after)}"
+        yield f"  - {remedy.text}: {remedy.before.rate:.1%} becomes {format_rate(remedy.after)}"
 
 
-def percentage(forecast: RateEstimate | None) -> str:
-    """Return a rate with its interval; a dash where nothing is known."""
-    if forecast is None:
+def format_rate(estimate: RateEstimate | None) -> str:
+    """Format an estimated rate with its interval; a dash where there is none."""
+    if estimate is None:
         return "-"
-    return f"{forecast.rate:.1%} ({forecast.low:.1%}-{forecast.high:.1%})"
+    return f"{estimate.rate:.1%} ({estimate.low:.1%}-{estimate.high:.1%})"
 
 
 def _align(rows: Sequence[Sequence[str]]) -> Iterator[str]:

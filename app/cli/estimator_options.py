@@ -1,4 +1,4 @@
-"""Options of the commands that look at pictures: what finds body and hands in them."""
+"""Estimator options: the command-line options that select the body and hand estimators."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command ``osg-studio evaluate``: the paper's protocols, and one's own labelled clips."""
+"""Command ``osg-studio evaluate``: runs the paper's protocols on a language or labelled clips."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from app.cli.terminal import people, progress_bar
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
-from app.evaluation.labelled_takes import Collection, collected
-from app.evaluation.one_shot import one_shot, read_by
-from app.evaluation.protocols import recognised_variants
+from app.evaluation.labelled_takes import Collection, collect_takes
+from app.evaluation.one_shot import one_shot, recognize_takes
+from app.evaluation.protocols import recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
 
 DEFAULT_VARIANTS = 50
-"""Of each gesture, as often as the paper shows each of its eight."""
+"""Variants of each gesture; the paper shows each of its eight gestures as often."""
 
 
 class Person(str, Enum):
-    """Whose takes the variants resemble."""
+    """Person whose takes the variants simulate."""
 
     same = "same"
     another = "another"
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
-    """What one profile made of one kind of queries."""
+class Evaluation:
+    """Result of one profile for one kind of queries."""
 
     profile: str
     asked: str
     matrix: ConfusionMatrix
 
     def to_text(self) -> str:
-        """Return accuracy, interval and confusion matrix for a person."""
+        """Format accuracy, interval and confusion matrix as text."""
         correct, refused = self.matrix.correct, self.matrix.refused
         head = f"profile {self.profile}, {self.asked}: {correct} of {correct.asked} correct"
         if refused.correct:
@@ -55,7 +55,7 @@ class Finding:
         return f"{head}\n\n{self.matrix.to_text()}\n"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
+        """Convert to plain JSON types."""
         return {
             "profile": self.profile,
             "asked": self.asked,
@@ -69,8 +69,8 @@ def evaluate(
     source: Annotated[
         Path,
         typer.Argument(
-            help="A language file: it names variants of its own gestures. Or a folder of labelled "
-            "clips, saved recordings or keypoint files: every take in turn is the demonstration.",
+            help="A language file, which recognises variants of its own gestures. Or a folder of "
+            "labelled clips, recordings or keypoint files: each take in turn is the demonstration.",
             metavar="FILE.json|FOLDER",
         ),
     ],
@@ -79,19 +79,19 @@ def evaluate(
     ] = None,
     language: Annotated[
         Path | None,
-        typer.Option(help="With a folder: this language names the clips, none is demonstration."),
+        typer.Option(help="With a folder: recognise the clips by this language."),
     ] = None,
     layout: Annotated[
         str | None,
-        typer.Option(help=f"Where label and person stand in a path, as in {LAYOUTS[-1]}."),
+        typer.Option(help=f"Position of label and person in a path, as in {LAYOUTS[-1]}."),
     ] = None,
     variants: Annotated[
         int, typer.Option(min=1, help="With a language file: variants of each gesture.")
     ] = DEFAULT_VARIANTS,
     person: Annotated[
-        Person, typer.Option(help="With a language file: whose takes the variants resemble.")
+        Person, typer.Option(help="With a language file: person whose takes are simulated.")
     ] = Person.same,
-    seed: Annotated[int, typer.Option(min=0, help="Of the variants.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Random seed of the variants.")] = 0,
     frame_rate: FrameRateOption = None,
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
@@ -100,40 +100,40 @@ def evaluate(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Measure how often gestures are named correctly, with interval and confusion matrix."""
+    """Measure how often gestures are recognised correctly, with interval and confusion matrix."""
     profiles = profile or list(PROFILES)
     problems: dict[str, str] = {}
     if source.is_dir():
         keypoints = keypoint_options(frame_rate, frame_size, landmark)
         with progress_bar("clips") as advance:
-            collection = collected(
+            collection = collect_takes(
                 labelled_files(source, layout), keypoints=keypoints, progress=advance
             )
         problems = collection.problems
-        findings = list(_evaluate_takes(collection, profiles, language, problems))
+        results = list(_evaluate_takes(collection, profiles, language, problems))
     else:
-        findings = list(_evaluate_variants(Language.load(source), profiles, variants, person, seed))
+        results = list(_evaluate_variants(Language.load(source), profiles, variants, person, seed))
     if as_json:
         report = {
             "source": str(source),
-            "findings": [finding.to_dict() for finding in findings],
+            "findings": [result.to_dict() for result in results],
             "problems": problems,
         }
         typer.echo(json.dumps(report, allow_nan=False))
     else:
-        typer.echo("\n".join(finding.to_text() for finding in findings), nl=False)
+        typer.echo("\n".join(result.to_text() for result in results), nl=False)
     for place, problem in problems.items():
         people.print(f"{place}: {problem}", markup=False)
     if picture is not None:
-        _draw(picture, findings)
+        _draw(picture, results)
 
 
 def _evaluate_variants(
     language: Language, profiles: list[str], count: int, person: Person, seed: int
-) -> Iterator[Finding]:
+) -> Iterator[Evaluation]:
     for profile in profiles:
         with progress_bar(f"profile {profile}") as advance:
-            matrix = recognised_variants(
+            matrix = recognize_variants(
                 language,
                 count,
                 profile=profile,
@@ -141,44 +141,44 @@ def _evaluate_variants(
                 person=person.value,
                 progress=advance,
             )
-        yield Finding(
+        yield Evaluation(
             profile, f"{count} variants of each gesture, {person.value} person, seed {seed}", matrix
         )
 
 
 def _evaluate_takes(
     collection: Collection, profiles: list[str], language: Path | None, problems: dict[str, str]
-) -> Iterator[Finding]:
+) -> Iterator[Evaluation]:
     given = None if language is None else Language.load(language)
     takes = collection.takes
     for profile in profiles:
         with progress_bar(f"profile {profile}") as advance:
             if given is not None:
-                matrix = read_by(given, takes, profile=profile, progress=advance)
-                yield Finding(profile, f"takes named by {given.name}", matrix)
+                matrix = recognize_takes(given, takes, profile=profile, progress=advance)
+                yield Evaluation(profile, f"takes named by {given.name}", matrix)
                 continue
             result = one_shot(takes, profile=profile, progress=advance)
         problems |= {
-            place: f"no demonstration, only asked for: {reason}"
+            place: f"used as a query only, not as a demonstration: {reason}"
             for place, reason in result.unusable.items()
         }
-        told_apart = len({take.person for take in takes}) > 1
-        own = "same person" if told_apart else "whoever it is by"
-        yield Finding(
+        several_people = len({take.person for take in takes}) > 1
+        own = "same person" if several_people else "any person"
+        yield Evaluation(
             profile, f"{own}, {result.languages} languages of one take", result.same_person
         )
-        if told_apart:
-            yield Finding(
+        if several_people:
+            yield Evaluation(
                 profile,
                 f"other people, {result.languages} languages of one take",
                 result.other_people,
             )
 
 
-def _draw(picture: Path, findings: list[Finding]) -> None:
-    for number, finding in enumerate(findings, start=1):
-        name = picture.name if len(findings) == 1 else f"{picture.stem}-{number}{picture.suffix}"
+def _draw(picture: Path, results: list[Evaluation]) -> None:
+    for number, result in enumerate(results, start=1):
+        name = picture.name if len(results) == 1 else f"{picture.stem}-{number}{picture.suffix}"
         target = picture.with_name(name)
-        title = f"Profile {finding.profile}, {finding.asked}"
-        target.write_text(confusion_svg(finding.matrix, title), encoding="utf-8")
+        title = f"Profile {result.profile}, {result.asked}"
+        target.write_text(confusion_svg(result.matrix, title), encoding="utf-8")
         people.print(f"{target}: {title}", markup=False)

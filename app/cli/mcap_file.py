@@ -1,4 +1,4 @@
-"""MCAP file of ``osg-studio recognize --mcap``: the clip and its recognitions."""
+"""MCAP file of `osg-studio recognize --mcap`: holds the clip and its recognitions."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ def save_session(
     recording: Recording,
     recognitions: Sequence[NamedRecognition],
 ) -> None:
-    """Write a session to `target`, all of it or nothing.
+    """Write a clip and its recognitions to `target`, completely or not at all.
 
     Parameters
     ----------
     target
         The MCAP file.
     clip, topic
-        Where `recording` was read from, as for `app.cli.clip_argument.read_clip`.
+        Source of `recording`, as for `app.cli.clip_argument.read_clip`.
     recording, recognitions
-        What was found in the clip, and recognised.
+        Landmarks of the clip, and its recognised takes.
 
     Raises
     ------
@@ -53,10 +53,10 @@ def save_session(
     people.print(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove", markup=False)
 
 
-def named_recognitions(
+def name_recognitions(
     language: Language, expected: str | None, results: Sequence[tuple[Take, Recognition]]
 ) -> list[NamedRecognition]:
-    """Return what was recognised in each take, with the language's name and revision."""
+    """Return the recognition of each take with the language's name and revision."""
     return [
         NamedRecognition(
             take.stroke_start, take.end, language.name, language.revision, result, expected

@@ -1,4 +1,4 @@
-"""The command ``osg-studio phrase``: what a sequence of gestures means, before the dive."""
+"""Command ``osg-studio phrase``: interprets a sequence of gestures by a language's grammar."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 
 NOT_COMPLETE = 1
-"""Exit code when the gestures give the robot nothing to do."""
+"""Exit code when the gestures are not a complete message."""
 
 
 def phrase(
     file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file with phrases.")],
     gestures: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[LABEL]...", help="As shown, one after the other."),
+        typer.Argument(metavar="[LABEL]...", help="Labels of the gestures, in order."),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object for each event.")
     ] = False,
 ) -> None:
-    """Tell what a sequence of gestures means; without gestures, how each phrase is shown.
+    """Interpret a sequence of gestures; without gestures, list an example of each phrase.
 
-    The exit code is 1 when the gestures are no complete message.
+    The exit code is 1 when the gestures are not a complete message.
     """
     language = Language.load(file)
     if language.grammar is None or not language.grammar.phrases:
         raise LanguageError(
-            f"{file} has no phrases: make some in the studio under Phrases", "/grammar"
+            f"{file} has no phrases: add some in the studio under Phrases", "/grammar"
         )
     if not gestures:
         _list_phrases(language.grammar, as_json=as_json)
         return
     for label in gestures:
-        language.gesture(label)  # a mistyped label is told before anything is made of it
+        language.gesture(label)  # raises an error for an unknown label
     events = simulate_phrase(language.grammar, gestures)
     for event in events:
         if as_json:
@@ -54,9 +54,9 @@ def phrase(
 
 
 def simulate_phrase(grammar: Grammar, gestures: list[str]) -> list[PhraseEvent]:
-    """Show gestures without any pause, and then none any more.
+    """Parse gestures without pauses between them, followed by a pause that ends the message.
 
-    Stamps count the gestures, as if each took no time.
+    All gestures have the time 0.
     """
     parser = PhraseParser(grammar)
     events = [event for label in gestures for event in parser.feed(label, 0.0, 0.0)]

@@ -1,6 +1,6 @@
-"""The command ``osg-studio robot``: listen for a language, and tell what was said as JSON lines.
+"""Command ``osg-studio robot``: recognises a language live and prints events as JSON lines.
 
-What only some options need is imported where they are given: a robot starts without it.
+Packages that only some options need are imported when the option is given.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Annotated
 import typer
 
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
-from app.cli.robot_events import sentence_of
+from app.cli.robot_events import describe_event
 from app.cli.ros_arguments import BEGIN
 from app.cli.terminal import people
 from app.recognition.errors import EstimatorError
@@ -28,14 +28,14 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.gestures.profile import PROFILES
 from app.robot import (
     Event,
-    Hearing,
+    LandmarkListener,
     Runtime,
     Source,
     TakeRecognized,
-    hearing_of,
+    create_listener,
     open_source,
 )
-from app.robot.messages import line_of
+from app.robot.messages import format_line
 from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
 from app.robot.watched_language import WatchedLanguage
@@ -58,7 +58,7 @@ def robot(
         typer.Option(help=f"Set of voters, {' or '.join(PROFILES)}; by default the language's."),
     ] = None,
     without_salutes: Annotated[
-        bool, typer.Option("--without-salutes", help="Hear gestures that no salute announces.")
+        bool, typer.Option("--without-salutes", help="Recognise gestures without salutes.")
     ] = False,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
@@ -72,66 +72,66 @@ def robot(
     ] = False,
     publish: Annotated[
         Network | None,
-        typer.Option(help="Also tell ROS 2 in the network, without ROS 2 on this machine."),
+        typer.Option(help="Also publish to ROS 2 in the network, without ROS 2 on this machine."),
     ] = None,
     profile_stages: Annotated[
         bool,
-        typer.Option("--profile-stages", help="Measure what each stage costs, and tell that only."),
+        typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
     ] = False,
 ) -> None:
-    """Listen for a language and print what happens, one JSON object a line.
+    """Recognise a language live and print events, one JSON object a line.
 
-    A clip ends by itself, with exit code 1 when nothing was recognised in it; a camera is
-    listened to until Ctrl-C or SIGTERM. SIGHUP reads the language file again.
+    A clip ends by itself, with exit code 1 when nothing was recognised in it; a camera runs until
+    Ctrl-C or SIGTERM. SIGHUP reads the language file again.
     """
     if context.obj and not ros2:
-        raise typer.BadParameter(f"{BEGIN} is for ROS 2: give --ros2 as well", context)
+        raise typer.BadParameter(f"{BEGIN} needs --ros2: add that option", context)
     with ExitStack() as opened:
-        spoken = opened.enter_context(WatchedLanguage(language, profile))
-        listener = hearing_of(spoken.first, without_salutes=without_salutes)
+        watched = opened.enter_context(WatchedLanguage(language, profile))
+        listener = create_listener(watched.first, without_salutes=without_salutes)
         frames = opened.enter_context(closing(open_source(source)))
         finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
         if not without_salutes and not finds_hands(finder):
             raise EstimatorError(
-                f"--hands {hands} finds no hand and so no salute: choose others, or hear gestures "
-                "with --without-salutes"
+                f"--hands {hands} finds no hand and so no salute: choose other hands, or add "
+                "--without-salutes"
             )
         if profile_stages:
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)
             return
-        heard = [tell]
+        handlers = [print_event]
         observer: Observer | None = None
         if ros2:
-            from app.cli.ros2_topics import ros2_topics
+            from app.cli.ros2_topics import open_ros2_topics
 
-            topics = opened.enter_context(ros2_topics(context.obj))
-            heard.append(lambda event: topics.hear(event, listener.language))
-            observer = topics.look
+            topics = opened.enter_context(open_ros2_topics(context.obj))
+            handlers.append(lambda event: topics.publish_event(event, listener.language))
+            observer = topics.publish_frame
         if publish:
-            heard.append(opened.enter_context(closing(open_publisher(publish))).publish)
+            handlers.append(opened.enter_context(closing(open_publisher(publish))).publish)
         runtime = Runtime(
-            frames, finder, listener, water=water, changes=spoken.changes, observer=observer
+            frames, finder, listener, water=water, changes=watched.next_change, observer=observer
         )
-        with handle_signals(runtime.stop, spoken.reload):
-            recognised = told(runtime, heard)
+        with handle_signals(runtime.stop, watched.reload):
+            recognised = emit_all(runtime, handlers)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
 
 
-def told(events: Iterable[Event], listeners: Sequence[Callable[[Event], None]]) -> int:
-    """Tell every event to all who listen; return how many were recognitions.
+def emit_all(events: Iterable[Event], handlers: Sequence[Callable[[Event], None]]) -> int:
+    """Pass every event to all handlers; return the number of recognised takes.
 
-    When nobody reads stdout any more the runtime ends, as pipelines do.
+    It ends early when the reader of stdout has closed the pipe.
     """
     recognised = 0
     try:
         for event in events:
             recognised += isinstance(event, TakeRecognized)
-            for listener in listeners:
-                listener(event)
+            for handler in handlers:
+                handler(event)
     except BrokenPipeError:
-        # Python flushes stdout once more at its end, and would complain there.
+        # Python flushes stdout at exit, which would raise the error again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return recognised
 
@@ -140,40 +140,40 @@ def profile_until_stopped(
     source: Source,
     body: PoseEstimator,
     whole: PoseEstimator,
-    listener: Hearing,
+    listener: LandmarkListener,
     water: WaterCorrection,
 ) -> None:
-    """Tell what the stages cost when the source ends, or somebody stops it."""
+    """Print the costs of the stages when the source ends or a signal stops it."""
     from app.cli.robot_stages import show_stages
 
-    asked: list[bool] = []
-    with handle_signals(lambda: asked.append(True), lambda: None):
-        show_stages(source, body, whole, listener, water=water, is_over=lambda: bool(asked))
+    stops: list[bool] = []
+    with handle_signals(lambda: stops.append(True), lambda: None):
+        show_stages(source, body, whole, listener, water=water, is_over=lambda: bool(stops))
 
 
-def tell(event: Event) -> None:
-    """Write one event to stdout, and for people to stderr, at once."""
-    typer.echo(line_of(event))
-    if sentence := sentence_of(event):
+def print_event(event: Event) -> None:
+    """Print one event as JSON on stdout and in words on stderr."""
+    typer.echo(format_line(event))
+    if sentence := describe_event(event):
         people.print(sentence, markup=False, highlight=False, soft_wrap=True)
 
 
 @contextmanager
 def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
-    """Stop after the frame at hand on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
-    wanted = {signal.SIGINT: stop, signal.SIGTERM: stop}
-    if hasattr(signal, "SIGHUP"):  # Windows has none
-        wanted[signal.SIGHUP] = reload
+    """Stop after the current frame on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
+    actions = {signal.SIGINT: stop, signal.SIGTERM: stop}
+    if hasattr(signal, "SIGHUP"):  # not on Windows
+        actions[signal.SIGHUP] = reload
 
-    before = {number: signal.getsignal(number) for number in wanted}
+    before = {number: signal.getsignal(number) for number in actions}
 
     def handle(number: int, frame: FrameType | None) -> None:
         kind = signal.Signals(number)
-        if wanted[kind] is stop:
+        if actions[kind] is stop:
             signal.signal(kind, before[kind])
-        wanted[kind]()
+        actions[kind]()
 
-    for number in wanted:
+    for number in actions:
         signal.signal(number, handle)
     try:
         yield

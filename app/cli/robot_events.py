@@ -1,4 +1,4 @@
-"""A robot's events in words, for the person who watches its terminal."""
+"""Descriptions of robot events: one sentence per event, printed in the terminal."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from app.robot import (
 )
 
 
-def sentence_of(event: Event) -> str:
-    """Return an event in words; empty for what a person sees anyway or need not know."""
+def describe_event(event: Event) -> str:
+    """Describe an event in one sentence; empty for events that need none."""
     if isinstance(event, TakeRecognized | TakeRejected):
-        return _about_take(event)
+        return _describe_take(event)
     if isinstance(event, PhraseHeard):
         return event.phrase.text
     if isinstance(event, LanguageChanged | LanguageRefused):
-        return _about_language(event)
-    return _about_source(event)
+        return _describe_language(event)
+    return _describe_source(event)
 
 
-def _about_take(event: TakeRecognized | TakeRejected) -> str:
+def _describe_take(event: TakeRecognized | TakeRejected) -> str:
     span = f"{event.start:.2f} - {event.end:.2f} s"
     if isinstance(event, TakeRecognized):
         return f"{span}: {event.label} ({event.confidence:.2f})"
     return f"{span}: rejected, {event.reason}"
 
 
-def _about_language(event: LanguageChanged | LanguageRefused) -> str:
+def _describe_language(event: LanguageChanged | LanguageRefused) -> str:
     if isinstance(event, LanguageRefused):
         return (
             f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
@@ -46,7 +46,7 @@ def _about_language(event: LanguageChanged | LanguageRefused) -> str:
     )
 
 
-def _about_source(event: Event) -> str:
+def _describe_source(event: Event) -> str:
     match event:
         case SourceOpened(source=source, frame_size=(width, height)):
             return f"watching {source}, {width} x {height} pixels"

@@ -1,6 +1,6 @@
-"""The topics of ``osg-studio robot --ros2``: what the robot sees and hears, told to ROS 2.
+"""ROS 2 topics of ``osg-studio robot --ros2``: loads the node that publishes landmarks and events.
 
-The nodes and their messages are ROS packages (`ros2/`), which pip does not install.
+The node and its messages are ROS packages (`ros2/`), which pip does not install.
 """
 
 from __future__ import annotations
@@ -11,40 +11,40 @@ from typing import Protocol
 
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
-from app.robot import Event, Frame, SpokenLanguage
+from app.robot import ActiveLanguage, Event, Frame
 
 
 class Topics(Protocol):
-    """Whoever tells a robot's other programs what its runtime sees and hears."""
+    """Protocol of the node that publishes the robot's landmarks and events."""
 
-    def look(self, frame: Frame, found: FrameLandmarks) -> None:
-        """Tell what was found in a frame."""
+    def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
+        """Publish the landmarks of a frame."""
         ...
 
-    def hear(self, event: Event, language: SpokenLanguage) -> None:
-        """Tell what happened, and the language that is listened for."""
+    def publish_event(self, event: Event, language: ActiveLanguage) -> None:
+        """Publish an event of the active language."""
         ...
 
 
-def ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
-    """Return what publishes as a node of ROS 2 while it is entered.
+def open_ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
+    """Return a context manager that runs a ROS 2 node and gives its topics.
 
     Parameters
     ----------
     arguments
-        ROS 2's own, from ``--ros-args`` on: remapped names, parameters, the level of the log.
+        ROS 2's arguments, from ``--ros-args`` on: remapped names, parameters, log level.
 
     Raises
     ------
     OsgError
-        When ROS 2 or our packages are not in this environment.
+        When ROS 2 or this project's ROS packages are not installed.
 
     """
     try:
-        from osg_ros.nodes.robot_node import published
+        from osg_ros.nodes.robot_node import run_robot_node
     except ModuleNotFoundError as error:
         raise OsgError(
             f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "
             "build them with colcon and source the workspace in this shell"
         ) from error
-    return published(arguments)
+    return run_robot_node(arguments)

@@ -1,4 +1,4 @@
-"""ROS arguments of a command line, as every executable of ROS 2 takes them."""
+"""ROS arguments: splits a command line into the program's own arguments and those of ROS 2."""
 
 from __future__ import annotations
 
@@ -6,28 +6,28 @@ from collections.abc import Sequence
 from typing import Final
 
 BEGIN: Final = "--ros-args"
-"""What follows is ROS 2's."""
+"""Starts the arguments of ROS 2."""
 
 END: Final = "--"
-"""What follows is the program's own again."""
+"""Ends the arguments of ROS 2."""
 
 
-def apart(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Part the arguments of a program from those of ROS 2.
+def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Split arguments into those of the program and those of ROS 2.
 
     Returns
     -------
-    The program's own, and ROS 2's with the `BEGIN` that introduces them; both in order.
+    The program's arguments, and ROS 2's including each `BEGIN`; both in order.
 
     """
     own: list[str] = []
     ros: list[str] = []
-    taken = own
+    target = own
     for argument in arguments:
         if argument == BEGIN:
-            taken = ros
-        if argument == END and taken is ros:
-            taken = own
+            target = ros
+        if argument == END and target is ros:
+            target = own
         else:
-            taken.append(argument)
+            target.append(argument)
     return own, ros

@@ -1,4 +1,4 @@
-"""What the command line shows a person: progress, vote tables, errors; all on stderr."""
+"""Terminal output for people: progress, vote tables and errors, all on stderr."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from app.recognition import Recognition, Take
 from app.recognition.explanation.explanation import Explanation
 
 people = Console(stderr=True)
-"""Where text for people goes; stdout is for data."""
+"""Console for text for people; stdout is for data."""
 
 
 def show_recognition(take: Take, result: Recognition) -> None:
-    """Print the label on stdout and the vote table, for a person, on stderr."""
+    """Print the label on stdout and the vote table on stderr."""
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
     if not take.closed:
         people.print(
-            f"the take from {take.start:.2f} s was not closed by a second salute: it is taken to "
-            f"last until {take.end:.2f} s"
+            f"the take from {take.start:.2f} s has no second salute: its end is set to "
+            f"{take.end:.2f} s"
         )
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")
     if result.fault:
         people.print(f"the take from {take.start:.2f} s is too poor to judge: {result.fault}")
-    table = vote_table(result)
-    # A terminal that is too narrow wraps the lines; cropping would lose distances.
+    table = build_vote_table(result)
+    # In a narrow terminal lines wrap; rich would crop them and lose distances.
     unlimited = people.options.update(max_width=10_000)
     needed = Measurement.get(people, unlimited, table).maximum
     Console(stderr=True, width=max(people.width, needed)).print(table)
 
 
 def show_explanation(explanation: Explanation) -> None:
-    """Print for a person, on stderr, why a take was recognised as it was, and what would help."""
+    """Print an explanation on stderr: why a take was recognised so, and the interventions."""
     people.print(Text(explanation.sentence))
     table = Table(
         "what to change",
@@ -66,12 +66,11 @@ def show_explanation(explanation: Explanation) -> None:
         people.print(table)
 
 
-def vote_table(result: Recognition) -> Table:
-    """Lay out every voter's distance to every gesture, a gesture a row, votes marked by a star.
+def build_vote_table(result: Recognition) -> Table:
+    """Build a table of every voter's distance to every gesture, one row per gesture.
 
-    A vote without weight is marked by a point.
-
-    Gestures are rows since a language has many, and eighty columns hold the paper's voters.
+    A star marks a vote, a point a vote with weight 0. Gestures are rows because a language has
+    many, and the paper's seven voters fit into eighty columns.
     """
     table = Table(
         title="distance to every gesture, by voter; * its vote, . a vote without weight",
@@ -84,14 +83,14 @@ def vote_table(result: Recognition) -> Table:
         table.add_column(voter.replace("_", "\n"), justify="right", vertical="bottom", no_wrap=True)
     for column, label in enumerate(result.gestures):
         cells = [
-            f"{distances[column]:.2f}{_mark(result, voter, label)}"
+            f"{distances[column]:.2f}{_mark_vote(result, voter, label)}"
             for voter, distances in zip(result.voters, result.distances, strict=True)
         ]
         table.add_row(Text(label), *cells)
     return table
 
 
-def _mark(result: Recognition, voter: str, label: str) -> str:
+def _mark_vote(result: Recognition, voter: str, label: str) -> str:
     if result.votes.get(voter) != label:
         return " "
     return "*" if result.weights[voter] > 0 else "."
@@ -99,7 +98,7 @@ def _mark(result: Recognition, voter: str, label: str) -> str:
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[..., None]]:
-    """Show a bar on stderr (nothing where stderr is no terminal) and give what advances it."""
+    """Show a progress bar on stderr, if that is a terminal, and return its update function."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -115,8 +114,8 @@ def progress_bar(title: str) -> Iterator[Callable[..., None]]:
         yield advance
 
 
-def describe(error: Exception) -> str:
-    """Put an error into one line; a file system's error names its file first."""
+def describe_error(error: Exception) -> str:
+    """Describe an error in one line; an error of the file system starts with the file's name."""
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}; check the path and its permissions"
     return " ".join(str(error).split())

@@ -1,1 +1,1 @@
-"""The laboratory: how well gestures are recognised, on variants and on a user's own clips."""
+"""Evaluation: measures recognition rates on variants and on labelled clips."""

@@ -1,4 +1,4 @@
-"""Confusion matrices: what was shown against what was read."""
+"""Confusion matrix: counts of gestures shown against labels recognised."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ import numpy.typing as npt
 from app.evaluation.proportion import Share
 
 REFUSED = "(none)"
-"""Heading of the column for queries that were given no label; no gesture has a label in brackets
-by accident, and one that has is only printed ambiguously, not counted so."""
+"""Heading of the column for queries without a label. A gesture with the same label would only be
+printed ambiguously, not counted so."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConfusionMatrix:
-    """Counts of what was shown and what was read.
+    """Counts of gestures shown and labels recognised.
 
     Attributes
     ----------
     labels
         L labels in the order of the rows.
     counts
-        ``(L, L + 1)``: row shown, column read; the last column counts queries without a label,
-        because they were refused or showed nothing that could be compared.
+        ``(L, L + 1)``: row shown, column recognised; the last column counts queries without a
+        label, because they were rejected or could not be compared.
 
     """
 
@@ -37,14 +37,14 @@ class ConfusionMatrix:
     def of(
         cls, labels: Sequence[str], shown: Sequence[str], read: Sequence[str | None]
     ) -> ConfusionMatrix:
-        """Count pairs of what was shown and what was read.
+        """Count pairs of labels shown and recognised.
 
         Parameters
         ----------
         labels
             All labels that occur in `shown` or in `read`.
         shown, read
-            Label shown and label read of each query, the latter None without a label.
+            Label shown and label recognised of each query; None when rejected.
 
         """
         position = {label: index for index, label in enumerate(labels)}
@@ -55,7 +55,7 @@ class ConfusionMatrix:
 
     @property
     def correct(self) -> Share:
-        """Queries read as what was shown."""
+        """Queries recognised as the gesture shown."""
         return Share(int(np.trace(self.counts)), int(self.counts.sum()))
 
     @property
@@ -64,7 +64,7 @@ class ConfusionMatrix:
         return Share(int(self.counts[:, -1].sum()), int(self.counts.sum()))
 
     def to_text(self) -> str:
-        """Lay the counts out in columns, a gesture shown a row; zeros are dots."""
+        """Format the counts as a table, one row per gesture shown; zeros are dots."""
         headings = ["shown \\ read", *self.labels]
         rows: list[list[str]] = [
             [label, *(str(count) if count else "." for count in row)]
@@ -84,5 +84,5 @@ class ConfusionMatrix:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; the last column of the counts is of queries without a label."""
+        """Convert to plain JSON types; the last column counts queries without a label."""
         return {"labels": list(self.labels), "counts": self.counts.tolist()}

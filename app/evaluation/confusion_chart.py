@@ -1,4 +1,4 @@
-"""A confusion matrix as a picture: SVG, which any browser and paper takes at any size."""
+"""Confusion chart: draws a confusion matrix as SVG."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from html import escape
 from app.evaluation.confusion import REFUSED, ConfusionMatrix
 
 CELL = 44
-"""Width and height of a cell in units of the picture: a count of four digits fits."""
+"""Width and height of a cell in SVG units; a count of four digits fits."""
 
 CHARACTER = 8
-"""Widest a character of a label is assumed to be at the font size used."""
+"""Assumed largest width of a character of a label at this font size."""
 
 MOST_LABEL_WIDTH = 240
-"""Longer labels are squeezed to it."""
+"""Largest width of a label; longer ones are condensed."""
 
 GAP = 10
 
 DARK = 0.9
-"""Share of a row from which white ink has more contrast on a cell's shade than black."""
+"""Share of a row from which white text has more contrast on a cell's shade than black."""
 
 
 def confusion_svg(matrix: ConfusionMatrix, title: str) -> str:
@@ -28,14 +28,14 @@ def confusion_svg(matrix: ConfusionMatrix, title: str) -> str:
     Parameters
     ----------
     matrix
-        Row shown, column read.
+        The matrix; rows are shown, columns recognised.
     title
-        Above it; it also names the picture for those who hear it.
+        Title above the matrix, also its accessible name.
 
     Returns
     -------
-    The text of an SVG document. A cell's shade is its share of the row, green on the diagonal and
-    red beside it; its count stands in it, so that colour is never needed to read it.
+    An SVG document. A cell's shade is its share of the row, green on the diagonal and red
+    elsewhere; the count is printed in it, so that the chart is readable without colour.
 
     """
     columns = [*matrix.labels, REFUSED]
@@ -73,7 +73,7 @@ def _headings(
 
 
 def _fit(label: str, space: int) -> str:
-    """Finish a text's tag and give its content, squeezed when it would not fit."""
+    """Return the end of a text's start tag and its content, condensed when too wide."""
     squeezed = f' textLength="{space}" lengthAdjust="spacingAndGlyphs"'
     return f"{squeezed if CHARACTER * len(label) > space else ''}>{escape(label)}"
 

@@ -1,4 +1,4 @@
-"""Labelled files: which clip in a folder shows which gesture, and by whom."""
+"""Labelled files: finds clips in a folder and reads label and person from their paths."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from app.clip_sources import is_take
 from app.recognition.errors import OsgError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
-"""Layouts assumed for files that lie one, two or three levels deep, when none is given."""
+"""Default layouts for files one, two and three levels deep."""
 
 SEPARATORS = "_-. "
-"""Where the label of a file directly in the folder ends: ``circle-1.mp4``, ``circle 2.mp4``."""
+"""Characters that end the label of a file directly in the folder: ``circle-1.mp4``."""
 
 SAVED_RECORDING = ".npz"
 """Ending of what `Recording.save` wrote, which is a take beside those of the clip sources."""
@@ -29,7 +29,7 @@ _FIELDS = {
 
 @dataclass(frozen=True)
 class LabelledFile:
-    """A file with what its place says about it.
+    """A file with the label and person in its path.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class LabelledFile:
     label
         The gesture it shows.
     person
-        Who shows it; empty where the layout does not say.
+        Person who shows it; empty where the layout has none.
 
     """
 
@@ -53,28 +53,25 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
     Parameters
     ----------
     folder
-        Searched with its subfolders; what begins with a dot is passed over.
+        Searched with its subfolders; names that begin with a dot are ignored.
     layout
-        How label and person stand in a file's path below the folder, without its suffix:
-        ``{label}`` and ``{person}`` are as short as they can be, ``*`` is any text within one
-        level, ``#`` a number. As in ``{person}/{label}_#``. None: by depth, `LAYOUTS`, where the
-        prefix of a file directly in the folder may end in any of `SEPARATORS`.
+        Pattern of a file's path below the folder, without suffix, such as ``{person}/{label}_#``:
+        ``{label}`` and ``{person}`` match as little as possible, ``*`` any text within one level,
+        ``#`` a number. None: one of `LAYOUTS` by depth, where the label of a file directly in the
+        folder may end in any of `SEPARATORS`.
 
     Returns
     -------
-    In the order of their paths.
+    The files in the order of their paths.
 
     Raises
     ------
     OsgError
-        When the layout has no label, or no file fits.
+        When the layout has no label, or no file matches.
 
     """
     if layout is not None and "{label}" not in layout:
-        raise OsgError(
-            f"layout {layout!r} does not say where the label stands: put {{label}} into it, as in "
-            "{person}/{label}_#"
-        )
+        raise OsgError(f"layout {layout!r} has no {{label}}: add it, as in {{person}}/{{label}}_#")
     found = []
     for path in _readable(folder):
         relative = PurePosixPath(path.relative_to(folder).as_posix())
@@ -84,13 +81,13 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
     if not found:
         raise OsgError(
             f"{folder} holds no clip that fits {layout or ' or '.join(LAYOUTS)}; name its files "
-            "so, or say how they are named with --layout"
+            "so, or give their layout with --layout"
         )
     return tuple(found)
 
 
 def _readable(folder: Path) -> Iterator[Path]:
-    """Iterate over possible takes; a folder of OpenPose is one, and not each of its frames."""
+    """Yield the files that may be takes; a folder of OpenPose is one take, not its frames."""
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
@@ -101,7 +98,7 @@ def _readable(folder: Path) -> Iterator[Path]:
 
 
 def _read(name: str, layout: str | None) -> dict[str, str] | None:
-    """Read label and person out of a path without suffix, or None where it does not fit."""
+    """Read label and person from a path without suffix; None where it does not match."""
     if layout is None:
         depth = name.count("/")
         if depth >= len(LAYOUTS):

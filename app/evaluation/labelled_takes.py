@@ -1,4 +1,4 @@
-"""Labelled takes read from labelled files, with a cache of what was extracted from clips."""
+"""Labelled takes: extracts takes from labelled files and caches the recordings."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ Progress = Callable[[int, int, str], None]
 
 @dataclass(frozen=True, eq=False)
 class Collection:
-    """What was found in a folder.
+    """The takes of a folder.
 
     Attributes
     ----------
     takes
-        In the order of the files.
+        Takes in the order of the files.
     problems
-        Per file that could not be read, the reason.
+        Reason for each file that could not be read.
 
     """
 
@@ -43,31 +43,31 @@ class Collection:
 
 
 def recordings_dir() -> Path:
-    """Return the folder in the user's data that keeps what was extracted from clips."""
+    """Return the cache folder of recordings in the user's data."""
     kept: Path = user_data_path("osg-studio", appauthor=False) / "recordings"
     return kept
 
 
-def collected(
+def collect_takes(
     files: Sequence[LabelledFile],
     *,
     keep_in: Path | None = None,
     keypoints: KeypointOptions | None = None,
     progress: Progress | None = None,
 ) -> Collection:
-    """Read all files; one that cannot be read does not end the work.
+    """Read all files and collect their takes; unreadable files become problems.
 
     Parameters
     ----------
     files
         Clips, recordings that `Recording.save` wrote, and keypoint files of other programs.
     keep_in
-        Folder for what is extracted, `recordings_dir` by default. A clip is known by its content,
-        so it may be renamed or moved.
+        Cache folder of recordings, `recordings_dir` by default. The key is a clip's content, so a
+        clip may be renamed or moved.
     keypoints
-        What keypoint files do not tell.
+        Values that keypoint files do not contain.
     progress
-        Called after every frame that is extracted; an exception in it ends the work.
+        Called after every extracted frame; an exception in it stops the extraction.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def collected(
 
 
 class _Extractor:
-    """Gives the recording of a file, extracting no clip twice; models are loaded when needed."""
+    """Extractor with a cache: reads the recording of a file and loads models when needed."""
 
     def __init__(
         self, folder: Path, keypoints: KeypointOptions | None, progress: Progress | None
@@ -130,12 +130,12 @@ class _Extractor:
 
 
 def _content_key(path: Path) -> str:
-    """Name a clip by its content, and by the program whose models saw it."""
+    """Return the cache key of a clip: its content's hash and the versions of program and file."""
     return f"{hash_file(path)}-{__version__}-{FILE_VERSION}"
 
 
 def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:
-    """Return what lies between the salutes, or the whole recording where nobody salutes."""
+    """Return the takes between salutes, or the whole recording where there are none."""
     found = [take.poses for take in takes_in(recording)] or [recording.poses]
     sources = [f"{file.path}, take {number}" for number in range(1, len(found) + 1)]
     if len(found) == 1:

@@ -1,4 +1,4 @@
-"""One-shot accuracy on labelled takes: the same person's further takes, and other people's."""
+"""One-shot protocol: accuracy on further takes of the same person and of other people."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from app.evaluation.confusion import ConfusionMatrix
-from app.evaluation.protocols import label_read
+from app.evaluation.protocols import recognize_label
 from app.recognition import (
     Gesture,
     GestureError,
@@ -22,18 +22,18 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class LabelledTake:
-    """One showing of a gesture, without salutes.
+    """One take of a gesture, without salutes.
 
     Attributes
     ----------
     source
-        Where it comes from, for people.
+        Origin, for people.
     label
-        What is shown.
+        Gesture that is shown.
     person
-        By whom; empty where nobody said.
+        Person who shows it; empty when unknown.
     poses
-        The movement.
+        Landmarks of the take.
 
     """
 
@@ -45,19 +45,19 @@ class LabelledTake:
 
 @dataclass(frozen=True, eq=False)
 class OneShot:
-    """What came of every choice of templates.
+    """Results of the one-shot protocol over all languages.
 
     Attributes
     ----------
     same_person
-        Queries by the person whose takes made the language (user-dependent). Where people are not
-        told apart, all queries.
+        Queries by the person whose takes define the language (user-dependent); all queries where
+        people are unknown.
     other_people
-        Queries by everybody else (user-independent).
+        Queries by all other people (user-independent).
     languages
-        How many languages of one take a gesture were made.
+        Number of languages, each with one take per gesture.
     unusable
-        Sources of the takes that cannot be a demonstration, each with the reason.
+        Reason by source, for takes that cannot be a demonstration.
 
     """
 
@@ -70,25 +70,25 @@ class OneShot:
 def one_shot(
     takes: Sequence[LabelledTake], *, profile: str, progress: Progress | None = None
 ) -> OneShot:
-    """Measure how well one demonstration a gesture names all other takes.
+    """Measure how well one demonstration per gesture recognises all other takes.
 
-    Each person's n-th takes of all gestures make a language, so that every take is a demonstration
-    at least once (a person's gestures with fewer takes begin again with the first). It is asked
-    for all other takes of its gestures.
+    Each person's n-th takes of all gestures form a language, so that every take is a demonstration
+    at least once (gestures with fewer takes start again with the first). The language recognises
+    all other takes of its gestures.
 
     Parameters
     ----------
     takes
-        At least two gestures by one person, one of them twice or by another person too.
+        At least two gestures by one person, one of them twice or also by another person.
     profile
-        Of the recogniser.
+        Profile of the recogniser.
     progress
         Called after every language.
 
     Raises
     ------
     OsgError
-        When no person shows two gestures, or nothing is left to ask for.
+        When no person shows two gestures, or no take is left as a query.
 
     """
     gestures, unusable = _gestures(takes)
@@ -108,30 +108,30 @@ def one_shot(
         for index, take in enumerate(takes):
             if take.label in language.labels and index not in templates:
                 asked = same if take.person == person else others
-                asked.append((take.label, label_read(recognizer, take.poses)))
+                asked.append((take.label, recognize_label(recognizer, take.poses)))
         if progress is not None:
             progress(done, len(chosen))
     if not same and not others:
         raise OsgError(
-            f"{len(takes)} takes of {len(labels)} gestures make languages and leave none to ask "
-            "for: record at least two takes of a gesture"
+            f"{len(takes)} takes of {len(labels)} gestures are all demonstrations, so none is "
+            "left to recognise: record at least two takes of a gesture"
         )
     return OneShot(_matrix(labels, same), _matrix(labels, others), len(chosen), unusable)
 
 
-def read_by(
+def recognize_takes(
     language: Language,
     takes: Sequence[LabelledTake],
     *,
     profile: str,
     progress: Progress | None = None,
 ) -> ConfusionMatrix:
-    """Let a given language name all takes, also those of gestures that it does not have.
+    """Recognise all takes by a given language, also takes of gestures that it does not contain.
 
     Parameters
     ----------
     language
-        Made beforehand, and not from these takes.
+        Language that was not defined from these takes.
     takes, profile, progress
         As for `one_shot`; progress is called after every take.
 
@@ -139,15 +139,15 @@ def read_by(
     recognizer = Recognizer(language, profile)
     read: list[str | None] = []
     for take in takes:
-        read.append(label_read(recognizer, take.poses))
+        read.append(recognize_label(recognizer, take.poses))
         if progress is not None:
             progress(len(read), len(takes))
-    foreign = sorted({take.label for take in takes} - set(language.labels))
-    return ConfusionMatrix.of([*language.labels, *foreign], [take.label for take in takes], read)
+    unknown = sorted({take.label for take in takes} - set(language.labels))
+    return ConfusionMatrix.of([*language.labels, *unknown], [take.label for take in takes], read)
 
 
 def _gestures(takes: Sequence[LabelledTake]) -> tuple[dict[int, Gesture], dict[str, str]]:
-    """Make a gesture of every take that can be one; say of the others why not."""
+    """Define a gesture from every take; return also the reasons of takes that cannot be one."""
     gestures, unusable = {}, {}
     for index, take in enumerate(takes):
         try:
@@ -160,7 +160,7 @@ def _gestures(takes: Sequence[LabelledTake]) -> tuple[dict[int, Gesture], dict[s
 def _choices(
     takes: Sequence[LabelledTake], gestures: dict[int, Gesture]
 ) -> Iterator[tuple[int, ...]]:
-    """Choose templates: indices of one take of each gesture that a person shows."""
+    """Yield the demonstrations of each language: indices of one take per gesture of a person."""
     for person in sorted({take.person for take in takes}):
         own: dict[str, list[int]] = {}
         for index in gestures:

@@ -1,4 +1,4 @@
-"""Shares of something counted, with the interval that their number allows."""
+"""Proportion of correct answers, with its confidence interval."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from math import sqrt
 from typing import Any
 
 CONFIDENCE_95 = 1.96
-"""Standard deviations of a normal distribution that hold 95 % of it."""
+"""Half width, in standard deviations, of the interval with 95 % of a normal distribution."""
 
 
 @dataclass(frozen=True)
 class Share:
-    """Correct answers out of all that were asked.
+    """Share of correct answers.
 
     Attributes
     ----------
     correct, asked
-        Counts; `asked` may be 0, then there is no share.
+        Numbers of correct answers and of queries; without queries there is no share.
 
     """
 
@@ -26,11 +26,11 @@ class Share:
 
     @property
     def value(self) -> float | None:
-        """The share in [0, 1], or None when nothing was asked."""
+        """The share in [0, 1], or None without queries."""
         return self.correct / self.asked if self.asked else None
 
     def interval(self) -> tuple[float, float] | None:
-        """Return Wilson's interval, 95 % (Wilson 1927), or None when nothing was asked."""
+        """Return Wilson's 95 % interval (Wilson 1927), or None without queries."""
         if (share := self.value) is None:
             return None
         n, z = self.asked, CONFIDENCE_95
@@ -49,7 +49,7 @@ class Share:
         return f"{self.value:.1%} ({low:.0%}-{high:.0%})"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
+        """Convert to plain JSON types."""
         interval = self.interval()
         return {
             "correct": self.correct,

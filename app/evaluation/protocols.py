@@ -1,8 +1,7 @@
-"""The paper's protocols: a language is asked to name plausible variants of its own gestures.
+"""Protocols of the paper: a language recognises simulated variants of its own gestures.
 
 The paper draws 200 variants of each of 3 gestures, after Cabrera and Wachs, and shows each of 8
-gestures 50 times (Sec. V). Here both are variants: nobody shows a gesture fifty times to a
-computer.
+gestures 50 times (Sec. V). Here both protocols use variants in place of repeated takes.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ Progress = Callable[[int, int], None]
 """``progress(done, total)``, after every query."""
 
 
-def recognised_variants(
+def recognize_variants(
     language: Language,
     count: int,
     *,
@@ -29,20 +28,20 @@ def recognised_variants(
     person: Person = "same",
     progress: Progress | None = None,
 ) -> ConfusionMatrix:
-    """Let a language name variants of each of its gestures.
+    """Recognise variants of each gesture of a language by the language itself.
 
     Parameters
     ----------
     language
-        Each gesture with its demonstration.
+        Language whose gestures all have a demonstration.
     count
         Variants of each gesture.
     profile
-        Of the recogniser.
+        Profile of the recogniser.
     seed
-        Of the variants; each gesture has its own beside it.
+        Random seed of the variants; combined with the gesture's number.
     person
-        Whether the variants differ as takes by the demonstrator do or as those by other people.
+        Whether the variants simulate takes of the demonstrator or of another person.
     progress
         Called after every query.
 
@@ -61,20 +60,20 @@ def recognised_variants(
                 f"{gesture.label!r} was imported without its demonstration, so it has no "
                 "variants: define it again from a clip"
             )
-        # Gestures drawn with one seed would all waver alike.
+        # The same seed would give all gestures the same variation.
         drawn = draw_variants(
             gesture.trajectory, count, seed=seed * MAX_GESTURES + number, person=person
         )
         for variant in drawn:
             shown.append(gesture.label)
-            read.append(label_read(recognizer, variant))
+            read.append(recognize_label(recognizer, variant))
             if progress is not None:
                 progress(len(read), count * len(language.gestures))
     return ConfusionMatrix.of(language.labels, shown, read)
 
 
-def label_read(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> str | None:
-    """Return the label of a recognition, None also where nothing can be compared."""
+def recognize_label(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> str | None:
+    """Return the label of a recognition; None when rejected or not comparable."""
     try:
         if isinstance(shown, Trajectory):
             return recognizer.recognize_trajectory(condense(shown)).label

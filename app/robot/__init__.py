@@ -1,11 +1,11 @@
-"""The robot's end: frames of a camera or clip go in, events come out.
+"""Robot runtime: turns frames of a camera or clip into events.
 
-It needs no web framework and no database. A `Runtime` joins three parts that can also be used
-apart: a `Source` gives frames, a `PoseEstimator` finds the landmarks in them, a `Listener` turns
+It needs no web framework and no database. A `Runtime` joins three parts that also work alone: a
+`Source` yields frames, a `PoseEstimator` finds the landmarks in them, and a `Listener` turns
 landmarks into takes and recognitions.
 """
 
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
@@ -21,19 +21,20 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.listeners.factory import hearing_of
+from app.robot.listeners.factory import create_listener
 from app.robot.listeners.phrase_listener import PhraseListener
-from app.robot.listeners.salute_listener import Hearing, Listener
+from app.robot.listeners.salute_listener import LandmarkListener, Listener
 from app.robot.listeners.spotting_listener import SpottingListener
 from app.robot.runtime import Runtime
 from app.robot.sources.registry import open_source
 from app.robot.sources.source import Frame, Notice, Quiet, Source
 
 __all__ = [
+    "ActiveLanguage",
     "Event",
     "Frame",
     "FramesDropped",
-    "Hearing",
+    "LandmarkListener",
     "LanguageChanged",
     "LanguageRefused",
     "Listener",
@@ -48,11 +49,10 @@ __all__ = [
     "SourceOpened",
     "SourceRestored",
     "SourceWarned",
-    "SpokenLanguage",
     "SpottingListener",
     "StateChanged",
     "TakeRecognized",
     "TakeRejected",
-    "hearing_of",
+    "create_listener",
     "open_source",
 ]

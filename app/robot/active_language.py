@@ -1,4 +1,4 @@
-"""A language that a robot listens for, and by what it can be told from every other."""
+"""Active language: the language that a robot recognises, with its checksum."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from app.recognition.language.file import read_content, seal
 
 
 @dataclass(frozen=True, eq=False)
-class SpokenLanguage:
-    """A language made ready to be recognised.
+class ActiveLanguage:
+    """A language with its recogniser.
 
     Attributes
     ----------
     recognizer
-        Of that language.
+        Recogniser of the language.
     sha256
-        The language's id: the seal of its file (see the docs), the same here, in the
-        studio that exported it, and in whatever a log is compared with.
+        Id of the language: the checksum of its file, equal to the one in the studio that
+        exported it.
 
     """
 
@@ -41,7 +41,7 @@ class SpokenLanguage:
 
     @classmethod
     def load(cls, path: str | Path, profile: str | None = None) -> Self:
-        """Read a language file and make it ready; up to a second where it brings no thresholds.
+        """Read a language file; takes up to a second where the file has no thresholds.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class SpokenLanguage:
 
     @classmethod
     def from_json(cls, text: str | bytes, profile: str | None = None) -> Self:
-        """Make ready what a language file says; see `load`.
+        """Create an active language from the text of a language file; see `load`.
 
         Raises
         ------

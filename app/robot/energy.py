@@ -1,4 +1,4 @@
-"""What energy a machine says it used: RAPL on PCs, tegrastats on Jetsons."""
+"""Energy meters: read a machine's energy use from RAPL on PCs or tegrastats on Jetsons."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from pathlib import Path
 from typing import Final, Protocol
 
 POWERCAP: Final = Path("/sys/class/powercap")
-"""Where Linux shows the counters of Intel's and AMD's processors (RAPL)."""
+"""Folder of Linux with the energy counters of Intel's and AMD's processors (RAPL)."""
 
 TEGRASTATS: Final = "tegrastats"
 
 INTERVAL_MS: Final = 100
-"""Between two lines of tegrastats: a few frames; more often costs energy itself."""
+"""Milliseconds between two lines of tegrastats, a few frames; shorter costs energy itself."""
 
 RAIL: Final = re.compile(r"(\w+) (\d+)(?:mW)?/\d+(?:mW)?(?=\s|$)")
-"""``NAME now/average`` in milliwatts, with or without the unit."""
+"""Matches ``NAME now/average`` in milliwatts, with or without the unit."""
 
 WHOLE_BOARD: Final = ("VDD_IN", "POM_5V_IN")
-"""Rails that feed all others, where a board measures them; else the others are added up."""
+"""Rails that feed all others; on a board without them the sum of all rails is used."""
 
 
 class EnergyMeter(Protocol):
-    """Counts energy."""
+    """Protocol of a meter that counts energy from its creation on."""
 
     name: str
-    """What is measured, and by what."""
+    """What is measured, and with which tool."""
 
-    def joules(self) -> float:
-        """Return the energy used since the meter was made."""
+    def read_joules(self) -> float:
+        """Return the energy used since the meter was created."""
         ...
 
     def close(self) -> None:
@@ -42,17 +42,17 @@ class EnergyMeter(Protocol):
 
 
 class RaplMeter:
-    """The energy of all processors of a PC, by their own counters; an `EnergyMeter`.
+    """Energy of all processors of a PC, from their own counters; an `EnergyMeter`.
 
     Parameters
     ----------
     folder
-        Where the system shows them.
+        Folder of the counters.
 
     Raises
     ------
     OSError
-        When there are none, or this user may not read them.
+        When there are no counters, or this user may not read them.
 
     """
 
@@ -71,8 +71,8 @@ class RaplMeter:
         self._last = self._read()
         self._microjoules = 0
 
-    def joules(self) -> float:
-        """Return the energy used since the meter was made; to be asked before a counter laps."""
+    def read_joules(self) -> float:
+        """Return the energy used since creation; call it at least once per wrap of a counter."""
         now = self._read()
         for before, after, span in zip(self._last, now, self._ranges, strict=True):
             self._microjoules += (after - before) % (span + 1)
@@ -80,24 +80,24 @@ class RaplMeter:
         return self._microjoules / 1e6
 
     def close(self) -> None:
-        """Do nothing: the counters go on by themselves."""
+        """Do nothing: the system keeps the counters."""
 
     def _read(self) -> list[int]:
         return [int(counter.read_text()) for counter in self._counters]
 
 
 class TegrastatsMeter:
-    """The energy of a Jetson, by NVIDIA's tool; an `EnergyMeter`.
+    """Energy of a Jetson, from NVIDIA's tool tegrastats; an `EnergyMeter`.
 
     Parameters
     ----------
     command
-        The tool.
+        Name or path of the tool.
 
     Raises
     ------
     OSError
-        When it is not there.
+        When the tool is not installed.
 
     """
 
@@ -111,12 +111,12 @@ class TegrastatsMeter:
         self._thread = threading.Thread(target=self._read, name="tegrastats", daemon=True)
         self._thread.start()
 
-    def joules(self) -> float:
-        """Return the energy used since the meter was made, up to the tool's last line."""
+    def read_joules(self) -> float:
+        """Return the energy used since creation, up to the tool's last line."""
         return self._joules
 
     def close(self) -> None:
-        """End the tool."""
+        """Stop the tool."""
         self._process.terminate()
         self._process.wait()
         self._thread.join()
@@ -127,19 +127,19 @@ class TegrastatsMeter:
         with self._process.stdout as lines:
             for line in lines:
                 now = clock.monotonic()
-                self._joules += watts_in(line) * (now - before)
+                self._joules += parse_watts(line) * (now - before)
                 before = now
 
 
-def watts_in(line: str) -> float:
-    """Return the power that a line of tegrastats tells, in watts."""
+def parse_watts(line: str) -> float:
+    """Return the power in a line of tegrastats, in watts."""
     rails = {name: int(power) for name, power in RAIL.findall(line)}
     whole = [rails[name] for name in WHOLE_BOARD if name in rails]
     return (whole[0] if whole else sum(rails.values())) / 1000
 
 
-def energy_meter() -> EnergyMeter | None:
-    """Return a meter of this machine, or None where it does not tell."""
+def open_energy_meter() -> EnergyMeter | None:
+    """Open the energy meter of this machine; None where it has none."""
     if shutil.which(TEGRASTATS):
         return TegrastatsMeter()
     with suppress(OSError, ValueError):

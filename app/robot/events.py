@@ -1,210 +1,156 @@
-"""What a robot's runtime tells: one frozen record per thing that happened, in the order it did.
+"""Robot events: one frozen dataclass for each kind of event that the runtime emits, in order.
 
-Every `time` is in seconds of the source's clock: of the frame after which it was known.
+The fields are also the keys of the JSON line of an event: `app.robot.messages` derives the JSON
+models and the published JSON Schema from the annotations and from the first line of each docstring.
+Every `time` is in seconds of the source's clock, of the frame after which the event was known.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BeforeValidator, Field
 
 from app.recognition import Recognition
 from app.recognition.phrases.parser import PhraseEvent
 from app.recognition.recording.segmentation import TakeState
 
+JSON_TYPE: Final = "json_type"
+"""Metadata key of a field whose type in JSON is another one; None: the field is not in JSON."""
+
+
+def _replace_infinity(value: float | None) -> float | None:
+    return value if value is None or math.isfinite(value) else None
+
+
+Seconds = Annotated[float, Field(description="Seconds of the source's clock.")]
+Reason = Annotated[str, Field(description="One sentence for a person.")]
+Share = Annotated[float, Field(ge=0, le=1)]
+Sha256 = Annotated[
+    str, Field(pattern="^[0-9a-f]{64}$", description="The language's id: the seal of its file.")
+]
+Revision = Annotated[int, Field(ge=1, description="The language's revision.")]
+Count = Annotated[int, Field(ge=0)]
+Margin = Annotated[
+    float | None,
+    BeforeValidator(_replace_infinity),
+    Field(
+        description="How much nearer the nearest gesture is than every other, in the unit of the "
+        "recogniser's scores; null where no other can be compared."
+    ),
+]
+CommandValue = Annotated[
+    str | dict[str, Any] | None,
+    Field(description="What the language's author wants the robot to do."),
+]
+
 
 @dataclass(frozen=True)
 class SourceOpened:
-    """Frames are about to be looked at.
+    """Frames are about to be looked at; the first line."""
 
-    Attributes
-    ----------
-    time
-        0.
-    source
-        Its name, without passwords.
-    live
-        Whether frames may be dropped.
-    frame_size
-        Width and height in pixels.
-    began
-        When the source's clock was 0, in UTC; None for a recording, whose past nobody knows.
-
-    """
-
-    time: float
-    source: str
-    live: bool
-    frame_size: tuple[int, int]
-    began: datetime | None
+    time: Seconds
+    source: Annotated[str, Field(description="Its name, without passwords.")]
+    live: Annotated[bool, Field(description="Whether frames may be dropped.")]
+    frame_size: Annotated[tuple[int, int], Field(description="Width and height in pixels.")]
+    began: Annotated[
+        datetime | None,
+        Field(description="When the source's clock was 0, in UTC; null for a recording."),
+    ]
 
 
 @dataclass(frozen=True)
 class SourceWarned:
-    """Something is wrong with the source that does not stop it, such as a damaged clip.
+    """Something is wrong with the source that does not stop it.
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    reason
-        One sentence for a person.
-
+    An example is a damaged clip.
     """
 
-    time: float
-    reason: str
+    time: Seconds
+    reason: Reason
 
 
 @dataclass(frozen=True)
 class SourceLost:
-    """A camera gives no frames any more; it is being opened again and again.
+    """A camera gives no frames any more and is being opened again; a take begun is rejected."""
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    reason
-        One sentence for a person.
-
-    """
-
-    time: float
-    reason: str
+    time: Seconds
+    reason: Reason
 
 
 @dataclass(frozen=True)
 class SourceRestored:
-    """A lost camera gives frames again.
+    """A lost camera gives frames again."""
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    missing
-        Seconds without a frame.
-    attempts
-        How often opening was tried.
-
-    """
-
-    time: float
-    missing: float
-    attempts: int
+    time: Seconds
+    missing: Annotated[float, Field(description="Seconds without a frame.")]
+    attempts: Annotated[int, Field(ge=1, description="How often opening was tried.")]
 
 
 @dataclass(frozen=True)
 class SourceEnded:
-    """No more frames are looked at: a recording is over, or the runtime was stopped.
+    """The recording is over, or the robot was stopped; the last line."""
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    frames
-        Frames looked at.
-    dropped
-        Frames left out because newer ones had come.
-    stopped
-        Whether somebody stopped it before the source was over.
-
-    """
-
-    time: float
-    frames: int
-    dropped: int
-    stopped: bool
+    time: Seconds
+    frames: Annotated[Count, Field(description="Looked at.")]
+    dropped: Annotated[Count, Field(description="Left out because newer ones had come.")]
+    stopped: Annotated[bool, Field(description="By a signal, before the source was over.")]
 
 
 @dataclass(frozen=True)
 class FramesDropped:
-    """The camera is faster than this machine; told at most every `REPORT_SECONDS`.
+    """The camera is faster than this machine.
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    seconds
-        Since when is counted.
-    dropped, frames
-        Frames left out and frames looked at in this time.
-
+    Emitted at most once in `app.robot.runtime.REPORT_SECONDS`.
     """
 
-    time: float
-    seconds: float
-    dropped: int
-    frames: int
+    time: Seconds
+    seconds: Annotated[float, Field(description="Since when is counted.")]
+    dropped: Count
+    frames: Annotated[Count, Field(description="Looked at in this time.")]
 
 
 @dataclass(frozen=True)
 class StateChanged:
-    """Another state of the salutes.
+    """Another state of the salutes."""
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    state
-        ``idle``: waits for a salute, or without salutes for a gesture; ``recording``: a salute
-        began a take; ``done``: the salute that ended it is still held.
-
-    """
-
-    time: float
-    state: TakeState
+    time: Seconds
+    state: Annotated[
+        TakeState,
+        Field(
+            description="idle: a salute, or without salutes a gesture, is awaited; recording: a "
+            "take goes on; done: the salute that ended it is still held."
+        ),
+    ]
 
 
 @dataclass(frozen=True)
 class LanguageChanged:
-    """From now on takes are recognised by this language.
+    """From now on takes are recognised by this language; the second line, and after a reload."""
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    name
-        The language's name.
-    sha256, revision
-        Its id and revision, see `SpokenLanguage`.
-    gestures
-        Its labels.
-    profile
-        The voters that recognise it.
-    tuning
-        How that deviates from the profile, in words that follow "recognised".
-
-    """
-
-    time: float
+    time: Seconds
     name: str
-    sha256: str
-    revision: int
-    gestures: tuple[str, ...]
-    profile: str
-    tuning: str
+    sha256: Sha256
+    revision: Revision
+    gestures: Annotated[tuple[str, ...], Field(description="The labels.")]
+    profile: Annotated[str, Field(description="The voters that recognise it.")]
+    tuning: Annotated[str, Field(description='What differs from that, in words: "recognised ...".')]
 
 
 @dataclass(frozen=True)
 class LanguageRefused:
-    """A new language file cannot be used; the language before it is kept.
+    """A new language file cannot be used; the language told here is kept.
 
-    Attributes
-    ----------
-    time
-        Seconds.
-    reason
-        One sentence for a person.
-    sha256, revision
-        Of the language that is kept.
-
+    `sha256` and `revision` are those of the language that stays active.
     """
 
-    time: float
-    reason: str
-    sha256: str
-    revision: int
+    time: Seconds
+    reason: Reason
+    sha256: Sha256
+    revision: Revision
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -213,43 +159,34 @@ class TakeRecognized:
 
     Attributes
     ----------
-    time
-        Seconds: when it was known.
     start, end
-        Seconds between which it was shown, as ``osg-studio recognize`` tells them.
+        Seconds of the gesture, as ``osg-studio recognize`` prints them.
     closed
-        Always true: a stop salute ended it, or it was spotted without salutes.
-    label
-        The gesture.
-    confidence
-        In [0, 1], see `Recognition`.
-    margin
-        How much nearer it is than every other gesture, see `Recognition.margin`.
-    command
-        What the language's author wants the robot to do; words or an object, None: nothing said.
-    sha256, revision
-        The language that it was recognised by.
+        Always true: a stop salute ended the take, or it was spotted without salutes.
+    nearest
+        Equal to `label`: a recognised gesture is the nearest one.
+    confidence, margin
+        See `Recognition`.
     recognition
-        All that the recogniser answered.
+        The complete result of the recogniser.
 
     """
 
-    time: float
-    start: float
-    end: float
-    closed: bool
+    time: Seconds
+    start: Seconds
+    end: Seconds
+    closed: Literal[True]
     label: str
-    confidence: float
-    margin: float
-    command: str | dict[str, Any] | None
-    sha256: str
-    revision: int
-    recognition: Recognition
+    nearest: str = field(init=False)
+    confidence: Share
+    margin: float = field(metadata={JSON_TYPE: Margin})
+    command: CommandValue
+    sha256: Sha256
+    revision: Revision
+    recognition: Recognition = field(metadata={JSON_TYPE: None})
 
-    @property
-    def nearest(self) -> str:
-        """The label again: what is recognised is nearest."""
-        return self.recognition.nearest
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nearest", self.recognition.nearest)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -258,46 +195,36 @@ class TakeRejected:
 
     Attributes
     ----------
-    time
-        Seconds: when it was known.
     start, end
         Seconds of the take.
-    closed
-        Whether a stop salute ended it.
-    reason
-        One sentence for a person.
+    label
+        Always None.
     nearest, confidence, margin
-        The gesture that comes nearest, as in `TakeRecognized`; None where none was looked for.
+        Of the nearest gesture, as in `TakeRecognized`; None without a recognition.
     sha256, revision
-        The language that was asked.
+        Of the language that was active.
     recognition
-        All that the recogniser answered; None where it was not asked or could not answer.
+        The complete result of the recogniser; None where it was not run or raised an error.
 
     """
 
-    time: float
-    start: float
-    end: float
-    closed: bool
-    reason: str
-    sha256: str
-    revision: int
-    recognition: Recognition | None = None
+    time: Seconds
+    start: Seconds
+    end: Seconds
+    closed: Annotated[bool, Field(description="Whether a salute ended it.")]
+    reason: Reason
+    label: None = field(init=False, default=None)
+    nearest: str | None = field(init=False)
+    confidence: Share | None = field(init=False)
+    margin: Margin = field(init=False)
+    sha256: Sha256
+    revision: Revision
+    recognition: Recognition | None = field(default=None, metadata={JSON_TYPE: None})
 
-    @property
-    def nearest(self) -> str | None:
-        """The gesture that comes nearest."""
-        return self.recognition.nearest if self.recognition else None
-
-    @property
-    def confidence(self) -> float | None:
-        """In [0, 1], of `nearest`."""
-        return self.recognition.confidence if self.recognition else None
-
-    @property
-    def margin(self) -> float | None:
-        """How much nearer `nearest` is than every other gesture."""
-        return self.recognition.margin if self.recognition else None
+    def __post_init__(self) -> None:
+        answer = self.recognition
+        for name in ("nearest", "confidence", "margin"):
+            object.__setattr__(self, name, None if answer is None else getattr(answer, name))
 
 
 @dataclass(frozen=True)
@@ -309,11 +236,12 @@ class PhraseHeard:
     time
         Seconds: when it was known.
     phrase
-        What the grammar makes of it; has a mission where the robot should do something.
+        Result of the grammar; has a mission where the robot should act. In JSON its keys stand
+        beside the others.
     confidence
-        In [0, 1]: of the message's gesture that is least sure; 0 where none was recognised.
+        Lowest confidence of the message's gestures, in [0, 1]; 0 where none was recognised.
     sha256, revision
-        The language.
+        Of the language.
 
     """
 

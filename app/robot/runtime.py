@@ -1,4 +1,4 @@
-"""The robot's loop: frames in, events out, until the recording is over or somebody stops it."""
+"""Robot runtime: processes frames into events until the recording ends or it is stopped."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.recognition.language.requirements import require_landmarks
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
@@ -25,54 +25,52 @@ from app.robot.events import (
     SourceRestored,
     SourceWarned,
 )
-from app.robot.listeners.salute_listener import Hearing
+from app.robot.listeners.salute_listener import LandmarkListener
 from app.robot.sources.source import Frame, Notice, Quiet, Source
 
 REPORT_SECONDS: Final = 10.0
-"""Between two reports of dropped frames: a slow machine drops some all the time, and a log of days
-must stay readable."""
+"""Seconds between two events about dropped frames; keeps a log of several days readable."""
 
 THE_ESTIMATOR: Final = "the pose estimator"
-"""What lacks a landmark, in messages."""
+"""Subject of the message about a missing landmark."""
 
-LanguageChanges = Callable[[], SpokenLanguage | OsgError | None]
-"""Tells, without waiting, which language is to be spoken from now on, why a new one cannot be, or
-None: nothing new."""
+LanguageChanges = Callable[[], ActiveLanguage | OsgError | None]
+"""Returns without waiting: a new language, the error of an unusable one, or None for no change."""
 
 Observer = Callable[[Frame, FrameLandmarks], None]
-"""``observer(frame, found)``: a frame that was looked at, and what was found in it."""
+"""``observer(frame, found)``: called with a processed frame and the landmarks found in it."""
 
 
-def nothing_new() -> None:
-    """Speak the same language until the end."""
+def keep_language() -> None:
+    """Report no change, so that the language stays the same until the end."""
 
 
 class Runtime:
-    """Looks at the frames of a source one after the other and tells what happens.
+    """Iterator of events: processes the frames of a source one after the other.
 
-    Iterate over it once, in the thread that shall do the work::
+    Iterate over it once, in the thread that should do the work::
 
         with closing(open_source("dive.mp4")) as source, closing(create_estimator()) as estimator:
-            for event in Runtime(source, estimator, Listener(SpokenLanguage.load("pool.json"))):
+            for event in Runtime(source, estimator, Listener(ActiveLanguage.load("pool.json"))):
                 ...
 
-    Nothing is printed, and nothing is kept beyond what the listener remembers. A source that is
-    lost ends whatever was begun: neither a take nor what the estimator tracked goes on across it.
+    It prints nothing and keeps no frames; the listener keeps the landmarks it needs. When a source
+    is lost, an open take is rejected and the estimator's tracking is reset.
 
     Parameters
     ----------
     source
-        Where frames come from; closed by whoever opened it.
+        Source of the frames; the caller closes it.
     estimator
-        What finds the landmarks; reset first, closed by whoever made it.
+        Finds the landmarks; reset before the first frame, closed by the caller.
     listener
-        What hears gestures in them.
+        Recognises gestures in the landmarks.
     water
-        Whether colour and contrast are set right first, as in `app.recognition.record`.
+        Correction of colour and contrast before estimation, as in `app.recognition.record`.
     changes
-        Asked before every frame for another language.
+        Called before every frame for a new language.
     observer
-        Called with every frame and its landmarks, before the listener hears them.
+        Called with every frame and its landmarks, before the listener gets them.
 
     Raises
     ------
@@ -86,10 +84,10 @@ class Runtime:
         self,
         source: Source,
         estimator: PoseEstimator,
-        listener: Hearing,
+        listener: LandmarkListener,
         *,
         water: WaterCorrection = "auto",
-        changes: LanguageChanges = nothing_new,
+        changes: LanguageChanges = keep_language,
         observer: Observer | None = None,
     ) -> None:
         require_landmarks(
@@ -102,39 +100,42 @@ class Runtime:
         self._changes = changes
         self._observer = observer
         self._stopped = False
-        self._drops = DropCount()
+        self._drops = DropCounter()
         self._time = 0.0
 
     def stop(self) -> None:
-        """End after the frame that is looked at now; may be called anywhere, also by a signal."""
+        """Stop after the current frame; any thread and any signal handler may call this."""
         self._stopped = True
 
     def __iter__(self) -> Iterator[Event]:
-        """Look at frames and give what happens, in order.
+        """Process the frames and yield events, in order.
 
         Raises
         ------
         OsgError
-            When a recording turns out to be unreadable, or an image is none.
+            When a recording is unreadable, or a frame is not an image.
 
         """
-        yield self._opened()
-        yield language_changed(self._time, self._listener.language)
+        yield self._build_source_opened()
+        yield build_language_changed(self._time, self._listener.language)
         self._estimator.reset()
         for given in self._source:
             self._time = given.time
-            yield from self._new_language()
-            yield from self._look(given) if isinstance(given, Frame) else self._heed(given)
+            yield from self._update_language()
+            if isinstance(given, Frame):
+                yield from self._process_frame(given)
+            else:
+                yield from self._handle_notice(given)
             if self._stopped:
                 break
         yield from self._listener.finish()
         yield SourceEnded(self._time, self._drops.frames, self._drops.dropped, self._stopped)
 
-    def _opened(self) -> SourceOpened:
+    def _build_source_opened(self) -> SourceOpened:
         source = self._source
         return SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
 
-    def _look(self, frame: Frame) -> Iterator[Event]:
+    def _process_frame(self, frame: Frame) -> Iterator[Event]:
         found = self._estimator.estimate(correct_colours(frame.image, self._water), frame.time)
         if self._observer is not None:
             self._observer(frame, found)
@@ -145,7 +146,7 @@ class Runtime:
         yield from self._listener.feed(moment, best_salute(found.hands))
         yield from self._drops.count(frame)
 
-    def _heed(self, notice: Notice) -> Iterator[Event]:
+    def _handle_notice(self, notice: Notice) -> Iterator[Event]:
         match notice:
             case SourceLost(time, reason):
                 yield notice
@@ -158,30 +159,30 @@ class Runtime:
             case Quiet():
                 pass
 
-    def _new_language(self) -> Iterator[Event]:
-        """Speak another language where there is one; a take that goes on is recognised by it."""
+    def _update_language(self) -> Iterator[Event]:
+        """Activate a new language, if there is one; it also recognises a take that is open."""
         change = self._changes()
-        if isinstance(change, SpokenLanguage):
+        if isinstance(change, ActiveLanguage):
             try:
                 language = change.recognizer.language
                 require_landmarks(language, list_landmarks(self._estimator), THE_ESTIMATOR)
-                self._listener.speak(change)
+                self._listener.set_language(change)
             except OsgError as error:
                 change = error
             else:
-                yield language_changed(self._time, change)
+                yield build_language_changed(self._time, change)
         if isinstance(change, OsgError):
             kept = self._listener.language
             yield LanguageRefused(self._time, str(change), kept.sha256, kept.revision)
 
 
-class DropCount:
-    """Counts frames looked at and left out.
+class DropCounter:
+    """Counter of processed and dropped frames.
 
     Attributes
     ----------
     frames, dropped
-        Since the beginning.
+        Processed and dropped frames since the beginning.
 
     """
 
@@ -189,23 +190,23 @@ class DropCount:
         self.frames = 0
         self.dropped = 0
         self._since = 0.0
-        self._told = (0, 0)
+        self._reported = (0, 0)
 
     def count(self, frame: Frame) -> Iterator[FramesDropped]:
-        """Count a frame, and tell now and then how many were left out."""
+        """Count a frame; yield an event when frames were dropped in the last interval."""
         self.frames += 1
         self.dropped += frame.dropped
-        frames, dropped = self.frames - self._told[0], self.dropped - self._told[1]
+        frames, dropped = self.frames - self._reported[0], self.dropped - self._reported[1]
         seconds = frame.time - self._since
         if seconds < REPORT_SECONDS:
             return
-        self._since, self._told = frame.time, (self.frames, self.dropped)
+        self._since, self._reported = frame.time, (self.frames, self.dropped)
         if dropped:
             yield FramesDropped(frame.time, seconds, dropped, frames)
 
 
-def language_changed(time: float, language: SpokenLanguage) -> LanguageChanged:
-    """Tell which language is spoken from now on."""
+def build_language_changed(time: float, language: ActiveLanguage) -> LanguageChanged:
+    """Build the event of a language that is active from now on."""
     recognizer = language.recognizer
     return LanguageChanged(
         time=time,

@@ -1,7 +1,7 @@
-"""What each stage from the camera to the recognition costs, measured on the same frames in one run.
+"""Stage profile: time and energy of each stage from camera to recognition, in one run.
 
-The paper gives frames per second of the camera alone, with pose estimation, and with everything
-(Sec. IV; on a Jetson Orin 15, 4.91 and 4.06): what recognition itself costs is the last step.
+The paper reports frames per second of the camera alone, with pose estimation, and with all stages
+(Sec. IV; on a Jetson Orin 15, 4.91 and 4.06): the last step is the cost of recognition.
 """
 
 from __future__ import annotations
@@ -17,30 +17,30 @@ from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.robot.energy import EnergyMeter
 from app.robot.events import TakeRecognized, TakeRejected
-from app.robot.listeners.salute_listener import Hearing
+from app.robot.listeners.salute_listener import LandmarkListener
 from app.robot.sources.source import Frame, Source
 
 Stage = Literal["grab", "pose", "hands", "salute", "recognition"]
 
 STAGES: Final[tuple[Stage, ...]] = get_args(Stage)
-"""In order; each adds to those before it."""
+"""Stages in order; the cost of each comes on top of those before it."""
 
 WARM_UP: Final = 10
-"""Frames that are not counted: the first ones load code and find the person."""
+"""First frames, which are not counted: they load code and find the person."""
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What something took.
+    """Cost of a stage.
 
     Attributes
     ----------
     seconds
-        Of the clock on the wall.
+        Wall-clock time.
     joules
-        0 where nothing measures.
+        Energy; 0 without a meter.
     processor
-        Seconds of all processors together, of this process alone.
+        Processor time of this process, in seconds over all processors.
 
     """
 
@@ -65,18 +65,18 @@ class Cost:
 
 @dataclass
 class StageProfile:
-    """What the stages took.
+    """Costs of the stages.
 
     Attributes
     ----------
     frames
-        Counted.
+        Number of measured frames.
     takes
-        Ends of takes among them, recognised or rejected: recognition works at these alone.
+        Takes that ended in these frames, recognised or rejected; only these need recognition.
     costs
-        By stage: what it added to those before it.
+        Cost of each stage, without those before it.
     energy
-        What measured the joules; None: nothing did.
+        Name of the energy meter; None without one.
 
     """
 
@@ -86,34 +86,34 @@ class StageProfile:
     energy: str | None = None
 
     def frames_per_second(self, stage: Stage) -> float:
-        """Return the rate with this stage and all before it."""
+        """Return the frame rate with this stage and all before it."""
         seconds = sum(self.costs[each].seconds for each in _up_to(stage))
         return self.frames / seconds if seconds else 0.0
 
     def joules_per_frame(self, stage: Stage) -> float | None:
-        """Return the energy of a frame with this stage and all before it."""
+        """Return the energy per frame with this stage and all before it; None without a meter."""
         if self.energy is None or not self.frames:
             return None
         return sum(self.costs[each].joules for each in _up_to(stage)) / self.frames
 
     @property
     def share(self) -> float:
-        """By how much salutes and recognition lower the rate of pose and hands, in [0, 1]."""
+        """Share by which salutes and recognition lower the rate of pose and hands, in [0, 1]."""
         before, after = self.frames_per_second("hands"), self.frames_per_second("recognition")
         return 1 - after / before if before else 0.0
 
     @property
     def processor_share(self) -> float:
-        """Share of the processors' time that goes to salutes and recognition, in [0, 1].
+        """Share of salutes and recognition in the processor time, in [0, 1].
 
-        It hardly depends on what else the machine does, nor on which stages run side by side.
+        It hardly depends on the machine's other load or on stages that run in parallel.
         """
         whole = sum(cost.processor for cost in self.costs.values())
         ours = self.costs["salute"].processor + self.costs["recognition"].processor
         return ours / whole if whole else 0.0
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
+        """Convert to plain JSON types."""
         return {
             "frames": self.frames,
             "takes": self.takes,
@@ -132,21 +132,21 @@ class StageProfile:
 
 
 class StageProfiler:
-    """Runs a source through two estimators, one without hands, and counts what each stage takes.
+    """Profiler: runs a source through two estimators, one without hands, and measures each stage.
 
-    The hands cost what the whole estimator takes more than the body alone, frame by frame: the two
-    run side by side where there are processors for both.
+    The cost of the hands is the difference between the two estimators, frame by frame: body and
+    hands run in parallel where there are processors for both.
 
     Parameters
     ----------
     body, whole
         Estimators without and with hands, otherwise the same.
     listener
-        What hears gestures.
+        Recognises gestures.
     water
         As in `Runtime`.
     meter
-        What counts energy.
+        Measures energy.
 
     """
 
@@ -154,7 +154,7 @@ class StageProfiler:
         self,
         body: PoseEstimator,
         whole: PoseEstimator,
-        listener: Hearing,
+        listener: LandmarkListener,
         *,
         water: WaterCorrection = "auto",
         meter: EnergyMeter | None = None,
@@ -169,14 +169,14 @@ class StageProfiler:
         self._takes = 0
 
     def run(self, source: Source, is_over: Callable[[], bool]) -> StageProfile:
-        """Profile a source until it ends or `is_over`, which is asked after every frame."""
+        """Profile a source until it ends or `is_over`, called after every frame, returns True."""
         self._body.reset()
         self._whole.reset()
         self._lap()
         number = 0
         for given in source:
             if isinstance(given, Frame):
-                costs: dict[Stage, Cost] = {"grab": self._lap(), **self._look(given)}
+                costs: dict[Stage, Cost] = {"grab": self._lap(), **self._process(given)}
                 number += 1
                 if number > WARM_UP:
                     self._add(costs)
@@ -185,8 +185,8 @@ class StageProfiler:
             self._lap()
         return self._profile
 
-    def _look(self, frame: Frame) -> dict[Stage, Cost]:
-        """Do all that a robot does with a frame, and return what each stage added."""
+    def _process(self, frame: Frame) -> dict[Stage, Cost]:
+        """Run all stages on a frame and return the cost of each."""
         image = correct_colours(frame.image, self._water)
         correction = self._lap()
         self._body.estimate(image, frame.time)
@@ -196,9 +196,10 @@ class StageProfiler:
         score = best_salute(found.hands)
         salute = self._lap()
         height, width = frame.image.shape[:2]
-        told = self._listener.feed(build_frame_sequence(found, frame.time, (width, height)), score)
+        moment = build_frame_sequence(found, frame.time, (width, height))
+        events = self._listener.feed(moment, score)
         recognition = self._lap()
-        self._takes = sum(isinstance(event, TakeRecognized | TakeRejected) for event in told)
+        self._takes = sum(isinstance(event, TakeRecognized | TakeRejected) for event in events)
         return {
             "pose": correction + body,
             "hands": whole - body,
@@ -214,8 +215,8 @@ class StageProfiler:
             profile.costs[stage] += cost
 
     def _lap(self) -> Cost:
-        """Return what was taken since the last call."""
-        joules = self._meter.joules() if self._meter else 0.0
+        """Return the cost since the last call."""
+        joules = self._meter.read_joules() if self._meter else 0.0
         now = Cost(clock.perf_counter(), joules, clock.process_time())
         taken, self._last = now - self._last, now
         return taken

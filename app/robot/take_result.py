@@ -1,50 +1,50 @@
-"""What a robot makes of a take: a gesture that it may act on, or a rejection with its reason."""
+"""Take result: recognises a take and builds the event, a gesture or a rejection with a reason."""
 
 from __future__ import annotations
 
 from app.recognition import PoseError, Recognition, Take
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized, TakeRejected
 
 
-def verdict_on_take(
-    language: SpokenLanguage, take: Take, time: float, unclosed: str
+def judge_take(
+    language: ActiveLanguage, take: Take, time: float, unclosed: str
 ) -> TakeRecognized | TakeRejected:
-    """Recognise a take.
+    """Recognise a take and build its event.
 
     Parameters
     ----------
     language
-        The language to ask.
+        Language that recognises the take.
     take
-        What was shown.
+        The take.
     time
-        Seconds: now.
+        Current time of the source, in seconds.
     unclosed
-        Why a take that no stop salute ended has none. Such a take is rejected, whatever it looks
-        like: who began a gesture and did not end it has not said anything yet.
+        Reason to give for a take without a stop salute. Such a take is always rejected, because
+        the gesture may be incomplete.
 
     """
     try:
         recognition = language.recognizer.recognize(take.poses)
     except PoseError as error:
-        return rejection(language, take, time, str(error))
+        return reject_take(language, take, time, str(error))
     if not take.closed:
-        return rejection(language, take, time, unclosed, recognition)
-    return verdict(language, recognition, time, take.start, take.end)
+        return reject_take(language, take, time, unclosed, recognition)
+    return judge_recognition(language, recognition, time, take.start, take.end)
 
 
-def verdict(
-    language: SpokenLanguage, recognition: Recognition, time: float, start: float, end: float
+def judge_recognition(
+    language: ActiveLanguage, recognition: Recognition, time: float, start: float, end: float
 ) -> TakeRecognized | TakeRejected:
-    """Tell what a recognition between two moments means for the robot."""
+    """Build the event of a recognition from `start` to `end`: recognised, or rejected."""
     if recognition.label is None:
         return TakeRejected(
             time=time,
             start=start,
             end=end,
             closed=True,
-            reason=reason_of(language, recognition),
+            reason=explain_rejection(language, recognition),
             sha256=language.sha256,
             revision=language.revision,
             recognition=recognition,
@@ -64,14 +64,14 @@ def verdict(
     )
 
 
-def rejection(
-    language: SpokenLanguage,
+def reject_take(
+    language: ActiveLanguage,
     take: Take,
     time: float,
     reason: str,
     recognition: Recognition | None = None,
 ) -> TakeRejected:
-    """Reject a take for a reason."""
+    """Build the event of a take that is rejected for `reason`."""
     return TakeRejected(
         time=time,
         start=take.start,
@@ -84,8 +84,8 @@ def rejection(
     )
 
 
-def reason_of(language: SpokenLanguage, recognition: Recognition) -> str:
-    """Say why a recognition has no label."""
+def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str:
+    """Return why a recognition has no label, in words."""
     if recognition.fault:
         return f"too poor to judge: {recognition.fault}"
     novelty = recognition.novelty[recognition.gestures.index(recognition.nearest)]

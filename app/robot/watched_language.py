@@ -1,4 +1,4 @@
-"""A language file that may be replaced while the robot listens."""
+"""Watched language: reloads a language file when it is replaced while the robot runs."""
 
 from __future__ import annotations
 
@@ -10,36 +10,35 @@ from typing import Final
 from typing_extensions import Self
 
 from app.recognition import OsgError
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 
-LOOK_EVERY: Final = 0.5
-"""Seconds between two looks at the file: sooner than a person who copied it wonders, and one call
-of the system each."""
+POLL_INTERVAL: Final = 0.5
+"""Seconds between two checks of the file; each check is one system call."""
 
-MOST_NEWS: Final = 8
-"""That wait while a frame is looked at; of more edits within one frame the last ones count."""
+MAX_PENDING: Final = 8
+"""Changes that wait while a frame is processed; of more changes the last ones are kept."""
 
 FileState = tuple[int, int, int] | None
-"""Inode, size in bytes and time of the last write in nanoseconds; None: there is no such file."""
+"""Inode, size in bytes and time of the last write in nanoseconds; None for a missing file."""
 
 
 class WatchedLanguage:
-    """Reads a language file, and again whenever it was replaced or somebody asks.
+    """Watcher of a language file: reads it again when it is replaced or `reload` is called.
 
-    A thread of its own looks and reads, so that no frame waits for it. A file that still changes
-    is left alone until it rests.
+    A separate thread polls and reads, so that no frame waits for it. A file is read once its size
+    and time are the same in two polls.
 
     Parameters
     ----------
     path
         The language file.
     profile
-        The recogniser's profile; each language's own when not given.
+        The recogniser's profile; by default each language's own.
 
     Attributes
     ----------
     first
-        The language as it was at the beginning.
+        The language at the start.
 
     Raises
     ------
@@ -54,24 +53,24 @@ class WatchedLanguage:
         self._path = Path(path)
         self._profile = profile
         self._read_state = self._state()
-        self.first = SpokenLanguage.load(path, profile)
-        self._spoken = self.first.sha256
-        self._news: deque[SpokenLanguage | OsgError] = deque(maxlen=MOST_NEWS)
-        self._asked = False
+        self.first = ActiveLanguage.load(path, profile)
+        self._active = self.first.sha256
+        self._pending: deque[ActiveLanguage | OsgError] = deque(maxlen=MAX_PENDING)
+        self._reload_requested = False
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="language", daemon=True)
         self._thread.start()
 
-    def changes(self) -> SpokenLanguage | OsgError | None:
-        """Return the language to speak from now on, or why the new file cannot be; once each."""
-        return self._news.popleft() if self._news else None
+    def next_change(self) -> ActiveLanguage | OsgError | None:
+        """Return the next new language, or the error of an unusable file; each only once."""
+        return self._pending.popleft() if self._pending else None
 
     def reload(self) -> None:
-        """Read the file again soon, also when it looks the same; may be called by a signal."""
-        self._asked = True
+        """Read the file at the next poll, also when unchanged; a signal handler may call this."""
+        self._reload_requested = True
 
     def close(self) -> None:
-        """Stop looking."""
+        """Stop watching."""
         self._closing.set()
         self._thread.join()
 
@@ -83,24 +82,24 @@ class WatchedLanguage:
 
     def _watch(self) -> None:
         before = self._read_state
-        while not self._closing.wait(LOOK_EVERY):
+        while not self._closing.wait(POLL_INTERVAL):
             state = self._state()
-            if self._asked or (state == before and state != self._read_state):
-                asked, self._asked = self._asked, False
+            if self._reload_requested or (state == before and state != self._read_state):
+                requested, self._reload_requested = self._reload_requested, False
                 self._read_state = state
-                self._read(asked)
+                self._read(requested)
             before = state
 
-    def _read(self, asked: bool) -> None:
-        """Read the file; what says the same as before is told only to who asked."""
+    def _read(self, requested: bool) -> None:
+        """Read the file; an unchanged language counts as a change only when `requested`."""
         try:
-            language = SpokenLanguage.load(self._path, self._profile)
+            language = ActiveLanguage.load(self._path, self._profile)
         except OsgError as error:
-            self._news.append(error)
+            self._pending.append(error)
             return
-        if asked or language.sha256 != self._spoken:
-            self._spoken = language.sha256
-            self._news.append(language)
+        if requested or language.sha256 != self._active:
+            self._active = language.sha256
+            self._pending.append(language)
 
     def _state(self) -> FileState:
         try:

@@ -1,1 +1,1 @@
-"""The viser side of the studio: one workspace per browser tab, no HTTP and no database."""
+"""User interface in viser: one workspace per browser tab, without HTTP and database."""

@@ -1,4 +1,4 @@
-"""The back wall of the space-time cube: the trajectory image, behind the trails it flattens."""
+"""Back wall of the space-time cube: shows the trajectory image behind the trails."""
 
 from __future__ import annotations
 

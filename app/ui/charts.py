@@ -1,4 +1,4 @@
-"""Charts as pure functions: data in, HTML out. Every text that a user wrote is escaped here."""
+"""Charts: pure functions from data to HTML, which escape all text of users."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize
 
 MAX_COLUMNS = 40
-"""Gestures shown in the vote table; the farthest of a larger language say nothing about why."""
+"""Gestures shown in the vote table; farther gestures of a larger language explain nothing."""
 
 MAX_CHART_POINTS = 400
 """Points per curve: more than the chart has pixels would only make the page slow."""
 
 
 def verdict(recognition: Recognition, expected: str | None) -> str:
-    """Say what was recognised, whether that was meant, and who voted for it."""
+    """Return a card with the recognised label, the expected label and the votes for it."""
     label, votes = recognition.label, recognition.counted
     count = sum(vote == recognition.nearest for vote in votes.values())
     confidence = f"confidence {100 * recognition.confidence:.0f} %"
@@ -50,14 +50,14 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
 
 
 def hint(title: str, text: str) -> str:
-    """Say what this panel will show, and what to do for it."""
+    """Return a card that explains an empty panel and the next step."""
     return _block(
         f"<div class='card'><p><b>{escape(title)}</b></p><p class='dim'>{escape(text)}</p></div>"
     )
 
 
 def vote_sentence(votes: Mapping[str, str | None]) -> str:
-    """Say which voters chose which gesture, the largest party first."""
+    """List the voters of each gesture, the gesture with most votes first."""
     parties: dict[str, list[str]] = {}
     for voter, label in votes.items():
         parties.setdefault(label or "no one", []).append(humanize(voter))
@@ -69,13 +69,12 @@ def vote_sentence(votes: Mapping[str, str | None]) -> str:
 
 
 def vote_table(recognition: Recognition, expected: str | None) -> str:
-    """Tabulate every voter's distance to every gesture; each voter's choice is marked.
+    """Return a table of every voter's distance to every gesture, with each voter's vote marked.
 
-    One row per voter, the weightiest first, with its share in the decision; those that have none
-    come last, faintly. One column per gesture, most votes first. Each voter has its own unit, so
-    shades compare within a row only: the stronger, the nearer. The choice carries a dot and a
-    frame, the expected and the chosen gesture carry their name as a tag: nothing is told by
-    colour alone.
+    One row per voter, by descending weight; rows of weight 0 are faint. One column per gesture,
+    most votes first. Each voter has its own unit, so shades are comparable within a row only: the
+    stronger, the nearer. A vote has a dot and a frame, the expected and the chosen gesture have a
+    tag, so that no meaning depends on colour alone.
     """
     counts = {label: 0 for label in recognition.gestures}
     for label in recognition.counted.values():
@@ -149,7 +148,8 @@ def _vote_row(
 
 
 def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
-    shade = f"background:rgba(var(--osg-chosen-rgb),{0.04 + 0.42 * nearness**2:.2f})"
+    share = f"{0.04 + 0.42 * nearness**2:.0%}"
+    shade = f"background:color-mix(in srgb,var(--osg-accent) {share},transparent)"
     kind = " class='choice'" if chosen else ""
     return f"<td{kind} style='{shade}'>{short_number(distance)}</td>"
 
@@ -166,7 +166,7 @@ def _nearness(distances: FloatArray) -> FloatArray:
 
 
 def image_row(images: Sequence[tuple[str, npt.NDArray[np.uint8]]]) -> str:
-    """Show trajectory images side by side, each ``(H, W)`` grey or ``(H, W, 3)`` RGB."""
+    """Return trajectory images side by side, each ``(H, W)`` grey or ``(H, W, 3)`` RGB."""
     figures = "".join(
         f"<figure><img alt='trajectory image: {escape(caption)}' src='{_data_url(image)}'>"
         f"<figcaption>{escape(caption)}</figcaption></figure>"
@@ -258,12 +258,12 @@ def line_chart(
 
 
 def cursor(share: float) -> str:
-    """Move the cursor of every chart to `share` (0 .. 1) of its time axis."""
+    """Return CSS that moves the cursor of every chart to `share` (0 .. 1) of its time axis."""
     return f"<style>:root {{ --osg-now: {100 * min(max(share, 0.0), 1.0):.2f}% }}</style>"
 
 
 def short_number(value: float) -> str:
-    """Write a distance in at most four characters, or as many as its size needs."""
+    """Format a distance in at most four characters, or as many as its size needs."""
     if not np.isfinite(value):
         return "\N{INFINITY}" if value > 0 else "\N{EN DASH}"
     if value == 0:

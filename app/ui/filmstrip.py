@@ -1,4 +1,4 @@
-"""The frames of the video on display, small and few enough to keep in memory."""
+"""Filmstrip: keeps the frames of a clip in memory as small JPEG images."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ JPEG_QUALITY = 82
 
 
 class Filmstrip:
-    """Decodes a range of a clip in the background and gives the frame nearest to the one asked.
+    """Decoder of a range of a clip, in the background; returns the frame nearest to a given one.
 
     Parameters
     ----------

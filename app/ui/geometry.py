@@ -1,4 +1,4 @@
-"""Where things stand in the space-time cube.
+"""Geometry of the space-time cube: positions of video, skeleton and trails.
 
 Axes as a camera has them: x right, y down, z forward, and z is time. The height of the video is
 1; the video is centred on the z axis.
@@ -81,7 +81,7 @@ class CubeGeometry:
         """Return the z of a moment, `seconds` after the first."""
         return self.back * seconds / self.seconds if self.seconds else 0.0
 
-    def placed(self, poses: PoseSequence, frame: int, depth: float) -> Points:
+    def place_frame(self, poses: PoseSequence, frame: int, depth: float) -> Points:
         """Return ``(K, 3)`` one frame of the clip at a depth of the cube's choice."""
         flat = _flat(poses.xy[frame], poses.frame_size)
         return np.column_stack([flat, np.full(len(flat), depth)]).astype(np.float32)
@@ -116,7 +116,7 @@ class CubeGeometry:
         return np.concatenate(trails) if trails else np.zeros((0, 2, 3), np.float32)
 
     def _in_view(self, points: Points) -> Points:
-        """Turn points beside the video to NaN: the pose model guesses them, nobody saw them."""
+        """Set points outside the video to NaN, because the pose model only guesses them."""
         x, y = np.abs(points[..., 0]), np.abs(points[..., 1])
         inside = (x <= self.aspect / 2) & (y <= 0.5)
         return np.where(inside[..., None], points, np.float32(np.nan))
@@ -149,10 +149,10 @@ def _flat(xy: FloatArray, frame_size: tuple[int, int]) -> FloatArray:
     return np.asarray((xy - np.array([width, height]) / 2) / height)
 
 
-def seen(segments: Points) -> npt.NDArray[np.bool_]:
-    """Tell ``(N,)`` which of the ``(N, 2, 3)`` segments have both ends."""
+def find_complete(segments: Points) -> npt.NDArray[np.bool_]:
+    """Return ``(N,)`` which of the ``(N, 2, 3)`` segments have two finite ends."""
     return np.asarray(np.isfinite(segments).all(axis=(1, 2)), dtype=np.bool_)
 
 
 def _without_gaps(segments: Points) -> Points:
-    return segments[seen(segments)]
+    return segments[find_complete(segments)]

@@ -1,4 +1,4 @@
-"""A viser server that only this machine's own relay can talk to."""
+"""Loopback server: a viser server that only this machine's relay can reach."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import viser
 import websockets.asyncio.server
 
 _ONE_AT_A_TIME = Lock()
-"""Both what is printed and what websockets serves with are swapped for the whole process; two swaps
-that overlap would leave the second one in place for good."""
+"""Stdout and websockets' `serve` are replaced for the whole process; two replacements that overlap
+would never be undone."""
 
 
 def start_server() -> viser.ViserServer:
@@ -33,18 +33,18 @@ def start_server() -> viser.ViserServer:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Swallow the banner that viser prints even when told not to be verbose."""
+    """Suppress the banner that viser prints even with ``verbose=False``."""
     with _ONE_AT_A_TIME, contextlib.redirect_stdout(io.StringIO()):
         yield
 
 
 def no_public_tunnel(*_: object, **__: object) -> None:
-    """Stand in for viser's request for a public tunnel."""
+    """Ignore viser's request for a public tunnel."""
 
 
 @contextlib.contextmanager
 def _swapped_serve(serve: functools.partial[websockets.asyncio.server.serve]) -> Iterator[None]:
-    """Have viser, which takes no such option, serve with what is given; it is up on return."""
+    """Replace websockets' `serve` while viser starts, because viser has no option for it."""
     original = websockets.asyncio.server.serve
     websockets.asyncio.server.serve = serve  # type: ignore[assignment, misc]
     try:

@@ -1,4 +1,4 @@
-"""viser's panels: the inspector, and the time cursor in its charts."""
+"""Panels of viser: the inspector, and the time cursor in its charts."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from app.ui.style import PANEL_STYLE
 
 
 class TimeCursor:
-    """The line in every chart that says which moment is on display.
+    """Line in every chart at the moment on display.
 
-    Playing and seeking are the page's: it has one bar and one set of keys for them.
+    The page, not viser, has the controls for playing and seeking.
     """
 
     def __init__(self, gui: viser.GuiApi) -> None:
@@ -27,12 +27,12 @@ class TimeCursor:
         gui.main_panel.float(x=16, y=-16, width=600)
 
     def show(self, share: float) -> None:
-        """Stand at a share of the range on display."""
+        """Move the line to a share of the range on display, in [0, 1]."""
         self._line.content = charts.cursor(share)
 
 
 class Inspector:
-    """What was decided and why, and how the landmarks moved; docked at the right."""
+    """Panel at the right with the decision, its votes, and the paths of the landmarks."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self._panel = gui.add_panel()
@@ -49,7 +49,7 @@ class Inspector:
         self.show_nothing()
 
     def show_nothing(self) -> None:
-        """Say what to do first."""
+        """Show the first step to take."""
         self._verdict.content = charts.hint(
             "Nothing selected yet",
             "Drop a clip of a diver anywhere in this window, or try a sample clip on the left.",
@@ -58,10 +58,10 @@ class Inspector:
             part.content = ""
 
     def show_undecided(self) -> None:
-        """Say how to get a decision for the take on display."""
+        """Show how to get a decision for the take on display."""
         self._verdict.content = charts.hint(
             "No decision yet",
-            "Press Recognise above to see what every voter thinks of this take, "
+            "Press Recognise above to see every voter's vote on this take, "
             "or Save as gesture to add it to the language.",
         )
         for part in (self._table, self._images, self._sentence):

@@ -1,4 +1,4 @@
-"""The clock of a workspace: which frame is on display, and when the next one is due."""
+"""Playback clock of a workspace: selects the frame on display and times the next one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A recognition as one HTML file that plays without a server, to be sent to a colleague."""
+"""Recognition page: exports a recognition as one HTML file that plays without a server."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.video import read_frames
 from app.resources import static_dir
 from app.ui import charts
+from app.ui.palette import read_tokens
+from app.ui.style import alias_chart_colours
 from app.ui.workspace import Range, WorkspaceView, compared_images
 
 MAX_WIDTH = 400
@@ -74,12 +76,16 @@ def analysis_page(
     folder = static_dir() / "analysis"
     # A script element ends at the first "</", whatever it says.
     embedded = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    style = "\n".join(
+        (read_tokens(), alias_chart_colours(), (folder / "analysis.css").read_text("utf-8"))
+    )
+    script = (folder / "analysis.js").read_text("utf-8")
     title = f"{view.title}: {recognition.label or 'not recognised'}"
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'>"
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
         "<meta name='viewport' content='width=device-width, initial-scale=1'>"
-        f"<title>{escape(title)}</title><style>{(folder / 'analysis.css').read_text()}</style>"
+        f"<title>{escape(title)}</title><style>{style}</style>"
         f"</head><body><main><header><h1>{escape(view.title)}</h1><p>{_subtitle(view, shown)}</p>"
         f"</header>{_why(explanation)}"
         "<section class='player' aria-label='The take'><canvas></canvas><div class='controls'>"
@@ -87,7 +93,7 @@ def analysis_page(
         "<input type='range' min='0' value='0' step='1' aria-label='Frame'>"
         f"<output></output></div></section><section>{charted}</section></main>"
         f"<script type='application/json' id='recording'>{embedded}</script>"
-        f"<script type='module'>{(folder / 'analysis.js').read_text()}</script></body></html>"
+        f"<script type='module'>{script}</script></body></html>"
     )
 
 

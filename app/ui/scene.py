@@ -1,4 +1,4 @@
-"""The space-time cube: the video sweeps through time, the trails stay behind it."""
+"""Scene of the space-time cube: video plane, skeleton, trails and back wall in viser."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ import viser
 
 from app.recognition import PoseSequence
 from app.ui.back_wall import Wall
-from app.ui.geometry import CubeGeometry, Points, seen
-from app.ui.theme import Rgb, Theme, linear, time_colours
+from app.ui.geometry import CubeGeometry, Points, find_complete
+from app.ui.palette import Rgb
+from app.ui.theme import Theme, map_time_colours, to_linear
 
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""
@@ -29,7 +30,7 @@ CAMERA_TARGET: Final = (0.0, 0.28, 0.66)
 
 
 class SpaceTimeCube:
-    """Draws one recording into a viser server's scene.
+    """Drawing of one recording in a viser server's scene.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ class SpaceTimeCube:
             self._cube, self._salient = cube, salient
             self._poses, self._first = poses, first
             share = cube.depth / cube.back if len(cube.depth) > 1 else np.zeros(1)
-            self._colours = time_colours(np.asarray(share, dtype=np.float64))
+            self._colours = map_time_colours(np.asarray(share, dtype=np.float64))
             self._draw_cube(cube)
             self._draw_trails(cube)
             if wall is not None:
@@ -112,7 +113,7 @@ class SpaceTimeCube:
             return
         inside = min(max(frame - self._first, 0), len(cube.depth) - 1)
         z = float(cube.depth[inside])
-        points = cube.placed(self._poses, frame, z)
+        points = cube.place_frame(self._poses, frame, z)
         with self._server.atomic():
             if image is not None:
                 self._video.image = image
@@ -166,13 +167,13 @@ class SpaceTimeCube:
         self._past = {}
         for name in self._salient:
             whole = cube.trail(name)
-            known = seen(whole)
+            known = find_complete(whole)
             colours = self._segment_colours(cube.trail_frames())[known]
             ahead = DIM * colours + (1 - DIM) * np.array(self._theme.background)
             scene.add_line_segments(
                 f"/trails/{name}/ahead",
                 whole[known],
-                linear(ahead.astype(np.uint8)),
+                to_linear(ahead.astype(np.uint8)),
                 thickness=0.008,
             )
             segments, bright = self._bright_trail(cube, name, 0)
@@ -185,8 +186,8 @@ class SpaceTimeCube:
     ) -> tuple[Points, npt.NDArray[np.uint8]]:
         stop = min(max(frame, 1), len(cube.depth) - 1)
         segments = cube.trail(name, stop)
-        known = seen(segments)
-        colours = linear(self._segment_colours(cube.trail_frames(stop)))
+        known = find_complete(segments)
+        colours = to_linear(self._segment_colours(cube.trail_frames(stop)))
         return in_front(segments[known], "trail"), colours[known]
 
     def _segment_colours(self, frames: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:

@@ -1,22 +1,59 @@
-"""The style sheet of our own HTML inside viser, and of the parts of viser that it dresses."""
+"""Panel style: CSS of our HTML inside viser, and of the parts of viser that it restyles."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
-PANEL_STYLE: Final = """<style>
-:root {
-  --osg-ink: #1c2a3a; --osg-dim: #5c6f83; --osg-line: #d9e1e9; --osg-tile: #f3f6f9;
-  --osg-chosen: #1a63d9; --osg-chosen-rgb: 26, 99, 217; --osg-expected: #a84e00;
-  --osg-x: #1a63d9; --osg-y: #c25e00;
+from app.ui.palette import load_palette
+
+CHART_COLOURS: Final = {
+    "ink": "ink",
+    "dim": "dim",
+    "line": "line",
+    "tile": "raised",
+    "accent": "accent",
+    "chosen": "accent-text",
+    "expected": "expected",
+    "x": "accent-text",
+    "y": "expected",
+    "picture": "picture",
 }
-:root[data-mantine-color-scheme="dark"] {
-  --osg-ink: #e2ecf6; --osg-dim: #8fa3b8; --osg-line: #24344a; --osg-tile: #162130;
-  --osg-chosen: #6aa9ff; --osg-chosen-rgb: 58, 134, 255; --osg-expected: #ffb066;
-  --osg-x: #6aa9ff; --osg-y: #ffb066;
-  --mantine-color-body: #111a25; --mantine-color-dark-7: #111a25; --mantine-color-dark-6: #162130;
-  --mantine-color-dark-5: #1c2a3b; --mantine-color-dark-4: #24344a; --mantine-color-text: #e2ecf6;
+"""Name in the palette of each custom property ``--osg-*`` that the charts use."""
+
+_VISER_COLOURS: Final = {
+    "color-body": "panel",
+    "color-dark-7": "panel",
+    "color-dark-6": "raised",
+    "color-dark-5": "line",
+    "color-dark-4": "line",
+    "color-text": "ink",
 }
+"""Name in the palette of each custom property ``--mantine-*`` of viser's dark scheme."""
+
+
+def alias_chart_colours() -> str:
+    """Return CSS that defines ``--osg-*`` from the palette of the same page."""
+    names = (f"--osg-{name}: var(--{token})" for name, token in CHART_COLOURS.items())
+    return f":root {{ {'; '.join(names)}; }}"
+
+
+def _define(prefix: str, names: Mapping[str, str], colours: Mapping[str, str]) -> str:
+    return " ".join(f"--{prefix}-{name}: {colours[token]};" for name, token in names.items())
+
+
+def _define_schemes() -> str:
+    """Return CSS that defines the colours for viser's light and dark scheme."""
+    palette = load_palette()
+    dark = _define("osg", CHART_COLOURS, palette.dark)
+    viser = _define("mantine", _VISER_COLOURS, palette.dark)
+    return (
+        f":root {{ {_define('osg', CHART_COLOURS, palette.light)} }}\n"
+        f':root[data-mantine-color-scheme="dark"] {{ {dark} {viser} }}\n'
+    )
+
+
+_RULES: Final = """
 :root, body { --mantine-font-family: ui-sans-serif, system-ui, "Noto Sans", "DejaVu Sans",
   sans-serif; font-family: var(--mantine-font-family); }
 .osg { padding: 4px 12px 10px; color: var(--osg-ink); font: 12px/1.45 var(--mantine-font-family); }
@@ -64,7 +101,7 @@ PANEL_STYLE: Final = """<style>
 .osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 13px; }
 .osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
 .osg figure { margin: 0; }
-.osg figure img { width: 100%; display: block; border-radius: 8px; background: #000; }
+.osg figure img { width: 100%; display: block; border-radius: 8px; background: var(--osg-picture); }
 .osg figcaption { padding-top: 4px; text-align: center; }
 .osg .chart { position: relative; }
 .osg .chart svg { display: block; width: 100%; height: auto; overflow: visible; }
@@ -76,7 +113,7 @@ PANEL_STYLE: Final = """<style>
   list-style: none; color: var(--osg-dim); }
 .osg .legend svg { vertical-align: middle; margin-right: 5px; }
 
-/* viser's own chrome: a second grip says nothing, its title bar opens developer settings. */
+/* viser's second grip has no function here, and its title bar opens developer settings. */
 [data-dock-griphandle], [data-testid="floating-panel-handle"], #webgl-software-rendering,
 [data-dock-region-handle] > div:first-child { display: none !important; }
 [data-dock-strip] { padding-left: 4px; }
@@ -84,9 +121,11 @@ PANEL_STYLE: Final = """<style>
 [data-testid="floating-panel"] { display: none !important; }
 /* The sheet that takes the panels' place on a phone is as wide as the phone. */
 div[style*="width: 20em"] { width: 100% !important; }
-</style>"""
-"""Markup given to `add_html` may carry a style sheet, and that reaches the whole page of viser.
+"""
 
-What it says about viser itself leans on that client's attributes; when a later version renames
-them, its own look comes back and nothing breaks.
+PANEL_STYLE: Final = f"<style>\n{_define_schemes()}{_RULES}</style>"
+"""Markup for viser's `add_html`, whose style sheet applies to the whole page of viser.
+
+The rules for viser itself use attributes of that client; if a later version renames them, its own
+look returns and nothing breaks.
 """

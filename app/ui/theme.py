@@ -1,11 +1,12 @@
-"""Colours of the scene, dark and light.
+"""Themes of the 3D scene, dark and light, with colours from the palette.
 
-Blue means "chosen" and orange "expected" throughout: the pair stays apart for every common kind
-of colour blindness, and neither ever carries a meaning that is not also written.
+Blue means "chosen" and orange "expected" throughout: the pair is distinct for every common kind of
+colour blindness, and its meaning is always written as well.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,9 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses.sequence import FloatArray
-
-Rgb = tuple[int, int, int]
-"""sRGB, 0 to 255."""
+from app.ui.palette import Rgb, load_palette, parse_colour
 
 
 @dataclass(frozen=True)
@@ -25,21 +24,21 @@ class Theme:
     Attributes
     ----------
     background
-        Behind everything; the same as the page's, so that the frame has no visible edge.
+        Background, equal to the page's, so that the frame has no visible edge.
     wall
-        The back wall, on which the trajectory image lies.
+        Back wall with the trajectory image.
     line
         Edges of the cube and ticks of the time axis.
     quiet
         Trails of landmarks that are not salient.
     bone, joint
-        The skeleton over the video.
+        Skeleton over the video.
     ink
-        The stroke of the trajectory image on the wall, and the ticks' text.
+        Stroke of the trajectory image on the wall, and text of the ticks.
     rim
-        The outline of the video.
+        Outline of the video.
     accent
-        viser derives its buttons' and sliders' shades from it.
+        Accent colour; viser derives the shades of its buttons and sliders from it.
 
     """
 
@@ -55,37 +54,35 @@ class Theme:
     accent: Rgb
 
 
-DARK: Final = Theme(
-    dark=True,
-    background=(11, 17, 24),
-    wall=(18, 27, 38),
-    line=(74, 93, 113),
-    quiet=(44, 64, 86),
-    bone=(226, 236, 246),
-    joint=(255, 255, 255),
-    ink=(226, 236, 246),
-    rim=(200, 214, 228),
-    accent=(58, 134, 255),
+def _build_theme(colours: Mapping[str, str], *, dark: bool) -> Theme:
+    rgb = {name: parse_colour(colours[token]) for name, token in _TOKENS.items()}
+    return Theme(dark=dark, **rgb)
+
+
+_TOKENS: Final = {
+    "background": "bg",
+    "wall": "panel",
+    "line": "scene-line",
+    "quiet": "scene-trail",
+    "bone": "scene-bone",
+    "joint": "picture-strong",
+    "ink": "ink",
+    "rim": "scene-rim",
+    "accent": "accent",
+}
+"""Name in the palette of each colour of a theme."""
+
+DARK: Final = _build_theme(load_palette().dark, dark=True)
+LIGHT: Final = _build_theme(load_palette().light, dark=False)
+
+_TIME_RAMP: Final = np.array(
+    [parse_colour(load_palette().dark[f"time-{number}"]) for number in (1, 2, 3, 4)]
 )
-LIGHT: Final = Theme(
-    dark=False,
-    background=(243, 246, 249),
-    wall=(255, 255, 255),
-    line=(148, 163, 178),
-    quiet=(196, 207, 218),
-    bone=(255, 255, 255),
-    joint=(255, 255, 255),
-    ink=(28, 42, 58),
-    rim=(92, 111, 131),
-    accent=(26, 99, 217),
-)
-
-_TIME_RAMP: Final = np.array([(58, 134, 255), (150, 118, 236), (226, 112, 160), (255, 150, 60)])
-"""Blue to orange through violet and rose: the same lightness order for every kind of vision."""
+"""Blue to orange through violet and rose; the order of lightness suits every colour vision."""
 
 
-def time_colours(share: FloatArray) -> npt.NDArray[np.uint8]:
-    """Colour moments of a gesture from blue (begins) to orange (ends).
+def map_time_colours(share: FloatArray) -> npt.NDArray[np.uint8]:
+    """Map moments of a gesture to colours from blue (start) to orange (end).
 
     Parameters
     ----------
@@ -102,6 +99,6 @@ def time_colours(share: FloatArray) -> npt.NDArray[np.uint8]:
     return np.asarray(np.rint(np.stack(channels, axis=-1)), dtype=np.uint8)
 
 
-def linear(srgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """Undo the sRGB transfer curve: viser shows colours per vertex of a line without doing so."""
+def to_linear(srgb: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    """Convert sRGB to linear RGB, which viser expects for the vertex colours of a line."""
     return np.asarray(np.rint((srgb / 255.0) ** 2.2 * 255.0), dtype=np.uint8)

@@ -1,4 +1,4 @@
-"""One workspace per browser tab: what it shows, and its own viser server on loopback."""
+"""Workspace of a browser tab: its view and its viser server on the loopback interface."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ the back wall is still in view."""
 
 @dataclass(frozen=True)
 class WorkspaceView:
-    """What a workspace shows.
+    """Content of a workspace.
 
     Attributes
     ----------

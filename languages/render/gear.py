@@ -1,4 +1,4 @@
-"""What a diver carries: mask, regulator with hose, cylinder; meshes that ride on a bone."""
+"""Gear of a diver: mask, regulator with hose, cylinder; meshes attached to a bone."""
 
 from __future__ import annotations
 

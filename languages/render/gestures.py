@@ -1,4 +1,4 @@
-"""What the eight gestures of the paper's Table 2 look like when drawn in the air."""
+"""Gestures of the paper's Table 2 as drawings in the air."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a hand travels: laws of human movement.
+"""Motion of the hand by laws of human movement.
 
 Between two resting places the hand moves with minimum jerk (Flash and Hogan 1985); along a curve it
 slows down where the curve is tight, by the two-thirds power law (Lacquaniti, Terzuolo and Viviani

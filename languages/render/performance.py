@@ -1,4 +1,4 @@
-"""One take as a person performs it: rest, salute, gesture, salute, rest, frame by frame."""
+"""Performance of one take, frame by frame: rest, salute, gesture, salute, rest."""
 
 from __future__ import annotations
 

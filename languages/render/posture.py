@@ -1,4 +1,4 @@
-"""From where the hands should be to the rotation of every bone."""
+"""Posture: inverse kinematics from hand targets to the rotation of every bone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Triangles to pixels with a depth buffer."""
+"""Rasteriser: turns triangles into pixels with a depth buffer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A diver in the water in front of a camera: one frame at a time."""
+"""Scene: renders a diver in the water, one frame at a time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a diver wears on the skin: hood, suit, harness and gloves, painted on the body.
+"""Suit of a diver: hood, suit, harness and gloves, painted on the body.
 
 Paint is evaluated at every pixel from the place on the body at rest, so its edges are sharp at any
 distance. Colours are RGB, 0 to 255.

@@ -1,4 +1,4 @@
-"""The sea around the diver: backdrop, light shafts, sea bed, haze and bubbles. Colours are RGB."""
+"""Water around the diver: backdrop, light shafts, sea bed, haze and bubbles. Colours are RGB."""
 
 from __future__ import annotations
 

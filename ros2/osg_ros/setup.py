@@ -1,4 +1,4 @@
-"""What `ament_python` installs of the nodes."""
+"""Setup script: what `ament_python` installs of the nodes."""
 
 from pathlib import Path
 

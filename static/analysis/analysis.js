@@ -43,11 +43,11 @@ function draw(index) {
   context.drawImage(images[index], 0, 0, canvas.width, canvas.height);
   const pose = poses[index];
   for (const [from, to] of bones)
-    if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], colour("--bone"), 2);
+    if (pose[from] && pose[to]) line([at(pose[from]), at(pose[to])], colour("--picture-bone"), 2);
   for (const landmark of trails)
     line(
       poses.slice(0, index + 1).map((each) => at(each[landmark])),
-      colour("--trail"),
+      colour("--picture-accent"),
       4,
     );
   clock.textContent = `${times[index].toFixed(2)} s`;

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.check_report import health_text
+from app.cli.check_report import format_report
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
 from app.recognition.phrases.grammar import Grammar
@@ -52,7 +52,7 @@ def test_an_ambiguity_of_the_phrases_is_below_the_bar(
     Language("pool", [picture], grammar=grammar).save(file)
     ended = osg_studio("check", file)
     assert ended.code == 1
-    assert "BELOW THE BAR: after old the message is complete, but may continue" in ended.out
+    assert "ERROR: after old the message is complete, but may continue" in ended.out
 
 
 @pytest.mark.slow
@@ -82,7 +82,7 @@ def test_a_file_that_is_no_language_is_bad_input(osg_studio: OsgStudio, tmp_path
 
 
 def test_columns_are_aligned_and_fit_a_terminal() -> None:
-    text = health_text(check_health(pool(circle=circle, line=line), takes=3))
+    text = format_report(check_health(pool(circle=circle, line=line), takes=3))
     lines = text.splitlines()
     head = next(index for index, row in enumerate(lines) if row.startswith("gesture"))
     starts = {row.index("right_wrist") for row in lines[head + 1 : head + 3]}

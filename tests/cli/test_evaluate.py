@@ -43,7 +43,7 @@ def test_a_folder_of_takes_is_asked_for_one_shot_and_by_a_given_language(
     save_swipes(tmp_path / "takes")
     ended = osg_studio("evaluate", tmp_path / "takes", "--profile", "full")
     assert ended.code == 0, ended.error
-    assert "profile full, whoever it is by, 2 languages of one take: 100.0%" in ended.out
+    assert "profile full, any person, 2 languages of one take: 100.0%" in ended.out
     ended = osg_studio(
         "evaluate", tmp_path / "takes", "--profile", "paper", "--language", TABLE_1, "--json"
     )

@@ -16,8 +16,8 @@ import pytest
 from typer.main import get_command
 
 from app.cli.application import command_line
-from app.cli.ros_arguments import apart
-from app.robot.messages import published_schema
+from app.cli.ros_arguments import split_ros_arguments
+from app.robot.messages import read_schema
 from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
@@ -27,7 +27,7 @@ from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
 from tests.test_layers import modules_of, requirements_of
 
-DOCUMENTED = [apart(command)[0] for command in documented()]
+DOCUMENTED = [split_ros_arguments(command)[0] for command in documented()]
 ON_A_CLIP = documented("robot", page="robots/without-ros.md")[0]
 
 WITHOUT_THE_WEB_APP = f"""
@@ -92,7 +92,7 @@ def test_of_a_clip_the_robot_says_what_recognize_says_and_needs_no_web_app(
         out, error = process.communicate()
     assert process.returncode == 0, error
     told = [json.loads(line) for line in out.splitlines()]
-    schema = jsonschema.Draft202012Validator(json.loads(published_schema()))
+    schema = jsonschema.Draft202012Validator(json.loads(read_schema()))
     for each in told:
         schema.validate(each)
     language, clip = (

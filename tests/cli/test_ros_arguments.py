@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.cli.ros_arguments import apart
+from app.cli.ros_arguments import split_ros_arguments
 from tests.command_line import OsgStudio
 
 
@@ -19,13 +19,13 @@ from tests.command_line import OsgStudio
     ],
 )
 def test_they_go_from_where_they_begin_to_where_they_end(given: str, own: str, ros: str) -> None:
-    assert apart(given.split()) == (own.split(), ros.split())
+    assert split_ros_arguments(given.split()) == (own.split(), ros.split())
 
 
 def test_a_robot_that_is_not_to_publish_refuses_them(osg_studio: OsgStudio) -> None:
     ended = osg_studio("robot", "--language", "pool.json", "--ros-args", "-r", "__ns:=/auv")
     assert ended.code == 2
-    assert "--ros-args is for ROS 2: give --ros2 as well" in " ".join(ended.error.split())
+    assert "--ros-args needs --ros2: add that option" in " ".join(ended.error.split())
 
 
 def test_no_other_command_takes_them(osg_studio: OsgStudio) -> None:

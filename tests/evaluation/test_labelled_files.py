@@ -65,5 +65,5 @@ def test_a_folder_in_which_nothing_fits_says_what_would(tmp_path: Path) -> None:
 
 
 def test_a_layout_without_a_label_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(OsgError, match="does not say where the label stands"):
+    with pytest.raises(OsgError, match=r"has no \{label\}"):
         labelled_files(tmp_path, "{person}/*")

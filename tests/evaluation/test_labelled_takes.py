@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.evaluation.labelled_files import labelled_files
-from app.evaluation.labelled_takes import collected
+from app.evaluation.labelled_takes import collect_takes
 from app.keypoint_files import KeypointOptions
 from app.recognition import Recording
 from app.recognition.poses.skeletons import BODY_25
@@ -28,7 +28,7 @@ def save_swipes(folder: Path) -> None:
 
 def test_a_recording_without_salutes_is_one_take_as_a_whole(tmp_path: Path) -> None:
     save_swipes(tmp_path)
-    takes = collected(labelled_files(tmp_path)).takes
+    takes = collect_takes(labelled_files(tmp_path)).takes
     assert [take.label for take in takes] == ["left", "left", "right", "right", "up", "up"]
     assert {take.person for take in takes} == {"person 0"}
     expected = drawn_takes("swipes", people=(0,), takes=2)
@@ -39,7 +39,7 @@ def test_files_that_cannot_be_read_are_named_and_do_not_end_the_work(tmp_path: P
     save_swipes(tmp_path)
     broken = tmp_path / "person 0" / "up" / "broken.npz"
     broken.write_bytes(b"no recording")
-    found = collected(labelled_files(tmp_path))
+    found = collect_takes(labelled_files(tmp_path))
     assert len(found.takes) == 6
     assert list(found.problems) == [str(broken)]
     assert "not a readable recording" in found.problems[str(broken)]
@@ -50,10 +50,10 @@ def test_keypoint_files_are_takes_too_with_what_they_do_not_tell_given(tmp_path:
     (tmp_path / "circle").mkdir()
     write_openpose(tmp_path / "circle" / "dive 1", poses, BODY_25)
     files = labelled_files(tmp_path)
-    (take,) = collected(files, keypoints=KeypointOptions(frame_rate=20)).takes
+    (take,) = collect_takes(files, keypoints=KeypointOptions(frame_rate=20)).takes
     assert (take.label, take.source) == ("circle", str(tmp_path / "circle" / "dive 1"))
     assert take.poses.duration == pytest.approx(19 / 20)
-    (problem,) = collected(files).problems.values()
+    (problem,) = collect_takes(files).problems.values()
     assert "--frame-rate" in problem
 
 
@@ -66,7 +66,7 @@ def test_a_clip_is_extracted_once_whatever_it_is_called(tmp_path: Path, sample_c
     (clips / "line-1.mp4").write_bytes(content)
     (clips / "torn-1.mp4").write_bytes(content[:1000])
     frames: list[int] = []
-    first = collected(
+    first = collect_takes(
         labelled_files(clips),
         keep_in=kept,
         progress=lambda done, total, name: frames.append(done),
@@ -76,7 +76,7 @@ def test_a_clip_is_extracted_once_whatever_it_is_called(tmp_path: Path, sample_c
     assert frames
     frames.clear()
     (clips / "line-1.mp4").rename(clips / "stroke-1.mp4")
-    again = collected(
+    again = collect_takes(
         labelled_files(clips),
         keep_in=kept,
         progress=lambda done, total, name: frames.append(done),

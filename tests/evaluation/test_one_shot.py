@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.evaluation.one_shot import LabelledTake, OneShot, one_shot, read_by
+from app.evaluation.one_shot import LabelledTake, OneShot, one_shot, recognize_takes
 from app.recognition import Gesture, Language, OsgError
 from tests.evaluation.takes import drawn_takes
 
@@ -76,7 +76,7 @@ def test_single_takes_leave_nothing_to_ask_for(swipes: list[LabelledTake]) -> No
 def test_a_given_language_is_asked_for_foreign_gestures_too(swipes: list[LabelledTake]) -> None:
     templates = {take.label: take.poses for take in swipes if take.label != "up"}
     gestures = [Gesture.from_demonstration(label, poses) for label, poses in templates.items()]
-    matrix = read_by(Language("two", gestures), swipes, profile="full")
+    matrix = recognize_takes(Language("two", gestures), swipes, profile="full")
     assert matrix.labels == ("left", "right", "up")
     assert matrix.counts.sum(axis=1).tolist() == [4, 4, 4]
     assert matrix.counts[2, 2] == 0

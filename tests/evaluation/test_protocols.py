@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.evaluation.protocols import recognised_variants
+from app.evaluation.protocols import recognize_variants
 from app.recognition import Language, OsgError
 from app.recognition.language.osg_reference import from_reference, to_reference
 from tests.conftest import ROOT
@@ -15,7 +15,7 @@ def table_1() -> Language:
 
 
 def test_variants_of_three_gestures_are_nearly_all_named(table_1: Language) -> None:
-    matrix = recognised_variants(table_1, 10, profile="full", seed=3)
+    matrix = recognize_variants(table_1, 10, profile="full", seed=3)
     assert matrix.labels == table_1.labels
     assert matrix.counts.sum(axis=1).tolist() == [10, 10, 10]
     assert matrix.correct.correct >= 27
@@ -25,10 +25,10 @@ def test_the_same_seed_gives_the_same_matrix_and_progress_counts_every_query(
     table_1: Language,
 ) -> None:
     seen: list[tuple[int, int]] = []
-    once = recognised_variants(
+    once = recognize_variants(
         table_1, 4, profile="paper", seed=5, progress=lambda *counts: seen.append(counts)
     )
-    again = recognised_variants(table_1, 4, profile="paper", seed=5)
+    again = recognize_variants(table_1, 4, profile="paper", seed=5)
     np.testing.assert_array_equal(once.counts, again.counts)
     assert seen == [(done, 12) for done in range(1, 13)]
 
@@ -36,4 +36,4 @@ def test_the_same_seed_gives_the_same_matrix_and_progress_counts_every_query(
 def test_a_gesture_without_demonstration_is_told_by_name(table_1: Language) -> None:
     images_only = from_reference(to_reference(table_1), "images")
     with pytest.raises(OsgError, match=r"circle.*define it again"):
-        recognised_variants(images_only, 1, profile="paper")
+        recognize_variants(images_only, 1, profile="paper")

@@ -13,9 +13,10 @@ async function filesIn(folder, suffix) {
 }
 
 const sheets = await filesIn("styles/", ".css");
+const analysis = [...(await filesIn("analysis/", ".css")), ...(await filesIn("analysis/", ".js"))];
 
 test("only tokens.css has colours", async () => {
-  const others = [...sheets, ...(await filesIn("js/", ".js"))];
+  const others = [...sheets, ...analysis, ...(await filesIn("js/", ".js"))];
   for (const file of others.filter((each) => each !== "styles/tokens.css")) {
     assert.deepEqual((await read(file)).match(COLOUR), null, file);
   }
@@ -23,7 +24,7 @@ test("only tokens.css has colours", async () => {
 });
 
 test("every custom property that is used is defined, and the page loads every sheet", async () => {
-  const sources = [...sheets, ...(await filesIn("js/", ".js"))];
+  const sources = [...sheets, ...analysis, ...(await filesIn("js/", ".js"))];
   const text = (await Promise.all(sources.map(read))).join("\n");
   const defined = new Set([...text.matchAll(/["\s{](--[\w-]+)"?:/g)].map(([, name]) => name));
   const used = new Set([...text.matchAll(/var\((--[\w-]+)/g)].map(([, name]) => name));

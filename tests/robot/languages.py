@@ -6,7 +6,7 @@ from datetime import datetime, timezone
 from functools import cache
 
 from app.recognition import Gesture, Language, PoseSequence, Recording, takes_in
-from app.robot import Event, Hearing, SpokenLanguage
+from app.robot import ActiveLanguage, Event, LandmarkListener
 from tests.api.recordings import recording_of
 
 
@@ -22,9 +22,9 @@ def language_of(*labels: str, revision: int = 1) -> Language:
 
 
 @cache
-def spoken(*labels: str, revision: int = 1) -> SpokenLanguage:
+def spoken(*labels: str, revision: int = 1) -> ActiveLanguage:
     """Return a language of shapes made ready."""
-    return SpokenLanguage.from_json(language_of(*labels, revision=revision).to_json())
+    return ActiveLanguage.from_json(language_of(*labels, revision=revision).to_json())
 
 
 def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:
@@ -36,6 +36,6 @@ def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:
     ]
 
 
-def heard(listener: Hearing, recording: Recording) -> list[Event]:
+def heard(listener: LandmarkListener, recording: Recording) -> list[Event]:
     """Feed a whole recording without ending the stream."""
     return [event for frame in moments_of(recording) for event in listener.feed(*frame)]

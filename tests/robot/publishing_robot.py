@@ -11,9 +11,9 @@ from dataclasses import replace
 
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
-from app.robot import Event, Listener, PhraseListener, SpokenLanguage
+from app.robot import ActiveLanguage, Event, Listener, PhraseListener
 from app.robot.publishing.publisher import open_publisher
-from app.robot.runtime import language_changed
+from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import heard, language_of
 
@@ -26,9 +26,12 @@ PHOTO = Phrase("photo", (OneOf(("circle",)),), {"do": "photo"}, "take a photo")
 def told() -> list[Event]:
     """Return what is said in every round: a gesture that is a message, and one that is unknown."""
     made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
-    language = SpokenLanguage.from_json(made.to_json())
+    language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line")
-    return [language_changed(0.0, language), *heard(PhraseListener(Listener(language)), shown)]
+    return [
+        build_language_changed(0.0, language),
+        *heard(PhraseListener(Listener(language)), shown),
+    ]
 
 
 def main() -> None:

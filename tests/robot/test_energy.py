@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.robot.energy import RaplMeter, TegrastatsMeter, watts_in
+from app.robot.energy import RaplMeter, TegrastatsMeter, parse_watts
 
 ORIN = (
     "11-21-2026 13:00:01 RAM 3122/7620MB (lfb 3x4MB) SWAP 0/3810MB (cached 0MB) "
@@ -37,11 +37,11 @@ def test_counters_are_added_up_and_may_lap(tmp_path: Path) -> None:
     first, second = counter(tmp_path, 0, 900_000), counter(tmp_path, 1, 0)
     counter(tmp_path, 2, 0, name="psys")  # counts the packages once more
     meter = RaplMeter(tmp_path)
-    assert meter.joules() == 0
+    assert meter.read_joules() == 0
     first.write_text("100000\n")
     second.write_text("50000\n")
-    assert meter.joules() == pytest.approx(0.25)
-    assert meter.joules() == pytest.approx(0.25)
+    assert meter.read_joules() == pytest.approx(0.25)
+    assert meter.read_joules() == pytest.approx(0.25)
 
 
 def test_a_machine_without_counters_says_so(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_a_machine_without_counters_says_so(tmp_path: Path) -> None:
     ("line", "watts"), [(ORIN, 5.12), (XAVIER, 4.104), ("RAM 1/2MB", 0.0)], ids=["whole", "sum", ""]
 )
 def test_power_is_read_from_the_rails(line: str, watts: float) -> None:
-    assert watts_in(line) == pytest.approx(watts)
+    assert parse_watts(line) == pytest.approx(watts)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="writes a shell script")
@@ -66,6 +66,6 @@ def test_power_is_summed_over_time(tmp_path: Path) -> None:
     tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
     with closing(TegrastatsMeter(str(tool))) as meter:
         began = clock.monotonic()
-        while meter.joules() == 0:
+        while meter.read_joules() == 0:
             clock.sleep(0.01)
-        assert 0 < meter.joules() <= 5.12 * (clock.monotonic() - began + 1)
+        assert 0 < meter.read_joules() <= 5.12 * (clock.monotonic() - began + 1)

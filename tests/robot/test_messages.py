@@ -31,16 +31,16 @@ from app.robot import (
 from app.robot.messages import (
     MESSAGES,
     SCHEMA_FILE,
-    generated_schema,
-    line_of,
-    message_of,
-    published_schema,
+    format_line,
+    generate_schema,
+    read_schema,
+    to_message,
 )
 from tests.api.recordings import recording_of
 from tests.recognition.grammars import MISSIONS
 from tests.robot.languages import heard, spoken
 
-SCHEMA = json.loads(published_schema())
+SCHEMA = json.loads(read_schema())
 SEAL = "0123456789abcdef" * 4
 
 
@@ -88,18 +88,18 @@ def test_every_kind_of_event_is_tried() -> None:
 
 @pytest.mark.parametrize("event", EVENTS, ids=lambda event: type(event).__name__)
 def test_a_line_obeys_the_schema_and_can_be_read_back(event: Event) -> None:
-    line = line_of(event)
+    line = format_line(event)
     assert line.isascii()
     assert "\n" not in line
     content = json.loads(line)
     assert next(iter(content)) == "event"
     jsonschema.Draft202012Validator(SCHEMA).validate(content)
-    assert MESSAGES.validate_json(line) == message_of(event)
+    assert MESSAGES.validate_json(line) == to_message(event)
 
 
 def test_a_recognition_tells_what_was_said_when_and_in_which_language() -> None:
     said = recognized("Come here")
-    content = json.loads(line_of(said))
+    content = json.loads(format_line(said))
     assert content.pop("margin") == said.recognition.margin
     assert content == {
         "event": "take_recognized",
@@ -117,12 +117,12 @@ def test_a_recognition_tells_what_was_said_when_and_in_which_language() -> None:
 
 
 def test_a_margin_to_no_other_gesture_is_null() -> None:
-    assert json.loads(line_of(rejected()))["margin"] is None
+    assert json.loads(format_line(rejected()))["margin"] is None
 
 
 def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
-    assert published_schema() == generated_schema(), (
-        f"write generated_schema() to app/robot/schema/{SCHEMA_FILE}; a change that refuses lines "
+    assert read_schema() == generate_schema(), (
+        f"write generate_schema() to app/robot/schema/{SCHEMA_FILE}; a change that refuses lines "
         "that were written before needs a new version"
     )
 

@@ -15,6 +15,7 @@ from app.recognition.errors import LandmarkError, LanguageError
 from app.recognition.estimation import PoseEstimator, create_estimator
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
+    ActiveLanguage,
     Event,
     LanguageChanged,
     LanguageRefused,
@@ -25,7 +26,6 @@ from app.robot import (
     SourceOpened,
     SourceRestored,
     SourceWarned,
-    SpokenLanguage,
     StateChanged,
     open_source,
 )
@@ -104,7 +104,7 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
 def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_refused(
     estimator: PoseEstimator,
 ) -> None:
-    changes: list[SpokenLanguage | OsgError | None] = [
+    changes: list[ActiveLanguage | OsgError | None] = [
         spoken("circle", "line", revision=2),
         None,
         LanguageError("not a language file", "/format"),
@@ -138,7 +138,7 @@ def test_a_language_that_the_estimator_cannot_follow_is_refused(
         landmarks=("tail_fin",), xy=tail[:, None], time=time, frame_size=(640, 480)
     )
     fish = Language("fish", [Gesture.from_demonstration("wag", poses)])
-    wagging = SpokenLanguage.from_json(fish.to_json())
+    wagging = ActiveLanguage.from_json(fish.to_json())
     with closing(open_source(str(clip))) as source:
         with pytest.raises(LandmarkError, match="tail_fin"):
             Runtime(source, estimator, Listener(wagging))

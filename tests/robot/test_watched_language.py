@@ -11,23 +11,23 @@ import pytest
 
 from app.recognition import LanguageError, OsgError
 from app.recognition.gestures.tuning import Tuning
-from app.robot import SpokenLanguage
-from app.robot.watched_language import LOOK_EVERY, WatchedLanguage
+from app.robot import ActiveLanguage
+from app.robot.watched_language import POLL_INTERVAL, WatchedLanguage
 from tests.robot.languages import language_of, spoken
 
 PATIENCE = 60.0
 """Seconds until a test gives up; what is awaited comes within two looks at the file."""
 
 
-def save(path: Path, *labels: str, revision: int = 1) -> SpokenLanguage:
+def save(path: Path, *labels: str, revision: int = 1) -> ActiveLanguage:
     language_of(*labels, revision=revision).save(path)
     return spoken(*labels, revision=revision)
 
 
-def news(language: WatchedLanguage) -> SpokenLanguage | OsgError:
+def news(language: WatchedLanguage) -> ActiveLanguage | OsgError:
     end = clock.monotonic() + PATIENCE
     while clock.monotonic() < end:
-        if change := language.changes():
+        if change := language.next_change():
             return change
         clock.sleep(0.05)
     raise AssertionError("nothing new was told")
@@ -43,7 +43,7 @@ def test_the_first_language_has_the_seal_of_its_file(file: Path) -> None:
     with WatchedLanguage(file) as language:
         assert language.first.sha256 == saved.sha256
         assert f'"sha256": "{saved.sha256}"' in file.read_text()
-        assert language.changes() is None
+        assert language.next_change() is None
 
 
 def test_a_language_is_heard_as_its_author_kept_it_unless_told_otherwise(file: Path) -> None:
@@ -61,10 +61,10 @@ def test_a_replaced_file_is_read_and_told_once(file: Path) -> None:
     with WatchedLanguage(file) as language:
         saved = save(file, "circle", "line", revision=2)
         change = news(language)
-        assert isinstance(change, SpokenLanguage)
+        assert isinstance(change, ActiveLanguage)
         assert (change.sha256, change.revision) == (saved.sha256, 2)
-        clock.sleep(3 * LOOK_EVERY)
-        assert language.changes() is None
+        clock.sleep(3 * POLL_INTERVAL)
+        assert language.next_change() is None
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_a_broken_file_is_told_once_and_its_successor_is_spoken(
         assert reason in str(refused)
         save(file, "circle", "line", revision=2)
         change = news(language)
-        assert isinstance(change, SpokenLanguage)
+        assert isinstance(change, ActiveLanguage)
         assert change.revision == 2
 
 
@@ -96,5 +96,5 @@ def test_who_asks_is_answered_also_when_nothing_changed(file: Path) -> None:
     with WatchedLanguage(file) as language:
         language.reload()
         change = news(language)
-    assert isinstance(change, SpokenLanguage)
+    assert isinstance(change, ActiveLanguage)
     assert change.sha256 == saved.sha256

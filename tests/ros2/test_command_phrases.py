@@ -15,8 +15,8 @@ from app.recognition import Language
 from osg_ros.commands.dialogue import (
     CommandDialogue,
     Decision,
-    HeardGesture,
-    HeardPhrase,
+    RecognizedGesture,
+    RecognizedPhrase,
     Rules,
 )
 from osg_ros.commands.table import read_commands
@@ -39,14 +39,14 @@ KINDS = [
 
 def with_phrases(rules: Rules = RULES) -> CommandDialogue:
     made = CommandDialogue(rules)
-    made.speak(PHRASES)
+    made.set_table(PHRASES)
     return made
 
 
 def signed(
     stamp: float, kind: str = "complete", mission: str = "photo", **other: Any
-) -> HeardPhrase:
-    told = HeardPhrase(
+) -> RecognizedPhrase:
+    told = RecognizedPhrase(
         kind=kind,
         mission=mission if kind == "complete" else "",
         text=f"{kind}: {mission}",
@@ -59,16 +59,18 @@ def signed(
     return replace(told, **other)
 
 
-def answers(*heard: HeardGesture | HeardPhrase, rules: Rules = RULES) -> list[str | None]:
+def answers(*heard: RecognizedGesture | RecognizedPhrase, rules: Rules = RULES) -> list[str | None]:
     """Return the commands that a dialogue gives when it hears everything at once."""
     made = with_phrases(rules)
     return [decided(made, each, each.stamp).command for each in heard]
 
 
-def decided(made: CommandDialogue, heard: HeardGesture | HeardPhrase, now: float) -> Decision:
-    if isinstance(heard, HeardPhrase):
-        return made.hear_phrase(heard, now)
-    return made.hear(heard, now)
+def decided(
+    made: CommandDialogue, heard: RecognizedGesture | RecognizedPhrase, now: float
+) -> Decision:
+    if isinstance(heard, RecognizedPhrase):
+        return made.decide_phrase(heard, now)
+    return made.decide(heard, now)
 
 
 def test_a_word_gives_no_command_alone() -> None:
@@ -87,14 +89,14 @@ def test_a_gesture_outside_the_phrases_and_an_emergency_are_obeyed_as_ever() -> 
 
 def test_a_message_is_confirmed_by_showing_it_again() -> None:
     made = with_phrases()
-    asked = made.hear_phrase(signed(1), 1)
+    asked = made.decide_phrase(signed(1), 1)
     assert (asked.command, asked.reason) == (
         None,
         "repeat the message to confirm: complete: photo",
     )
     assert made.pending is not None
-    made.hear(shown("circle", 5), 5)
-    given = made.hear_phrase(signed(5), 5)
+    made.decide(shown("circle", 5), 5)
+    given = made.decide_phrase(signed(5), 5)
     assert (given.command, given.label, given.emergency) == ("photo", "complete: photo", False)
     assert made.pending is None
 
@@ -115,7 +117,7 @@ def test_a_cancel_or_another_gesture_takes_a_message_back(between: str) -> None:
 
 
 def test_a_gesture_that_is_not_understood_changes_nothing_about_a_message() -> None:
-    doubts: list[HeardGesture | HeardPhrase] = [
+    doubts: list[RecognizedGesture | RecognizedPhrase] = [
         shown(None, 2),
         signed(2, "outside", label=None),
         signed(3, "repeat"),
@@ -142,22 +144,22 @@ def test_a_message_that_is_played_again_is_ignored() -> None:
 
 def test_a_language_without_phrases_gives_no_mission() -> None:
     made = CommandDialogue(Rules(confirmed=False))
-    assert made.hear_phrase(signed(1, language_id=""), 1).command is None
-    made.speak(TABLE)
-    assert made.hear_phrase(signed(2), 2).command is None
+    assert made.decide_phrase(signed(1, language_id=""), 1).command is None
+    made.set_table(TABLE)
+    assert made.decide_phrase(signed(2), 2).command is None
 
 
 def test_another_language_forgets_a_message() -> None:
     made = with_phrases()
-    made.hear_phrase(signed(1), 1)
-    decision = made.speak(replace(PHRASES, language_id="newer"))
+    made.decide_phrase(signed(1), 1)
+    decision = made.set_table(replace(PHRASES, language_id="newer"))
     assert decision is not None
     assert "'complete: photo' is forgotten" in decision.reason
     assert made.pending is None
 
 
 phrases = st.builds(
-    HeardPhrase,
+    RecognizedPhrase,
     kind=st.sampled_from([*KINDS, "complete", "complete"]),
     mission=st.sampled_from(["", "photo", "dive"]),
     text=st.just("in words"),
@@ -175,13 +177,13 @@ both = st.lists(
 
 @given(both)
 def test_a_mission_comes_of_a_whole_sure_fresh_message_of_the_language_that_was_asked_for(
-    both: list[tuple[HeardGesture | HeardPhrase, float]],
+    both: list[tuple[RecognizedGesture | RecognizedPhrase, float]],
 ) -> None:
     made = with_phrases()
     for heard, late in both:
         before = made.pending
         decision = decided(made, heard, heard.stamp + late)
-        if isinstance(heard, HeardPhrase) and decision.command is not None:
+        if isinstance(heard, RecognizedPhrase) and decision.command is not None:
             assert heard.kind == "complete"
             assert heard.confidence >= RULES.least_confidence
             assert abs(late) <= RULES.stale_seconds
@@ -194,12 +196,12 @@ def test_a_mission_comes_of_a_whole_sure_fresh_message_of_the_language_that_was_
 
 @given(both)
 def test_no_word_gives_a_command_but_an_emergency(
-    both: list[tuple[HeardGesture | HeardPhrase, float]],
+    both: list[tuple[RecognizedGesture | RecognizedPhrase, float]],
 ) -> None:
     made = with_phrases()
     for heard, late in both:
         decision = decided(made, heard, heard.stamp + late)
-        if isinstance(heard, HeardGesture) and heard.label in PHRASES.phrase_labels:
+        if isinstance(heard, RecognizedGesture) and heard.label in PHRASES.phrase_labels:
             assert decision.command is None or decision.emergency
 
 
@@ -210,7 +212,7 @@ def test_a_confirmed_message_gives_one_command_however_often_it_arrives(
     made = with_phrases()
     heard = [signed(1), *[signed(2)] * copies]
     later = [signed(3.0 + place, kind, mission="") for place, kind in enumerate(after)]
-    given = [made.hear_phrase(each, each.stamp).command for each in (*heard, *later)]
+    given = [made.decide_phrase(each, each.stamp).command for each in (*heard, *later)]
     assert [command for command in given if command] == ["photo"]
 
 
@@ -229,5 +231,5 @@ def test_a_language_file_without_phrases_has_no_words() -> None:
 def test_a_grammar_that_cannot_be_read_is_refused(tmp_path: Path, grammar: str) -> None:
     path = tmp_path / "broken.json"
     path.write_text(f'{{"gestures": [], "sha256": "id", "grammar": {grammar}}}', encoding="utf-8")
-    with pytest.raises(ValueError, match="no language file"):
+    with pytest.raises(ValueError, match="not a language file"):
         read_commands(str(path))

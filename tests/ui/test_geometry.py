@@ -14,7 +14,7 @@ from app.ui.geometry import (
     DEPTH_PER_SECOND,
     MAX_TRAIL_SEGMENTS,
     CubeGeometry,
-    seen,
+    find_complete,
 )
 from tests.api.recordings import recording_of
 
@@ -106,7 +106,7 @@ def test_a_gap_in_a_landmarks_path_is_a_gap_in_its_trail() -> None:
     cube = CubeGeometry.from_poses(
         PoseSequence(landmarks=POSE_LANDMARKS, xy=xy, time=poses.time, frame_size=poses.frame_size)
     )
-    np.testing.assert_array_equal(np.flatnonzero(~seen(cube.trail("right_wrist"))), [2, 3])
+    np.testing.assert_array_equal(np.flatnonzero(~find_complete(cube.trail("right_wrist"))), [2, 3])
 
 
 def test_quiet_trails_leave_out_what_is_salient() -> None:

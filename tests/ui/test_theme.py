@@ -8,23 +8,23 @@ import pytest
 
 from app.resources import static_dir
 from app.ui.style import PANEL_STYLE
-from app.ui.theme import DARK, LIGHT, Theme, linear, time_colours
+from app.ui.theme import DARK, LIGHT, Theme, map_time_colours, to_linear
 
 
 def test_time_runs_from_blue_to_orange() -> None:
-    first, *_, last = time_colours(np.linspace(0, 1, 9)).astype(int)
+    first, *_, last = map_time_colours(np.linspace(0, 1, 9)).astype(int)
     assert first[2] > first[0]
     assert last[0] > last[2]
 
 
 def test_every_moment_has_a_colour_of_its_own() -> None:
-    colours = time_colours(np.linspace(0, 1, 64))
+    colours = map_time_colours(np.linspace(0, 1, 64))
     assert len(np.unique(colours, axis=0)) == 64
 
 
 def test_linear_keeps_black_and_white_and_darkens_between() -> None:
     greys = np.array([[0, 0, 0], [128, 128, 128], [255, 255, 255]], np.uint8)
-    np.testing.assert_array_equal(linear(greys)[:, 0], [0, 56, 255])
+    np.testing.assert_array_equal(to_linear(greys)[:, 0], [0, 56, 255])
 
 
 @pytest.mark.parametrize(("theme", "section"), [(DARK, 0), (LIGHT, 1)])

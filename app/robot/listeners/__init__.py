@@ -1,1 +1,1 @@
-"""From landmarks to recognitions: between salutes, without salutes, and as phrases."""
+"""Listeners: turn landmarks into recognitions, between salutes, without salutes, and as phrases."""

@@ -1,4 +1,4 @@
-"""Listening for phrases: what was recognised, put together by the language's grammar."""
+"""Phrase listener: parses recognised gestures into phrases by the language's grammar."""
 
 from __future__ import annotations
 
@@ -7,109 +7,110 @@ from collections.abc import Iterable
 from app.recognition import PoseSequence
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 from app.recognition.recording.segmentation import TakeState
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
-from app.robot.listeners.salute_listener import Hearing
+from app.robot.listeners.salute_listener import LandmarkListener
 
 
 class PhraseListener:
-    """Tells beside everything that another listener hears which phrases it makes; a `Hearing`.
+    """Listener that adds phrases to the events of another listener; a `LandmarkListener`.
 
-    A language without a grammar has none. A message does not outlive its language, its source or
-    the stream: it is cancelled, also where a pause would have ended it.
+    Without a grammar it adds nothing. A message is cancelled when its language, its source or the
+    stream ends, even where a pause would have completed it.
 
     Parameters
     ----------
-    hearing
-        Hears the gestures.
+    listener
+        Recognises the gestures.
     lag
-        Seconds by which it may tell a gesture later than it ended; a pause is only too long when
-        no gesture within it can be told any more.
+        Seconds by which `listener` may report a gesture after its end. A pause is too long only
+        when no gesture within it can be reported any more.
 
     """
 
-    def __init__(self, hearing: Hearing, lag: float = 0.0) -> None:
-        self._hearing = hearing
+    def __init__(self, listener: LandmarkListener, lag: float = 0.0) -> None:
+        self._listener = listener
         self._lag = lag
-        self._parser = parser_of(hearing.language)
+        self._parser = create_parser(listener.language)
         self._time = 0.0
-        self._takes: list[TakeRecognized] = []  # that a message may be made of
-        self._left: tuple[PhraseEvent, ...] = ()  # what another language cancelled
+        self._takes: list[TakeRecognized] = []  # candidates for the current message
+        self._cancelled: tuple[PhraseEvent, ...] = ()  # by a change of the language
 
     @property
-    def language(self) -> SpokenLanguage:
-        """The language that is listened for."""
-        return self._hearing.language
+    def language(self) -> ActiveLanguage:
+        """The active language."""
+        return self._listener.language
 
     @property
     def state(self) -> TakeState:
-        """What the salutes are at."""
-        return self._hearing.state
+        """State of the salutes."""
+        return self._listener.state
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Take the next frame; see `Hearing.feed`."""
+        """Process the next frame; see `LandmarkListener.feed`."""
         time = float(moment.time[0])
-        told: list[Event] = [*self._heard(time, self._left)]
+        events: list[Event] = [*self._to_events(time, self._cancelled)]
         if time < self._time:  # another stream
-            told += self._abandoned(time)
-        self._time, self._left = time, ()
-        told += self._with_phrases(self._hearing.feed(moment, salute))
-        # While a take goes on nobody knows yet whether it goes on with the message.
-        if self._parser is not None and self._hearing.state is not TakeState.recording:
-            told += self._heard(time, self._parser.expire(time - self._lag))
-        return tuple(told)
+            events += self._cancel_message(time)
+        self._time, self._cancelled = time, ()
+        events += self._add_phrases(self._listener.feed(moment, salute))
+        # An open take may still continue the message, so a pause cannot end it yet.
+        if self._parser is not None and self._listener.state is not TakeState.recording:
+            events += self._to_events(time, self._parser.expire(time - self._lag))
+        return tuple(events)
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
-        """Forget what was seen, and a message that was begun."""
-        told = self._with_phrases(self._hearing.abandon(time, reason))
-        return (*told, *self._abandoned(time))
+        """Clear the memory and cancel an open message."""
+        events = self._add_phrases(self._listener.abandon(time, reason))
+        return (*events, *self._cancel_message(time))
 
     def finish(self) -> tuple[Event, ...]:
-        """End the stream; a message that was begun is cancelled."""
-        told = self._with_phrases(self._hearing.finish())
-        return (*told, *self._abandoned(self._time))
+        """End the stream and cancel an open message."""
+        events = self._add_phrases(self._listener.finish())
+        return (*events, *self._cancel_message(self._time))
 
-    def speak(self, language: SpokenLanguage) -> None:
-        """Listen for another language; what was begun in the one before is cancelled."""
-        self._hearing.speak(language)
+    def set_language(self, language: ActiveLanguage) -> None:
+        """Recognise another language; an open message of the previous one is cancelled."""
+        self._listener.set_language(language)
         if self._parser is not None:
-            self._left += self._parser.abandon()
-        self._parser = parser_of(language)
+            self._cancelled += self._parser.abandon()
+        self._parser = create_parser(language)
 
-    def _with_phrases(self, events: Iterable[Event]) -> tuple[Event, ...]:
-        told: list[Event] = []
+    def _add_phrases(self, events: Iterable[Event]) -> tuple[Event, ...]:
+        added: list[Event] = []
         for event in events:
-            told.append(event)
+            added.append(event)
             if self._parser is None or not isinstance(event, TakeRecognized | TakeRejected):
                 continue
             label = None
             if isinstance(event, TakeRecognized):
                 label = event.label
-                # What does not lie before it is of another stream.
+                # A take that does not end before this one belongs to another stream.
                 before = [take for take in self._takes if take.end <= event.start]
                 self._takes = [*before, event]
-            told += self._heard(event.time, self._parser.feed(label, event.start, event.end))
-        return tuple(told)
+            added += self._to_events(event.time, self._parser.feed(label, event.start, event.end))
+        return tuple(added)
 
-    def _abandoned(self, time: float) -> tuple[PhraseHeard, ...]:
-        return () if self._parser is None else self._heard(time, self._parser.abandon())
+    def _cancel_message(self, time: float) -> tuple[PhraseHeard, ...]:
+        return () if self._parser is None else self._to_events(time, self._parser.abandon())
 
-    def _heard(self, time: float, events: Iterable[PhraseEvent]) -> tuple[PhraseHeard, ...]:
-        spoken = self.language
+    def _to_events(self, time: float, phrases: Iterable[PhraseEvent]) -> tuple[PhraseHeard, ...]:
+        active = self.language
         return tuple(
-            PhraseHeard(time, each, self._confidence(each), spoken.sha256, spoken.revision)
-            for each in events
+            PhraseHeard(time, each, self._take_confidence(each), active.sha256, active.revision)
+            for each in phrases
         )
 
-    def _confidence(self, phrase: PhraseEvent) -> float:
-        """Return that of the message's least sure gesture, and forget those before the message."""
+    def _take_confidence(self, phrase: PhraseEvent) -> float:
+        """Return the message's lowest confidence, and drop the takes before the message."""
         self._takes = [take for take in self._takes if take.start >= phrase.start]
-        # A pause may be told after the gesture that ended it, which is of the next message.
-        sure = (take.confidence for take in self._takes if take.end <= phrase.end)
-        return min(sure, default=0.0)
+        # The event of a pause may follow the gesture after the pause, which belongs to the next
+        # message.
+        confidences = (take.confidence for take in self._takes if take.end <= phrase.end)
+        return min(confidences, default=0.0)
 
 
-def parser_of(language: SpokenLanguage) -> PhraseParser | None:
-    """Return what puts a language's gestures together; None where it has no phrases."""
+def create_parser(language: ActiveLanguage) -> PhraseParser | None:
+    """Create the phrase parser of a language; None where it has no phrases."""
     grammar = language.recognizer.language.grammar
     return None if grammar is None or not grammar.phrases else PhraseParser(grammar)

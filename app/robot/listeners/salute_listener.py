@@ -1,4 +1,4 @@
-"""From landmarks to takes, and from takes to what was said, frame by frame."""
+"""Salute listener: segments landmarks into takes between two salutes and recognises each take."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Protocol
 from app.recognition import PoseSequence, Take
 from app.recognition.recording.live_segmentation import LiveTakes
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, StateChanged
-from app.robot.take_result import rejection, verdict_on_take
+from app.robot.take_result import judge_take, reject_take
 
 NOT_ENDED_IN_TIME = (
     f"no salute ended it within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver swam away"
@@ -17,142 +17,141 @@ NOT_ENDED_IN_TIME = (
 NOT_ENDED_AT_ALL = "the stream ended before a second salute"
 
 
-class Hearing(Protocol):
-    """Whatever listens to landmarks: with salutes (`Listener`) or without (`SpottingListener`)."""
+class LandmarkListener(Protocol):
+    """Protocol of listeners, with salutes (`Listener`) or without (`SpottingListener`)."""
 
     @property
-    def language(self) -> SpokenLanguage:
-        """The language that is listened for."""
+    def language(self) -> ActiveLanguage:
+        """The active language."""
         ...
 
     @property
     def state(self) -> TakeState:
-        """What the salutes are at."""
+        """State of the salutes."""
         ...
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Take the next frame and tell what it changes."""
+        """Process the next frame and return its events."""
         ...
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
-        """Forget what was seen; a take that was begun is rejected for that reason."""
+        """Clear the memory; an open take is rejected for `reason`."""
         ...
 
     def finish(self) -> tuple[Event, ...]:
-        """End the stream and tell what was still awaited."""
+        """End the stream and return the events that were still pending."""
         ...
 
-    def speak(self, language: SpokenLanguage) -> None:
-        """Listen for another language from the next frame on, without forgetting what was seen."""
+    def set_language(self, language: ActiveLanguage) -> None:
+        """Recognise another language from the next frame on, without clearing the memory."""
         ...
 
 
 class Listener:
-    """Hears what is shown between two salutes.
+    """Listener for gestures between two salutes.
 
-    State and memory are cleared between two takes, and bounded within one: landmarks of no more
-    than `LONGEST_TAKE` and the salute before it are kept.
+    State and memory are cleared between two takes, and bounded within one: it keeps the landmarks
+    of at most `LONGEST_TAKE` and of the salute before it.
 
     Parameters
     ----------
     language
-        The language to listen for.
+        The language to recognise.
 
     """
 
-    def __init__(self, language: SpokenLanguage) -> None:
+    def __init__(self, language: ActiveLanguage) -> None:
         self._language = language
         self._takes: LiveTakes | None = None
         self._last: PoseSequence | None = None
         self._state: TakeState | None = None
 
     @property
-    def language(self) -> SpokenLanguage:
-        """The language that is listened for."""
+    def language(self) -> ActiveLanguage:
+        """The active language."""
         return self._language
 
     @property
     def state(self) -> TakeState:
-        """Whether a salute is awaited, a take goes on, or the salute that ended it is held."""
+        """Waiting for a salute, in a take, or holding the salute that ended the take."""
         return self._state or TakeState.idle
 
     def __len__(self) -> int:
-        """Count the frames that are remembered."""
+        """Return the number of frames in memory."""
         return len(self._takes) if self._takes else 0
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Take the next frame.
+        """Process the next frame.
 
-        A frame from before the last one, or of another size, is another camera's: what was seen
-        until then is forgotten.
+        An earlier time or another size means another camera, so the memory is cleared.
 
         Parameters
         ----------
         moment
-            The body in that frame alone (`extraction.moment_of`).
+            The body in this frame alone (`extraction.build_frame_sequence`).
         salute
-            In [0, 1]: how much the best hand salutes (`salute.best_salute`).
+            Salute score of the best hand, in [0, 1] (`salute.best_salute`).
 
         Returns
         -------
-        `StateChanged`, `TakeRecognized` and `TakeRejected`, mostly none.
+        `StateChanged`, `TakeRecognized` and `TakeRejected`; for most frames none.
 
         """
         time = float(moment.time[0])
-        told: tuple[Event, ...] = ()
-        if self._last is not None and (broken := break_between(self._last, moment)):
-            told = self.abandon(time, broken)
+        events: tuple[Event, ...] = ()
+        if self._last is not None and (reason := describe_break(self._last, moment)):
+            events = self.abandon(time, reason)
         self._last = moment
         if self._takes is None:
             self._takes = LiveTakes(moment.frame_size)
         sight = self._takes.feed_moment(moment, salute)
-        told += self._changed(time, sight.state)
+        events += self._set_state(time, sight.state)
         if sight.take is None:
-            return told
-        return (*told, verdict_on_take(self._language, sight.take, time, NOT_ENDED_IN_TIME))
+            return events
+        return (*events, judge_take(self._language, sight.take, time, NOT_ENDED_IN_TIME))
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
-        """Forget what was seen.
+        """Clear the memory.
 
         Parameters
         ----------
         time
-            Seconds: now.
+            Current time of the source, in seconds.
         reason
-            Why a take that was begun is rejected.
+            Reason for rejecting an open take.
 
         """
-        take = self._unclosed()
-        rejected = (rejection(self._language, take, time, reason),) if take else ()
-        return (*rejected, *(self._changed(time, TakeState.idle) if self._state else ()))
+        take = self._clear()
+        rejected = (reject_take(self._language, take, time, reason),) if take else ()
+        return (*rejected, *(self._set_state(time, TakeState.idle) if self._state else ()))
 
     def finish(self) -> tuple[Event, ...]:
-        """End the stream; a take that was begun is rejected, and what it resembles is told."""
+        """End the stream; an open take is rejected, with its nearest gesture."""
         time = 0.0 if self._last is None else float(self._last.time[0])
-        take = self._unclosed()
+        take = self._clear()
         if take is None:
             return ()
-        return (verdict_on_take(self._language, take, time, NOT_ENDED_AT_ALL),)
+        return (judge_take(self._language, take, time, NOT_ENDED_AT_ALL),)
 
-    def speak(self, language: SpokenLanguage) -> None:
-        """Recognise by another language whatever ends from now on."""
+    def set_language(self, language: ActiveLanguage) -> None:
+        """Recognise the takes that end from now on by another language."""
         self._language = language
 
-    def _unclosed(self) -> Take | None:
-        """Return the take that was begun, and forget everything."""
+    def _clear(self) -> Take | None:
+        """Clear the memory and return the take that was open."""
         take = self._takes.finish() if self._takes else None
         self._takes = self._last = None
         return take
 
-    def _changed(self, time: float, state: TakeState) -> tuple[Event, ...]:
+    def _set_state(self, time: float, state: TakeState) -> tuple[Event, ...]:
         if state is self._state:
             return ()
         self._state = state
         return (StateChanged(time, state),)
 
 
-def break_between(last: PoseSequence, moment: PoseSequence) -> str:
-    """Say why one frame cannot follow another in the same take; empty where it can."""
+def describe_break(last: PoseSequence, moment: PoseSequence) -> str:
+    """Return why one frame cannot follow another in the same take; empty where it can."""
     before, now = float(last.time[0]), float(moment.time[0])
     if now <= before:
         return f"the source's time went back, from {before:.2f} s to {now:.2f} s"

@@ -1,23 +1,23 @@
-"""Listening without salutes: gestures spotted in whatever a diver does."""
+"""Spotting listener: recognises gestures in continuous motion, without salutes."""
 
 from __future__ import annotations
 
 from app.recognition import PoseSequence
 from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import Spotted, Spotter
-from app.robot.active_language import SpokenLanguage
+from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, StateChanged
-from app.robot.listeners.salute_listener import break_between
-from app.robot.take_result import verdict
+from app.robot.listeners.salute_listener import describe_break
+from app.robot.take_result import judge_recognition
 
 
 class SpottingListener:
-    """Hears gestures that no salute announces; a `Hearing`.
+    """Listener for gestures without salutes; a `LandmarkListener`.
 
     Parameters
     ----------
     language
-        The language to listen for.
+        The language to recognise.
 
     Raises
     ------
@@ -26,14 +26,14 @@ class SpottingListener:
 
     """
 
-    def __init__(self, language: SpokenLanguage) -> None:
+    def __init__(self, language: ActiveLanguage) -> None:
         self._language = language
         self._spotter = Spotter(language.recognizer)
         self._last: PoseSequence | None = None
 
     @property
-    def language(self) -> SpokenLanguage:
-        """The language that is listened for."""
+    def language(self) -> ActiveLanguage:
+        """The active language."""
         return self._language
 
     @property
@@ -42,45 +42,45 @@ class SpottingListener:
         return TakeState.idle
 
     def __len__(self) -> int:
-        """Count the frames that are remembered."""
+        """Return the number of frames in memory."""
         return len(self._spotter)
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Take the next frame; see `Listener.feed`, but that `salute` means nothing here."""
+        """Process the next frame; see `Listener.feed`. `salute` is ignored."""
         time = float(moment.time[0])
-        told: tuple[Event, ...] = ()
+        events: tuple[Event, ...] = ()
         if self._last is None:
-            told = (StateChanged(time, TakeState.idle),)
-        elif broken := break_between(self._last, moment):
-            told = self.abandon(time, broken)
+            events = (StateChanged(time, TakeState.idle),)
+        elif reason := describe_break(self._last, moment):
+            events = self.abandon(time, reason)
         self._last = moment
-        return told + self._told(time, self._spotter.feed(moment))
+        return events + self._to_events(time, self._spotter.feed(moment))
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
-        """Forget what was seen; a gesture that ended already is still told."""
-        told = self._told(time, self._spotter.finish())
+        """Clear the memory; return the events of gestures that had already ended."""
+        events = self._to_events(time, self._spotter.finish())
         self._spotter = Spotter(self._language.recognizer)
-        return told
+        return events
 
     def finish(self) -> tuple[Event, ...]:
-        """End the stream and tell the gestures that were still awaited."""
+        """End the stream and return the events that were still pending."""
         time = 0.0 if self._last is None else float(self._last.time[0])
-        return self._told(time, self._spotter.finish())
+        return self._to_events(time, self._spotter.finish())
 
-    def speak(self, language: SpokenLanguage) -> None:
+    def set_language(self, language: ActiveLanguage) -> None:
         """Spot the gestures of another language from the next frame on.
 
         Raises
         ------
         OsgError
-            When none of its gestures has a demonstration; the language before it is kept.
+            When none of its gestures has a demonstration; the previous language stays active.
 
         """
         self._spotter = self._spotter.for_language(language.recognizer)
         self._language = language
 
-    def _told(self, time: float, spotted: tuple[Spotted, ...]) -> tuple[Event, ...]:
+    def _to_events(self, time: float, spotted: tuple[Spotted, ...]) -> tuple[Event, ...]:
         return tuple(
-            verdict(self._language, each.recognition, time, each.start, each.end)
+            judge_recognition(self._language, each.recognition, time, each.start, each.end)
             for each in spotted
         )

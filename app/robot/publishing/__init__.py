@@ -1,1 +1,1 @@
-"""Recognitions published to other programs in the network."""
+"""Publishers: send recognitions to other programs in the network."""

@@ -1,6 +1,7 @@
-"""Publishing to ROS 2 without ROS 2: Eclipse Cyclone DDS with the names that ROS gives its topics.
+"""DDS publisher: publishes to ROS 2 nodes without ROS 2, through Eclipse Cyclone DDS.
 
-Any node of the same domain hears it. ``std_msgs/String`` needs no package of ours there.
+The topics have the names that ROS 2 gives its own, so any node of the same domain can subscribe.
+Topics of type ``std_msgs/String`` need no package of this project there.
 """
 
 import json
@@ -27,21 +28,21 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.messages import line_of
+from app.robot.messages import format_line
 from app.robot.publishing.dds_messages import GestureRecognition, Header, Phrase, String, Time
 
 NAMESPACE: Final = "osg"
-"""Of the topics: ``/osg/events`` and so on."""
+"""First part of the topic names, such as ``/osg/events``."""
 
 LAST_DOMAIN: Final = 232
-"""The highest number whose ports exist (OMG DDSI-RTPS 2.5, 9.6.2.3)."""
+"""Highest domain number with valid ports (OMG DDSI-RTPS 2.5, 9.6.2.3)."""
 
 KEPT: Final = 10
 """Messages kept while a subscriber is slow, as ROS does by default."""
 
 NANOSECONDS: Final = 1_000_000_000
 
-HERE_ALONE: Final = """
+LOCALHOST_CONFIGURATION: Final = """
 <CycloneDDS><Domain>
   <General>
     <Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
@@ -54,45 +55,46 @@ HERE_ALONE: Final = """
   </Discovery>
 </Domain></CycloneDDS>
 """
-"""Cyclone's configuration that ROS 2 itself gives it where only this machine is wanted."""
+"""Configuration of Cyclone for this machine alone, as ROS 2 itself sets it."""
 
 RELIABLE: Final = Qos(
     Policy.Reliability.Reliable(duration(milliseconds=100)),
     Policy.Durability.Volatile,
     Policy.History.KeepLast(KEPT),
 )
-"""Nothing is kept for who comes later: a recognition of the past must not steer a robot today."""
+"""Volatile: a late subscriber must not act on an old recognition."""
 
 Sample = TypeVar("Sample", bound=IdlStruct)
 
 
 class DdsPublisher:
-    """Tells a DDS domain what a robot's runtime tells; a `Publisher`.
+    """Publisher of a robot's events in a DDS domain; a `Publisher`.
 
     ``/osg/events`` (``std_msgs/String``) carries the JSON line of every event,
     ``/osg/recognition`` (``osg_interfaces/GestureRecognition``) every take,
-    ``/osg/recognized_gesture`` (``std_msgs/String``) the labels of recognised ones, which is the
-    published port's topic, and ``/osg/phrase`` (``osg_interfaces/Phrase``) what came of each take
-    or pause in a language with phrases.
+    ``/osg/recognized_gesture`` (``std_msgs/String``, the topic of the published ROS port) the label
+    of every recognised take, and ``/osg/phrase`` (``osg_interfaces/Phrase``) the phrase event of
+    each take or pause in a language with phrases.
 
     Parameters
     ----------
     environment
-        Where ROS 2's own variables are looked up: ``ROS_DOMAIN_ID``, and whether only this machine
-        is wanted (``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``ROS_LOCALHOST_ONLY``).
+        Variables of ROS 2: the domain (``ROS_DOMAIN_ID``), and whether to stay on this machine
+        (``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``ROS_LOCALHOST_ONLY``).
 
     Raises
     ------
     PublishError
-        When the domain is no number that there is, or cannot be joined.
+        When the domain is not a valid number, or cannot be joined.
 
     """
 
     def __init__(self, environment: Mapping[str, str] = os.environ) -> None:
         number = _domain(environment)
-        # Kept: when it is forgotten, so is the configuration.
+        # The configuration holds only as long as the Domain object exists.
         try:
-            self._domain = Domain(number, HERE_ALONE) if is_local(environment) else None
+            configuration = LOCALHOST_CONFIGURATION
+            self._domain = Domain(number, configuration) if is_local(environment) else None
             self._participant = DomainParticipant(number)
             self._events = self._writer("events", String)
             self._labels = self._writer("recognized_gesture", String)
@@ -107,8 +109,8 @@ class DdsPublisher:
         self._language = ""
 
     def publish(self, event: Event) -> None:
-        """Send one event; what a subscriber is too slow for is lost to it."""
-        # Better a line less than a robot that stops listening.
+        """Send one event; a subscriber that is too slow loses it."""
+        # A failed write must not stop the recognition.
         with suppress(DDSException):
             self._send(event)
 
@@ -117,7 +119,7 @@ class DdsPublisher:
             self._origin = _nanoseconds(event.began)
         if isinstance(event, LanguageChanged):
             self._language = event.name
-        self._events.write(String(line_of(event)))
+        self._events.write(String(format_line(event)))
         if isinstance(event, TakeRecognized | TakeRejected):
             self._takes.write(self._recognition(event))
         if isinstance(event, TakeRecognized):
@@ -178,7 +180,7 @@ class DdsPublisher:
 
 
 def is_local(environment: Mapping[str, str]) -> bool:
-    """Tell whether ROS 2's variables want this machine alone."""
+    """Return whether ROS 2's variables restrict it to this machine."""
     discovery = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
     return discovery == "LOCALHOST" or environment.get("ROS_LOCALHOST_ONLY") == "1"
 
@@ -191,5 +193,5 @@ def _domain(environment: Mapping[str, str]) -> int:
 
 
 def _nanoseconds(began: datetime | None) -> int:
-    """Return when a source's clock was 0, since 1970; a recording counts from its beginning."""
+    """Return the start of a source's clock in nanoseconds since 1970; 0 for a recording."""
     return 0 if began is None else round(began.timestamp() * 1e6) * 1000

@@ -1,4 +1,4 @@
-"""The messages of ROS 2 that are published over DDS, as Cyclone DDS writes them."""
+"""DDS messages: ROS 2 message types in the form that Cyclone DDS serialises."""
 
 from dataclasses import dataclass, field
 
@@ -31,7 +31,7 @@ class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
 
 @dataclass
 class GestureRecognition(IdlStruct, typename="osg_interfaces::msg::dds_::GestureRecognition_"):
-    """``osg_interfaces/GestureRecognition``, which says what the fields mean."""
+    """``osg_interfaces/GestureRecognition``; its ``.msg`` file describes the fields."""
 
     header: Header = field(default_factory=Header)
     body_id: str = ""
@@ -53,7 +53,7 @@ class GestureRecognition(IdlStruct, typename="osg_interfaces::msg::dds_::Gesture
 
 @dataclass
 class Phrase(IdlStruct, typename="osg_interfaces::msg::dds_::Phrase_"):
-    """``osg_interfaces/Phrase``, which says what the fields mean."""
+    """``osg_interfaces/Phrase``; its ``.msg`` file describes the fields."""
 
     header: Header = field(default_factory=Header)
     body_id: str = ""

@@ -1,4 +1,4 @@
-"""Telling others in the network what the robot's runtime tells."""
+"""Publisher: sends the robot's events to other programs in the network."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from app.recognition.errors import PublishError
 from app.robot.events import Event
 
 Network = Literal["dds"]
-"""How others are told: DDS with the names of ROS 2."""
+"""Networks to publish to: DDS with the topic names of ROS 2."""
 
 
 class Publisher(Protocol):
-    """Sends events to whoever listens."""
+    """Protocol of publishers: send events to all subscribers."""
 
     def publish(self, event: Event) -> None:
         """Send one event."""
@@ -24,7 +24,7 @@ class Publisher(Protocol):
 
 
 def open_publisher(network: Network) -> Publisher:
-    """Join a network.
+    """Join a network and return its publisher.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""The ROS 2 nodes of OSG Studio: pictures of a camera in, gestures and confirmed commands out."""
+"""ROS 2 nodes of OSG Studio: turn camera pictures into gestures and confirmed commands."""

@@ -1,4 +1,4 @@
-"""How a node is, for /diagnostics: what it counts, and what went wrong lately."""
+"""Diagnostics of a node: counts input and problems and builds the report for /diagnostics."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from collections.abc import Mapping
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 SILENT_SECONDS = 2.0
-"""Without an input message for so long a node warns. Cameras give at least five frames a second;
-a network stream that stalls for a key frame recovers within one or two seconds."""
+"""Seconds without input after which a node warns. Cameras give at least five frames a second; a
+network stream that waits for a key frame recovers within one or two seconds."""
 
 
 class Health:
-    """What happened since the last report.
+    """Counts since the last report.
 
     Parameters
     ----------
     name
-        Of the node, with its namespace.
+        Name of the node, with its namespace.
     awaited
-        The topic without which the node is idle, for people.
+        Input topic of the node, for people.
     steady
         Whether messages come all the time, so that silence is a fault.
 
     Attributes
     ----------
     inputs
-        Count of messages taken from it since the start.
+        Number of input messages since the start.
 
     """
 
@@ -42,30 +42,30 @@ class Health:
         self._last = 0.0
 
     def listen(self, now: float | None) -> None:
-        """Expect messages from now on (seconds of a steady clock), or, with None, no longer."""
+        """Expect messages from `now` on (seconds of a steady clock); None: expect none."""
         self._listening_since = now
 
     def count(self, now: float) -> None:
-        """Count an input message that came at `now` seconds of a steady clock."""
+        """Count an input message received at `now`, in seconds of a steady clock."""
         self.inputs += 1
         self._last = now
 
     def problem(self, what: str) -> None:
-        """Report something that went wrong, in one line, with the next report."""
+        """Add a problem, described in one line, to the next report."""
         self._problems += 1
         self._problem = what
 
     def report(self, now: float, seconds: float, facts: Mapping[str, str]) -> DiagnosticArray:
-        """Return what to publish, and begin to count anew; the caller stamps it.
+        """Build the report and reset the counts; the caller sets the stamp.
 
         Parameters
         ----------
         now
             Seconds of the steady clock.
         seconds
-            Since the report before.
+            Seconds since the previous report.
         facts
-            What else there is to know.
+            Further keys and values.
 
         """
         rate = (self.inputs - self._reported) / seconds

@@ -1,4 +1,4 @@
-"""Parameters of the nodes that look at pictures."""
+"""Estimation settings: parameters of the nodes that process pictures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ THREADS: Final = Setting(
     "threads", 2, "Processor threads for the models; two run body and hands side by side.", 1, 64
 )
 PROVIDER: Final = Setting(
-    "provider", "cpu", "Where ONNX Runtime runs the models.", choices=get_args(Provider)
+    "provider", "cpu", "Execution provider of ONNX Runtime.", choices=get_args(Provider)
 )
 ESTIMATOR: Final = Setting(
     "estimator",

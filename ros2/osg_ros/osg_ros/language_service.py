@@ -1,4 +1,4 @@
-"""The language of a node: read from its file at configuration, and again whenever asked."""
+"""Language service: loads a node's language at configuration and reloads it on request."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.spotting import LONGEST_MEMORY
-from app.robot import SpokenLanguage
+from app.robot import ActiveLanguage
 from osg_ros.nodes.managed_node import ManagedNode
 from osg_ros.parameters import Setting
 
@@ -25,29 +25,29 @@ PROFILE: Final = Setting(
 WITHOUT_SALUTES: Final = Setting(
     "without_salutes",
     False,
-    f"Hear gestures that no salute announces; told up to {LONGEST_MEMORY:g} s after they end.",
+    f"Recognise gestures without salutes; published up to {LONGEST_MEMORY:g} s after they end.",
 )
 
 
 class LanguageService:
-    """Loads languages for a node, and offers the service `reload_language`.
+    """Service `reload_language` of a node, which also loads its first language.
 
-    The service runs beside the node's other callbacks, so that no picture waits for a file.
+    The service runs in parallel to the node's other callbacks, so that no picture waits for it.
 
     Parameters
     ----------
     node
-        Whose parameters `LANGUAGE` and `PROFILE` tell the first language.
+        Node whose parameters `LANGUAGE` and `PROFILE` define the first language.
     check
-        Called with every language before it is taken, maybe in another thread; raises a
-        `ValueError` that says why the node cannot hear it.
-    taken
+        Called with every language before it becomes active, maybe in another thread; raises a
+        `ValueError` with the reason why the node cannot recognise it.
+    change
         Called with every language after the first, maybe in another thread.
 
     Raises
     ------
     ValueError
-        When the parameter is empty, the file is no language, or one that cannot be heard.
+        When the parameter is empty, or the file is not a language or one that `check` refuses.
     OSError
         When the file cannot be read.
 
@@ -56,12 +56,12 @@ class LanguageService:
     def __init__(
         self,
         node: ManagedNode,
-        check: Callable[[SpokenLanguage], object],
-        taken: Callable[[SpokenLanguage], None],
+        check: Callable[[ActiveLanguage], object],
+        change: Callable[[ActiveLanguage], None],
     ) -> None:
         self._node = node
         self._check = check
-        self._taken = taken
+        self._change = change
         self._path: str = node.settings["language"]
         self._profile: str | None = node.settings["profile"] or None
         if not self._path:
@@ -69,7 +69,7 @@ class LanguageService:
                 "parameter language is empty; set it to a language file, exported from the studio "
                 "or made by osg-studio define"
             )
-        self.language = self._loaded(self._path)
+        self.language = self._load(self._path)
         self._service = node.create_service(
             ReloadLanguage,
             "reload_language",
@@ -78,7 +78,7 @@ class LanguageService:
         )
 
     def facts(self) -> Mapping[str, str]:
-        """Tell diagnostics which language is loaded."""
+        """Return the loaded language for diagnostics."""
         return {
             "language": self.language.name,
             "language id": self.language.sha256,
@@ -86,11 +86,11 @@ class LanguageService:
         }
 
     def close(self) -> None:
-        """Withdraw the service."""
+        """Remove the service."""
         self._node.destroy_service(self._service)
 
-    def _loaded(self, path: str) -> SpokenLanguage:
-        language = SpokenLanguage.load(path, self._profile)
+    def _load(self, path: str) -> ActiveLanguage:
+        language = ActiveLanguage.load(path, self._profile)
         self._check(language)
         return language
 
@@ -99,10 +99,10 @@ class LanguageService:
     ) -> ReloadLanguage.Response:
         path = request.path or self._path
         try:
-            language = self._loaded(path)
+            language = self._load(path)
         except (ValueError, OSError) as error:
             response.message = f"{path} is refused, the language stays: {error}"
-            self._node.complain(response.message)
+            self._node.report_problem(response.message)
         else:
             response.success = True
             response.message = (
@@ -110,7 +110,7 @@ class LanguageService:
                 f"{len(language.recognizer.language.labels)} gestures"
             )
             self._path, self.language = path, language
-            self._taken(language)
+            self._change(language)
         response.language_id = self.language.sha256
         response.language_revision = self.language.revision
         return response

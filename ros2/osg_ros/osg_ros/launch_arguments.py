@@ -1,4 +1,4 @@
-"""What the launch files share: their arguments, and a node that obeys them."""
+"""Launch arguments: declared here for all launch files, with the nodes that use them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from launch_ros.parameter_descriptions import ParameterValue
 PACKAGE = "osg_ros"
 
 
-def arguments() -> list[DeclareLaunchArgument]:
-    """Return the arguments of every launch file."""
+def declare_arguments() -> list[DeclareLaunchArgument]:
+    """Declare the arguments of every launch file."""
     share = Path(get_package_share_directory(PACKAGE))
     texts = {
         "image": ("image", "Topic of the pictures."),
         "namespace": ("", "Namespace of all nodes."),
         "params_file": (str(share / "config" / "gestures.yaml"), "Parameters of all nodes."),
         "autostart": ("true", "false: wait for a lifecycle manager."),
-        "input": ("osg", "Whose keypoints the separate recognition node hears: osg or published."),
-        "log_level": ("info", "Of all nodes."),
+        "input": ("osg", "Keypoints that the separate recognition node uses: osg or published."),
+        "log_level": ("info", "Log level of all nodes."),
     }
     return [
         DeclareLaunchArgument("language", description="Path of the language file."),
@@ -34,16 +34,16 @@ def arguments() -> list[DeclareLaunchArgument]:
     ]
 
 
-def switch(name: str, executable: str, *, on: bool) -> list[DeclareLaunchArgument | Node]:
-    """Return an executable with the argument that starts it or not."""
+def create_switch(name: str, executable: str, *, on: bool) -> list[DeclareLaunchArgument | Node]:
+    """Create an executable's node with the launch argument that switches it on or off."""
     argument = DeclareLaunchArgument(
         name, default_value=str(on).lower(), description=f"Start the {executable}."
     )
-    return [argument, node(executable, IfCondition(LaunchConfiguration(name)))]
+    return [argument, create_node(executable, IfCondition(LaunchConfiguration(name)))]
 
 
-def node(executable: str, condition: IfCondition | None = None) -> Node:
-    """Return an executable of this package with all that the arguments say."""
+def create_node(executable: str, condition: IfCondition | None = None) -> Node:
+    """Create the node of an executable of this package from the launch arguments."""
     image = LaunchConfiguration("image")
     return Node(
         package=PACKAGE,

@@ -1,4 +1,4 @@
-"""A node's parameters, with what they mean, what they may be, and when they are read."""
+"""Node parameters: declared with description, default and allowed values."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ class Setting:
     Attributes
     ----------
     name
-        As in a parameter file.
+        Name in a parameter file.
     default
-        Its value where nobody sets it; the type is the parameter's. A list of texts is ``[""]``
-        when empty, because an empty list has no type in ROS; empty texts in it count for nothing.
+        Default value, which also sets the type. An empty list of texts is ``[""]``, because an
+        empty list has no type in ROS; empty texts in a list are ignored.
     description
         One sentence for `ros2 param describe`.
     least, most
-        The range of a number.
+        Range of a number.
     choices
-        The values that a text may have; empty: any.
+        Allowed values of a text; empty for any.
 
     """
 
@@ -42,7 +42,7 @@ class Setting:
     choices: tuple[str, ...] = ()
 
     def descriptor(self) -> ParameterDescriptor:
-        """Return what `ros2 param describe` shows."""
+        """Return the descriptor that `ros2 param describe` shows."""
         allowed = f"one of {', '.join(self.choices)}; " if self.choices else ""
         made = ParameterDescriptor(
             name=self.name,
@@ -67,9 +67,9 @@ class Settings:
     Parameters
     ----------
     node
-        Whose parameters they become.
+        Node that gets the parameters.
     declared
-        All of them.
+        All parameters of the node.
 
     """
 
@@ -80,12 +80,12 @@ class Settings:
             node.declare_parameter(setting.name, setting.default, setting.descriptor())
 
     def __getitem__(self, name: str) -> Any:
-        """Return a parameter's value as it is now.
+        """Return a parameter's current value.
 
         Raises
         ------
         ValueError
-            When a text is none of its choices.
+            When a text is not one of its choices.
 
         """
         setting, value = self._declared[name], self._node.get_parameter(name).value

@@ -10,11 +10,11 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
+    ActiveLanguage,
     Event,
     Listener,
     PhraseHeard,
     PhraseListener,
-    SpokenLanguage,
     TakeRecognized,
     TakeRejected,
 )
@@ -33,9 +33,9 @@ OPEN = Grammar((PHOTO,), (NUMBER,), timeout=5)
 CLOSED = Grammar((Phrase("photo", (OneOf(("circle",)),)),), end="line", timeout=5)
 
 
-def language(grammar: Grammar) -> SpokenLanguage:
+def language(grammar: Grammar) -> ActiveLanguage:
     made = replace(language_of("circle", "line"), grammar=grammar)
-    return SpokenLanguage.from_json(made.to_json())
+    return ActiveLanguage.from_json(made.to_json())
 
 
 def phrases(events: list[Event]) -> list[tuple[str, str | None]]:
@@ -75,7 +75,7 @@ def test_a_language_without_phrases_is_heard_as_before() -> None:
 
 def test_a_rejected_take_is_asked_for_again_and_gives_no_command() -> None:
     grammar = replace(CLOSED, end="circle")
-    made = SpokenLanguage.from_json(replace(language_of("circle"), grammar=grammar).to_json())
+    made = ActiveLanguage.from_json(replace(language_of("circle"), grammar=grammar).to_json())
     told = heard(PhraseListener(Listener(made)), recording_of("circle", "line"))
     assert any(isinstance(event, TakeRejected) for event in told)
     assert phrases(told) == [("continues", None), ("repeat", None)]
@@ -119,7 +119,7 @@ def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> N
     elif how == "finish":
         told += listener.finish()
     else:
-        listener.speak(language(CLOSED))
+        listener.set_language(language(CLOSED))
     told += quiet(listener, now + 1, now + 12)
     assert phrases(told) == [("cancelled", None)]
 

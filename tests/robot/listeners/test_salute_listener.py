@@ -133,7 +133,7 @@ def test_a_take_is_recognised_by_the_language_at_its_end() -> None:
     told: list[Event] = []
     for number, frame in enumerate(begun):
         if number == len(begun) // 2:
-            listener.speak(spoken("circle", "line", revision=2))
+            listener.set_language(spoken("circle", "line", revision=2))
         told += listener.feed(*frame)
     (said,) = [event for event in told if isinstance(event, TakeRecognized)]
     assert (said.label, said.revision) == ("line", 2)

@@ -41,7 +41,7 @@ def test_a_gesture_that_goes_on_is_heard_in_the_next_language() -> None:
     halfway = (circle.start + circle.end) / 2
     for moment, salute in moments_of(recording):
         if moment.time[0] > halfway and listener.language.revision == 1:
-            listener.speak(spoken("circle", "line", revision=2))
+            listener.set_language(spoken("circle", "line", revision=2))
         told += listener.feed(moment, salute)
     assert said_in([*told, *listener.finish()])[0] == ("circle", circle.start, circle.end, 2)
 
@@ -50,7 +50,7 @@ def test_a_gesture_of_the_past_does_not_come_out_in_the_next_language() -> None:
     recording = recording_of("circle")
     listener = SpottingListener(spoken("line"))
     heard(listener, recording)
-    listener.speak(spoken("circle", "line", revision=2))
+    listener.set_language(spoken("circle", "line", revision=2))
     assert said_in(list(listener.finish())) == []
 
 

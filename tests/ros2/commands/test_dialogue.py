@@ -12,7 +12,7 @@ from osg_ros.commands.dialogue import (
     CommandDialogue,
     CommandTable,
     Decision,
-    HeardGesture,
+    RecognizedGesture,
     Rules,
 )
 
@@ -29,19 +29,19 @@ LABELS = [*TABLE.commands, "cross", "wave", None]
 
 def dialogue(rules: Rules = RULES) -> CommandDialogue:
     made = CommandDialogue(rules)
-    made.speak(TABLE)
+    made.set_table(TABLE)
     return made
 
 
 def shown(
     label: str | None, stamp: float, confidence: float = 0.9, language: str = "language"
-) -> HeardGesture:
-    return HeardGesture(label, confidence, stamp, language)
+) -> RecognizedGesture:
+    return RecognizedGesture(label, confidence, stamp, language)
 
 
-def commands_of(*gestures: HeardGesture, rules: Rules = RULES) -> list[str | None]:
+def commands_of(*gestures: RecognizedGesture, rules: Rules = RULES) -> list[str | None]:
     made = dialogue(rules)
-    return [made.hear(gesture, gesture.stamp).command for gesture in gestures]
+    return [made.decide(gesture, gesture.stamp).command for gesture in gestures]
 
 
 def test_a_gesture_is_confirmed_by_showing_it_again() -> None:
@@ -79,8 +79,8 @@ def test_a_cancel_or_a_gesture_without_command_takes_it_back(between: str) -> No
 
 def test_an_emergency_is_given_at_once_and_takes_back_the_rest() -> None:
     made = dialogue()
-    made.hear(shown("circle", 1), 1)
-    decision = made.hear(shown("line", 2), 2)
+    made.decide(shown("circle", 1), 1)
+    decision = made.decide(shown("line", 2), 2)
     assert (decision.command, decision.emergency) == ("surface", True)
     assert made.pending is None
 
@@ -92,7 +92,7 @@ def test_without_confirmation_a_gesture_is_enough() -> None:
 @pytest.mark.parametrize("now", [4.5, 1.5, math.nan])
 def test_a_stale_gesture_or_one_of_another_clock_is_ignored(now: float) -> None:
     made = dialogue()
-    decision = made.hear(shown("line", 3), now)
+    decision = made.decide(shown("line", 3), now)
     assert decision.command is None
     assert decision.reason.startswith("ignored")
 
@@ -111,28 +111,28 @@ def test_a_confidence_of_nan_is_too_little() -> None:
 
 def test_another_language_forgets_what_was_begun_in_the_old_one() -> None:
     made = dialogue()
-    made.hear(shown("circle", 1), 1)
-    decision = made.speak(CommandTable("newer", TABLE.commands))
+    made.decide(shown("circle", 1), 1)
+    decision = made.set_table(CommandTable("newer", TABLE.commands))
     assert decision is not None
     assert "'circle' is forgotten" in decision.reason
-    assert made.hear(shown("circle", 2, language="newer"), 2).command is None
+    assert made.decide(shown("circle", 2, language="newer"), 2).command is None
 
 
 def test_the_same_language_again_forgets_nothing() -> None:
     made = dialogue()
-    made.hear(shown("circle", 1), 1)
-    assert made.speak(CommandTable("language", dict(TABLE.commands))) is None
-    assert made.hear(shown("circle", 2), 2).command == "photo"
+    made.decide(shown("circle", 1), 1)
+    assert made.set_table(CommandTable("language", dict(TABLE.commands))) is None
+    assert made.decide(shown("circle", 2), 2).command == "photo"
 
 
 def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
     made = dialogue()
-    made.hear(shown("circle", 1), 1)
-    assert made.wait(11.5) is None
-    decision = made.wait(12.5)
+    made.decide(shown("circle", 1), 1)
+    assert made.check_deadline(11.5) is None
+    decision = made.check_deadline(12.5)
     assert decision is not None
     assert "not repeated in time" in decision.reason
-    assert made.wait(13.5) is None
+    assert made.check_deadline(13.5) is None
     assert made.pending is None
 
 
@@ -151,7 +151,7 @@ def test_rules_that_contradict_themselves_are_refused(wrong: dict[str, object], 
 
 
 gestures = st.builds(
-    HeardGesture,
+    RecognizedGesture,
     label=st.sampled_from(LABELS),
     confidence=st.sampled_from([0.0, 0.4, 0.5, 1.0, math.nan]),
     stamp=st.integers(0, 60).map(float),
@@ -160,14 +160,14 @@ gestures = st.builds(
 heard = st.lists(st.tuples(gestures, st.sampled_from([-2.0, 0.0, 0.5, 2.0])), max_size=30)
 
 
-def told(made: CommandDialogue, heard: list[tuple[HeardGesture, float]]) -> list[Decision]:
+def told(made: CommandDialogue, heard: list[tuple[RecognizedGesture, float]]) -> list[Decision]:
     """Return what a dialogue decides about gestures heard some seconds after their stamp."""
-    return [made.hear(gesture, gesture.stamp + late) for gesture, late in heard]
+    return [made.decide(gesture, gesture.stamp + late) for gesture, late in heard]
 
 
 @given(heard)
 def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
-    heard: list[tuple[HeardGesture, float]],
+    heard: list[tuple[RecognizedGesture, float]],
 ) -> None:
     for (gesture, late), decision in zip(heard, told(dialogue(), heard), strict=True):
         if decision.command is not None:
@@ -180,12 +180,12 @@ def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
 
 @given(heard)
 def test_every_command_but_an_emergency_was_shown_twice_in_time(
-    heard: list[tuple[HeardGesture, float]],
+    heard: list[tuple[RecognizedGesture, float]],
 ) -> None:
     made, asked = dialogue(), {}
     for gesture, late in heard:
         before = made.pending
-        decision = made.hear(gesture, gesture.stamp + late)
+        decision = made.decide(gesture, gesture.stamp + late)
         if made.pending is not None and made.pending is not before:
             asked[made.pending.label] = gesture.stamp
         if decision.command is not None and not decision.emergency:
@@ -197,7 +197,7 @@ def test_every_command_but_an_emergency_was_shown_twice_in_time(
 
 @given(heard)
 def test_a_pair_of_showings_gives_one_command_at_most(
-    heard: list[tuple[HeardGesture, float]],
+    heard: list[tuple[RecognizedGesture, float]],
 ) -> None:
     decisions = told(dialogue(), heard)
     confirmed = [each for each in decisions if each.command and not each.emergency]
@@ -205,6 +205,6 @@ def test_a_pair_of_showings_gives_one_command_at_most(
 
 
 @given(heard)
-def test_only_emergencies_are_told_as_such(heard: list[tuple[HeardGesture, float]]) -> None:
+def test_only_emergencies_are_told_as_such(heard: list[tuple[RecognizedGesture, float]]) -> None:
     for decision in told(dialogue(), heard):
         assert decision.emergency == (decision.command is not None and decision.label == "line")

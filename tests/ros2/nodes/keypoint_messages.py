@@ -9,8 +9,8 @@ from std_msgs.msg import Header
 
 from app.recognition import Recording
 from app.recognition.estimation import Body
-from osg_ros.topics.body_messages import body_message
-from osg_ros.topics.stamps import stamp_of
+from osg_ros.topics.body_messages import to_body_message
+from osg_ros.topics.stamps import to_stamp
 
 BEGAN = 1_700_000_000_123_456_789
 """Nanoseconds since 1970 of the first picture: as a camera stamps it, with no zero at the end."""
@@ -29,7 +29,7 @@ def messages_of(recording: Recording) -> Iterator[tuple[BodyKeypoints, Hands]]:
         poses.time.tolist(), poses.xy, poses.confidence, recording.salute.tolist(), strict=True
     )
     for seconds, xy, confidence, salute in frames:
-        header = Header(stamp=stamp_of(stamped(seconds)), frame_id="camera")
+        header = Header(stamp=to_stamp(stamped(seconds)), frame_id="camera")
         width, height = poses.frame_size
         hands = Hands(header=header, image_width=width, image_height=height, salute=salute)
-        yield body_message(header, poses.frame_size, Body(xy, confidence, 1.0)), hands
+        yield to_body_message(header, poses.frame_size, Body(xy, confidence, 1.0)), hands

@@ -18,13 +18,13 @@ from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.skeletons import SKELETON_2D
 from app.recognition.recording.salute import best_salute
 from osg_ros.topics.body_messages import (
-    body_in,
-    body_message,
-    published_keypoints,
-    published_moment,
-    skeleton_message,
+    read_body,
+    read_published_body,
+    to_body_message,
+    to_published_keypoints,
+    to_skeleton_message,
 )
-from osg_ros.topics.hand_messages import hands_message, published_hand_keypoints
+from osg_ros.topics.hand_messages import to_hands_message, to_published_hand_keypoints
 from tests.recognition.parametric_hand import hand_xy, salute
 
 SIZE = (640, 480)
@@ -43,8 +43,8 @@ def saluting() -> Hand:
 
 
 def test_a_body_is_read_back_to_the_last_bit() -> None:
-    message = body_message(Header(), SIZE, body())
-    read = body_in(message)
+    message = to_body_message(Header(), SIZE, body())
+    read = read_body(message)
     assert read is not None
     assert np.array_equal(read.xy, body().xy, equal_nan=True)
     assert np.array_equal(read.visibility, body().visibility)
@@ -53,13 +53,13 @@ def test_a_body_is_read_back_to_the_last_bit() -> None:
 
 
 def test_nobody_is_a_message_without_keypoints() -> None:
-    message = body_message(Header(), SIZE, None)
+    message = to_body_message(Header(), SIZE, None)
     assert (message.body_id, list(message.keypoints)) == ("", [])
-    assert body_in(message) is None
+    assert read_body(message) is None
 
 
 def test_hands_come_with_the_salute_that_they_make() -> None:
-    message = hands_message(Header(), SIZE, [saluting()])
+    message = to_hands_message(Header(), SIZE, [saluting()])
     assert message.salute == best_salute([saluting()]) > 0.5
     (hand,) = message.hands
     assert np.array_equal([(point.x, point.y) for point in hand.keypoints], saluting().xy)
@@ -68,24 +68,24 @@ def test_hands_come_with_the_salute_that_they_make() -> None:
 
 
 def test_the_published_ports_pose_has_its_names_and_fractions_of_the_picture() -> None:
-    message = published_keypoints(PoseKeypointsArray, PoseKeypoints, SIZE, body())
+    message = to_published_keypoints(PoseKeypointsArray, PoseKeypoints, SIZE, body())
     assert [point.name for point in message.keypoints][:2] == ["NOSE", "LEFT_EYE_INNER"]
     assert message.keypoints[0].x == pytest.approx(body().xy[0, 0] / 640, abs=1e-6)
-    moment = published_moment(message, 3.0, SIZE)
+    moment = read_published_body(message, 3.0, SIZE)
     assert np.allclose(moment.xy[0], body().xy, atol=1e-3, equal_nan=True)
     assert moment.time[0] == 3.0
 
 
 def test_the_published_ports_hands_lie_where_they_are_in_the_picture() -> None:
     hand = Hand(saluting().xy * 0 + [320, 120], "left", 0.9)
-    message = published_hand_keypoints(HandKeypointsArray, HandKeypoints, SIZE, [hand, hand])
+    message = to_published_hand_keypoints(HandKeypointsArray, HandKeypoints, SIZE, [hand, hand])
     assert len(message.keypoints) == 42
     assert (message.keypoints[21].name, message.keypoints[21].z) == ("Point_0", 0.0)
     assert (message.keypoints[0].x, message.keypoints[0].y) == (0.5, 0.25)
 
 
 def test_a_skeleton_of_ros4hri_has_each_point_where_its_constant_says() -> None:
-    message = skeleton_message(Skeleton2D, Header(), SIZE, body())
+    message = to_skeleton_message(Skeleton2D, Header(), SIZE, body())
     xy = dict(zip(POSE_LANDMARKS, (body().xy / SIZE).tolist(), strict=True))
     right_eye = message.skeleton[Skeleton2D.RIGHT_EYE]
     assert (right_eye.x, right_eye.y) == pytest.approx(xy["right_eye"], abs=1e-6)

@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition
+from osg_interfaces.msg import ActiveLanguage as LanguageMessage
+from osg_interfaces.msg import Command, CommandState, GestureRecognition
 from std_msgs.msg import Header
 
-from app.robot import SpokenLanguage
+from app.robot import ActiveLanguage
 from osg_ros.nodes.command_node import CommandNode
-from osg_ros.topics.stamps import nanoseconds_of, stamp_of
+from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.ros2.nodes.bench import LATCHED, Bench
 
 PROMPT = 8.0
@@ -28,9 +29,9 @@ class Robot:
         self.bench = bench
         self.commands = bench.heard(Command, "command")
         self.states = bench.heard(CommandState, "command_state", LATCHED)
-        self._languages = bench.probe.create_publisher(ActiveLanguage, "language", LATCHED)
+        self._languages = bench.probe.create_publisher(LanguageMessage, "language", LATCHED)
         self._languages.publish(
-            ActiveLanguage(
+            LanguageMessage(
                 language_id="id",
                 name="pool",
                 revision=3,
@@ -47,7 +48,7 @@ class Robot:
         """Show a gesture, and return what the robot says about it."""
         now = self.bench.probe.get_clock().now().nanoseconds - round(seconds_ago * 1e9)
         message = GestureRecognition(
-            header=Header(stamp=stamp_of(now)),
+            header=Header(stamp=to_stamp(now)),
             body_id="diver",
             language_id="id",
             language_revision=3,
@@ -69,7 +70,7 @@ def test_a_command_comes_with_the_repetition_and_its_stamp(bench: Bench) -> None
     assert robot.show("circle") == "repeat 'circle' to confirm: photo"
     asked = robot.states[-1]
     assert (asked.state, asked.label) == (CommandState.CONFIRMING, "circle")
-    seconds = nanoseconds_of(asked.deadline) - nanoseconds_of(asked.header.stamp)
+    seconds = to_nanoseconds(asked.deadline) - to_nanoseconds(asked.header.stamp)
     assert seconds / 1e9 == pytest.approx(20.0)
     assert robot.show("circle") == "'circle': photo"
     bench.wait(lambda: bool(robot.commands), "command")
@@ -129,11 +130,11 @@ def test_the_language_file_is_enough_where_nobody_tells_the_language(
     bench: Bench, language_file: Path
 ) -> None:
     node = bench.active(CommandNode, language=str(language_file))
-    spoken = SpokenLanguage.load(language_file)
+    spoken = ActiveLanguage.load(language_file)
     assert node.facts() == {"language id": spoken.sha256, "commands": "circle, three, wedge"}
 
 
 def test_a_label_that_the_language_lacks_is_told_to_diagnostics(bench: Bench) -> None:
     robot = Robot(bench, emergency=["stop!"])
     report = robot.node.health.report(0.0, 1.0, {})
-    assert "has no ['stop!']" in report.status[0].message
+    assert "has no gestures ['stop!']" in report.status[0].message

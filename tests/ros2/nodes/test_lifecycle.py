@@ -19,9 +19,9 @@ from osg_ros.nodes.gesture_node import GestureNode
 from osg_ros.nodes.hand_node import HandNode
 from osg_ros.nodes.managed_node import ManagedNode
 from osg_ros.nodes.pose_node import PoseNode
-from osg_ros.nodes.process import running
+from osg_ros.nodes.process import run_nodes
 from osg_ros.nodes.recognition_node import RecognitionNode
-from osg_ros.nodes.robot_node import published
+from osg_ros.nodes.robot_node import run_robot_node
 from osg_ros.nodes.visualisation_node import VisualisationNode
 from tests.ros2.nodes.bench import LATCHED, Bench, state_of
 
@@ -74,7 +74,7 @@ def test_a_lifecycle_manager_does_it_by_service_in_the_nodes_namespace(
         (RecognitionNode, {"language": __file__}, "JSON"),
         (RecognitionNode, {"language": "x", "profile": "best"}, "profile is 'best'"),
         (GestureNode, {"estimator": "openpose"}, "unknown backend 'openpose'"),
-        (CommandNode, {"language": __file__}, "no language file with a seal"),
+        (CommandNode, {"language": __file__}, "not a language file with a checksum"),
         (CommandNode, {"cancel": ["line"], "emergency": ["line"]}, "'line'"),
     ],
 )
@@ -118,14 +118,14 @@ def test_a_node_that_is_stopped_is_told_to_be_inactive(bench: Bench, language_fi
 def test_arguments_that_ros_does_not_understand_are_told() -> None:
     arguments = ["--ros-args", "-r", "recognition"]
     with pytest.raises(OsgError, match="does not understand --ros-args -r recognition"):
-        published(arguments).__enter__()
+        run_robot_node(arguments).__enter__()
 
 
 def test_a_node_that_was_shut_down_by_a_manager_ends_with_its_process(domain: int) -> None:
     rclpy.init(domain_id=domain)
     try:
         node = CommandNode()
-        with running([node]):
+        with run_nodes([node]):
             assert node.trigger_shutdown() == SUCCESS
         assert node.finished
     finally:

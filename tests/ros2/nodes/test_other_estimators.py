@@ -13,8 +13,8 @@ from sensor_msgs.msg import Image
 from app.recognition import Gesture, Language
 from app.recognition.recording.video import read_frames
 from osg_ros.nodes.gesture_node import GestureNode
-from osg_ros.topics.image_messages import picture_message
-from osg_ros.topics.stamps import nanoseconds_of, stamp_of
+from osg_ros.topics.image_messages import to_image_message
+from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.marker_clips import marker_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.estimation.marker_models import save_yolo_pose
@@ -62,8 +62,8 @@ def test_a_gesture_without_salutes_is_heard_by_yolo_pose(
     pictures = bench.speaker(Image, "image")
     with read_frames(marker_clip(tmp_path / "line.mkv", line)) as frames:
         for count, frame in enumerate(frames, 1):
-            message = picture_message(frame.image)
-            message.header.stamp = stamp_of(stamped(frame.time))
+            message = to_image_message(frame.image)
+            message.header.stamp = to_stamp(stamped(frame.time))
             pictures.publish(message)
             bench.wait(lambda count=count: node.health.inputs == count, "picture")  # type: ignore[misc]
             last = frame.time
@@ -73,7 +73,7 @@ def test_a_gesture_without_salutes_is_heard_by_yolo_pose(
     bench.wait(lambda: bool(said), "recognition")
     (take,) = said
     assert (take.label, take.rejected) == ("line", False)
-    assert stamped(0) <= nanoseconds_of(take.start) < nanoseconds_of(take.end) <= stamped(last)
+    assert stamped(0) <= to_nanoseconds(take.start) < to_nanoseconds(take.end) <= stamped(last)
     assert not any(hands.hands for hands in seen)
 
 

@@ -24,7 +24,7 @@ from app.recognition.phrases.phrase import OneOf
 from app.recognition.phrases.phrase import Phrase as LanguagePhrase
 from osg_ros.nodes.command_node import CommandNode
 from osg_ros.nodes.recognition_node import RecognitionNode
-from osg_ros.topics.stamps import nanoseconds_of, stamp_of
+from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of, stamped
@@ -63,8 +63,8 @@ class Robot:
     def see(self, pictures: Iterable[tuple[BodyKeypoints, Hands]]) -> None:
         """See bodies and hands one by one, as they are stamped."""
         for body, hands in pictures:
-            now, heard = nanoseconds_of(body.header.stamp), self._recogniser.health.inputs
-            self._clock.publish(Clock(clock=stamp_of(now)))
+            now, heard = to_nanoseconds(body.header.stamp), self._recogniser.health.inputs
+            self._clock.publish(Clock(clock=to_stamp(now)))
             self._bench.wait(lambda now=now: self._now() == now, "time")  # type: ignore[misc]
             self._bodies.publish(body)
             self._hands.publish(hands)
@@ -97,8 +97,8 @@ def test_a_message_that_is_shown_twice_gives_one_command(bench: Bench, tmp_path:
         ["line"],
     )
     takes = takes_in(recording)
-    assert nanoseconds_of(last.start) == stamped(takes[0].start)
-    assert nanoseconds_of(last.end) == stamped(takes[1].end)
+    assert to_nanoseconds(last.start) == stamped(takes[0].start)
+    assert to_nanoseconds(last.end) == stamped(takes[1].end)
     assert (last.body_id, last.header.frame_id, last.text) == ("diver", "camera", SPOKEN)
     assert last.confidence == min(each.confidence for each in said[:2])
     (asked,) = {each.label: each for each in robot.states if each.state == each.CONFIRMING}.values()
@@ -116,7 +116,7 @@ def test_a_pause_ends_a_message_that_needs_no_end(bench: Bench, tmp_path: Path) 
     recording = recording_of("circle")
     robot.show(recording)
     (*_, (body, hands)) = messages_of(recording)
-    body.header.stamp = hands.header.stamp = stamp_of(stamped(recording.poses.duration + 20))
+    body.header.stamp = hands.header.stamp = to_stamp(stamped(recording.poses.duration + 20))
     robot.see([(body, hands)])
     bench.wait(lambda: bool(robot.commands), "command")
     assert [phrase.kind for phrase in robot.phrases] == [Phrase.CONTINUES, Phrase.COMPLETE]

@@ -9,7 +9,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from app.recognition import OsgError
 from app.recognition.estimation import Image as RGBImage
-from osg_ros.topics.image_messages import PictureDecoder, picture_message
+from osg_ros.topics.image_messages import PictureDecoder, to_image_message
 
 
 def picture() -> RGBImage:
@@ -26,7 +26,7 @@ def message_of(data: RGBImage, encoding: str, step: int) -> Image:
 
 
 def test_what_is_sent_is_read_back() -> None:
-    assert np.array_equal(PictureDecoder().decode(picture_message(picture())), picture())
+    assert np.array_equal(PictureDecoder().decode(to_image_message(picture())), picture())
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from osg_interfaces.msg import GestureRecognition, Hands
 from sensor_msgs.msg import Image
 
 from app.recognition.recording.video import read_frames
-from osg_ros.topics.image_messages import picture_message
-from osg_ros.topics.stamps import nanoseconds_of, stamp_of
+from osg_ros.topics.image_messages import to_image_message
+from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.documented import documented
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import BEST_EFFORT, PATIENCE, RELIABLE, Bench
@@ -129,8 +129,8 @@ def test_label_by_label_and_stamp_by_stamp(
         assert message.nearest == take["nearest"]
         assert message.confidence == pytest.approx(take["confidence"], abs=1e-6)
         assert json.loads(message.report)["votes"] == take["votes"]
-        assert nanoseconds_of(message.start) == stamped(take["start"])
-        assert nanoseconds_of(message.end) == stamped(take["end"])
+        assert to_nanoseconds(message.start) == stamped(take["start"])
+        assert to_nanoseconds(message.end) == stamped(take["end"])
 
 
 def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
@@ -157,7 +157,7 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
     (message,), (take,) = said, recognised
     assert message.label == line["label"] == take["label"]
     assert message.confidence == pytest.approx(take["confidence"], abs=1e-9)
-    duration = nanoseconds_of(message.end) - nanoseconds_of(message.start)
+    duration = to_nanoseconds(message.end) - to_nanoseconds(message.start)
     assert duration == stamped(take["end"]) - stamped(take["start"])
     assert seen
 
@@ -170,8 +170,8 @@ def warm_up(bench: Bench, pictures: Any) -> None:
     reports = bench.heard(DiagnosticArray, "/diagnostics")
     black = np.zeros((240, 320, 3), dtype=np.uint8)
     for number in itertools.count():
-        message = picture_message(black)
-        message.header.stamp = stamp_of(stamped(number - 3600))
+        message = to_image_message(black)
+        message.header.stamp = to_stamp(stamped(number - 3600))
         pictures.publish(message)
         news = len(reports) + 3
         bench.wait(lambda news=news: len(reports) >= news, "diagnostics")  # type: ignore[misc]
@@ -189,8 +189,8 @@ def play(bench: Bench, clip: Path, pictures: Any, seen: list[Hands]) -> None:
     """Send the clip's frames with their timestamps, each when the one before was looked at."""
     with read_frames(clip) as frames:
         for frame in frames:
-            message = picture_message(frame.image)
-            message.header.stamp = stamp_of(stamped(frame.time))
+            message = to_image_message(frame.image)
+            message.header.stamp = to_stamp(stamped(frame.time))
             pictures.publish(message)
             bench.wait(
                 lambda: bool(seen) and seen[-1].header.stamp == message.header.stamp,  # noqa: B023

@@ -24,8 +24,8 @@ from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.estimation import Body
 from osg_ros.nodes.managed_node import ManagedNode
 from osg_ros.nodes.recognition_node import RecognitionNode
-from osg_ros.topics.body_messages import published_keypoints
-from osg_ros.topics.stamps import nanoseconds_of, stamp_of
+from osg_ros.topics.body_messages import to_published_keypoints
+from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import LATCHED, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of, stamped
@@ -83,8 +83,8 @@ def test_takes_are_those_of_the_recording_label_by_label_and_stamp_by_stamp(
         assert (message.label, message.nearest) == (answer.label, answer.nearest)
         assert message.confidence == pytest.approx(answer.confidence, abs=1e-9)
         assert message.margin == pytest.approx(answer.margin, abs=1e-9)
-        assert nanoseconds_of(message.start) == stamped(take.start)
-        assert nanoseconds_of(message.end) == stamped(take.end)
+        assert to_nanoseconds(message.start) == stamped(take.start)
+        assert to_nanoseconds(message.end) == stamped(take.end)
         assert (message.closed, message.rejected, message.reason) == (True, False, "")
         assert (message.body_id, message.header.frame_id) == ("diver", "camera")
         assert json.loads(message.report)["votes"] == answer.votes
@@ -135,7 +135,7 @@ def test_states_are_told_with_the_stamp_of_the_picture_that_changed_them(
         RecognizerState.DONE,
     ]
     stamps = {stamped(seconds) for seconds in recording.poses.time.tolist()}
-    assert {nanoseconds_of(state.header.stamp) for state in states[1:]} <= stamps
+    assert {to_nanoseconds(state.header.stamp) for state in states[1:]} <= stamps
 
 
 def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
@@ -170,16 +170,16 @@ def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> No
     frames = zip(recording.poses.time.tolist(), recording.poses.xy, recording.salute, strict=True)
     for sent, (seconds, xy, salute) in enumerate(frames):
         now = stamped(seconds)
-        clock.publish(Clock(clock=stamp_of(now)))
+        clock.publish(Clock(clock=to_stamp(now)))
         bench.wait(lambda now=now: node.get_clock().now().nanoseconds == now, "time")  # type: ignore[misc]
         body = Body(xy, np.ones(len(xy)), 1.0)
-        bodies.publish(published_keypoints(PoseKeypointsArray, PoseKeypoints, size, body))
+        bodies.publish(to_published_keypoints(PoseKeypointsArray, PoseKeypoints, size, body))
         heard(bench, node, 2 * sent + 1)
         salutes.publish(Bool(data=bool(salute > 0.5)))
         heard(bench, node, 2 * sent + 2)
     bench.wait(lambda: bool(said), "recognition")
     assert said[0].label == "line"
-    assert nanoseconds_of(said[0].start) == stamped(takes_in(recording)[0].start)
+    assert to_nanoseconds(said[0].start) == stamped(takes_in(recording)[0].start)
 
 
 def test_another_language_is_spoken_without_missing_a_picture(

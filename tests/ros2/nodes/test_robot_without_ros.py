@@ -14,8 +14,8 @@ from osg_interfaces.msg import GestureRecognition, Phrase
 from std_msgs.msg import String
 
 from app.robot import PhraseHeard, TakeRecognized, TakeRejected
-from app.robot.messages import MESSAGES, line_of
-from osg_ros.topics.stamps import nanoseconds_of
+from app.robot.messages import MESSAGES, format_line
+from osg_ros.topics.stamps import to_nanoseconds
 from tests.robot.publishing_robot import told
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import PATIENCE, RELIABLE, Bench
@@ -64,7 +64,7 @@ def test_ros_hears_every_take_and_phrase_as_the_robot_heard_it(bench: Bench, dom
     compare_takes(takes, said_takes)
     compare_phrases(phrases, said_phrases)
     assert {label.data for label in labels} == set(said_labels)
-    assert {line.data for line in lines} == {line_of(event) for event in events}
+    assert {line.data for line in lines} == {format_line(event) for event in events}
     assert {MESSAGES.validate_json(line.data).event for line in lines} == {
         "language_changed",
         "state_changed",
@@ -83,7 +83,7 @@ def compare_takes(
     takes: Iterable[GestureRecognition], said: Iterable[TakeRecognized | TakeRejected]
 ) -> None:
     expected = {(nanoseconds(event.start), nanoseconds(event.end)): event for event in said}
-    heard = {(nanoseconds_of(take.start), nanoseconds_of(take.end)): take for take in takes}
+    heard = {(to_nanoseconds(take.start), to_nanoseconds(take.end)): take for take in takes}
     assert heard.keys() == expected.keys()
     for span, take in heard.items():
         event = expected[span]
@@ -102,9 +102,9 @@ def compare_phrases(phrases: Iterable[Phrase], said: Iterable[PhraseHeard]) -> N
     for kind, message in heard.items():
         event = expected[kind]
         phrase = event.phrase
-        assert nanoseconds_of(message.header.stamp) == nanoseconds(event.time)
-        assert nanoseconds_of(message.start) == nanoseconds(phrase.start)
-        assert nanoseconds_of(message.end) == nanoseconds(phrase.end)
+        assert to_nanoseconds(message.header.stamp) == nanoseconds(event.time)
+        assert to_nanoseconds(message.start) == nanoseconds(phrase.start)
+        assert to_nanoseconds(message.end) == nanoseconds(phrase.end)
         assert (message.language_id, message.language_revision) == (event.sha256, event.revision)
         assert tuple(message.gestures) == phrase.gestures
         assert tuple(message.expected) == phrase.expected

@@ -7,7 +7,7 @@ from osg_interfaces.msg import BodyKeypoints, Hands
 from sensor_msgs.msg import Image
 
 from osg_ros.nodes.visualisation_node import BODY, VisualisationNode
-from osg_ros.topics.image_messages import PictureDecoder, picture_message
+from osg_ros.topics.image_messages import PictureDecoder, to_image_message
 from tests.api.recordings import recording_of
 from tests.ros2.nodes.bench import BEST_EFFORT, Bench
 from tests.ros2.nodes.keypoint_messages import messages_of
@@ -31,7 +31,7 @@ def test_bones_are_drawn_where_the_landmarks_are(bench: Bench) -> None:
     hands = bench.speaker(Hands, "hands")
     bench.wait(lambda: node.count_subscribers("processed_frames") == 1, "subscriber")
     body, seen = next(messages_of(recording_of("line")))
-    picture = picture_message(np.zeros((480, 640, 3), dtype=np.uint8))
+    picture = to_image_message(np.zeros((480, 640, 3), dtype=np.uint8))
     picture.header = body.header
     hands.publish(seen)
     pictures.publish(picture)

@@ -1,1 +1,1 @@
-"""From recognitions to confirmed commands, without ROS."""
+"""Commands: turn recognitions into confirmed commands, without ROS."""

@@ -1,8 +1,8 @@
-"""When a recognised gesture becomes a command: the decisions of the command node, without ROS.
+"""Command dialogue: decides when a recognised gesture becomes a command, without ROS.
 
-A misread gesture must not move a robot. So a command is given when the diver repeats its gesture, a
-gesture can cancel, and only what the operator names as an emergency needs no repetition. Where the
-language has phrases, their gestures are words: what is repeated and obeyed is the whole message.
+A misrecognised gesture must not move a robot. So a command is given when the diver repeats its
+gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. In a
+language with phrases the whole message is repeated and executed, not its single gestures.
 """
 
 from __future__ import annotations
@@ -12,38 +12,38 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 CONFIRM_SECONDS = 20.0
-"""A diver reads the answer off the robot's display and shows a gesture again, salutes included; the
-sample clips take 4 to 6 s a gesture, so this leaves two attempts."""
+"""Time for the diver to read the robot's display and repeat a gesture, salutes included. A gesture
+of the sample clips takes 4 to 6 s, so this leaves two attempts."""
 
 STALE_SECONDS = 3.0
-"""From the picture that ended a gesture until it is heard. Pose estimation on a slow robot takes
-well below a second; what comes later was held up, replayed, or stamped by a wrong clock."""
+"""Longest delay from the picture that ended a gesture to its arrival. Pose estimation on a slow
+robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
 
 
 @dataclass(frozen=True)
 class Rules:
-    """What a `CommandDialogue` obeys.
+    """Rules of a `CommandDialogue`.
 
     Attributes
     ----------
     confirmed
-        Whether a gesture or a message has to be repeated before its command is given.
+        Whether a gesture or a message must be repeated before its command is given.
     confirm_seconds
-        From a gesture to the end of its repetition, at most; of a message, to each next gesture of
-        its repetition, and to where that is over.
+        Longest time from a gesture to the end of its repetition; for a message, to each next
+        gesture of its repetition and to the end of the repetition.
     stale_seconds
-        Between a gesture's stamp and now, at most, in either direction.
+        Largest difference between a gesture's stamp and the current time, in either direction.
     least_confidence
-        Below it a gesture counts as rejected, and a message as not understood.
+        A gesture below it counts as rejected, a message as not understood.
     cancel
-        Labels that take back what waits for its repetition. Their own commands are not given.
+        Labels that cancel a pending gesture or message. Their own commands are not given.
     emergency
         Labels whose commands are given at once.
 
     Raises
     ------
     ValueError
-        When a number is out of its range, or a label both cancels and is an emergency.
+        When a number is out of its range, or a label is in both `cancel` and `emergency`.
 
     """
 
@@ -55,7 +55,7 @@ class Rules:
     emergency: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
-        """Check what would make a robot obey in the wrong moment."""
+        """Validate the values; a wrong one would give commands at the wrong moment."""
         for name in ("confirm_seconds", "stale_seconds"):
             seconds = getattr(self, name)
             if not (math.isfinite(seconds) and seconds > 0):
@@ -69,8 +69,8 @@ class Rules:
 
 
 @dataclass(frozen=True)
-class HeardGesture:
-    """What a recogniser says about one take.
+class RecognizedGesture:
+    """Recognition of one take.
 
     Attributes
     ----------
@@ -79,9 +79,9 @@ class HeardGesture:
     confidence
         In [0, 1].
     stamp
-        Seconds: when the picture that ended the take was taken.
+        Time of the picture that ended the take, in seconds.
     language_id
-        Of the language it was recognised by.
+        Id of the language that recognised it.
 
     """
 
@@ -92,25 +92,25 @@ class HeardGesture:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HeardPhrase:
-    """What a recogniser says about a message of several gestures.
+class RecognizedPhrase:
+    """Recognition of a message of several gestures.
 
     Attributes
     ----------
     kind
-        As in ``osg_interfaces/Phrase``; only ``complete`` is ever obeyed.
+        As in ``osg_interfaces/Phrase``; only ``complete`` leads to a command.
     mission
-        What to do, as JSON; empty: nothing.
+        The mission as JSON; empty for none.
     text
-        In words, for the diver.
+        Description for the diver.
     confidence
-        In [0, 1], the least of its gestures.
+        Lowest confidence of its gestures, in [0, 1].
     start, stamp
-        Seconds: of its first gesture, and when the picture was taken after which it was known.
+        Time of the first gesture, and of the picture after which the message was known, in seconds.
     label
-        Of the gesture that it came of; None when that was rejected, and for a pause.
+        Label of the gesture that caused it; None for a rejected gesture and for a pause.
     language_id
-        Of its language.
+        Id of its language.
 
     """
 
@@ -126,16 +126,16 @@ class HeardPhrase:
 
 @dataclass(frozen=True)
 class CommandTable:
-    """What the gestures of a language mean.
+    """Commands of a language's gestures.
 
     Attributes
     ----------
     language_id
-        Of that language.
+        Id of the language.
     commands
-        Per label its command; labels without one are left out.
+        Command of each label; labels without a command are left out.
     phrase_labels
-        What the language's phrases use: words, which mean nothing alone. Empty: no phrases.
+        Labels that the language's phrases use; they have no meaning alone. Empty: no phrases.
 
     """
 
@@ -146,16 +146,16 @@ class CommandTable:
 
 @dataclass(frozen=True)
 class Decision:
-    """What follows from a gesture, or from time going by.
+    """Result of a gesture or of elapsed time.
 
     Attributes
     ----------
     command
-        To be given now; None: none.
+        Command to give now; None for no command.
     label
-        Of the gesture that means it; of a message, its words.
+        Label of the gesture; for a message, its text.
     emergency
-        Whether it was given without a repetition because it is an emergency.
+        Whether the command needed no repetition because its label is an emergency.
     reason
         One line for the diver's display and the log.
 
@@ -174,11 +174,11 @@ class Pending:
     Attributes
     ----------
     label
-        The gesture; of a message, its words.
+        Label of the gesture; for a message, its text.
     deadline
-        Seconds: when the repetition must have ended; of a message, gone on or ended.
+        Time by which the repetition must have ended, in seconds; for a message, ended or continued.
     mission
-        What the message means; None: a gesture waits.
+        Mission of the message; None for a gesture.
 
     """
 
@@ -188,19 +188,19 @@ class Pending:
 
 
 class CommandDialogue:
-    """Turns recognised gestures and messages into commands, or into none.
+    """Dialogue that decides which recognised gestures and messages become commands.
 
     Parameters
     ----------
     rules
-        What to obey.
+        Rules of the decisions.
 
     Attributes
     ----------
     table
-        What the gestures mean; without one nothing is ever given.
+        Commands of the active language; an empty table gives no commands.
     pending
-        What waits for its repetition; None: nothing.
+        Gesture or message that waits for its repetition, or None.
 
     """
 
@@ -211,14 +211,14 @@ class CommandDialogue:
         self._latest = -math.inf
         self._latest_phrase = (-math.inf, -math.inf)
 
-    def speak(self, table: CommandTable) -> Decision | None:
-        """Take another language; what was begun in the old one is forgotten.
+    def set_table(self, table: CommandTable) -> Decision | None:
+        """Set the commands of another language and clear a pending gesture or message.
 
-        The same language again changes nothing.
+        Setting the same table again changes nothing.
 
         Returns
         -------
-        What that means for the diver; None where nothing was begun.
+        A decision that informs the diver; None where nothing was pending.
 
         """
         before, self.table = self.table, table
@@ -227,41 +227,41 @@ class CommandDialogue:
         label, self.pending = self.pending.label, None
         return Decision(f"{label!r} is forgotten: another language was loaded; show it again")
 
-    def hear(self, gesture: HeardGesture, now: float) -> Decision:
+    def decide(self, gesture: RecognizedGesture, now: float) -> Decision:
         """Decide about a gesture.
 
         Parameters
         ----------
         gesture
-            As recognised.
+            The recognised gesture.
         now
-            Seconds, in the clock of the stamps.
+            Current time in seconds, in the clock of the stamps.
 
         """
-        refused = self._refused(gesture, now, is_news=gesture.stamp > self._latest)
+        refused = self._find_refusal(gesture, now, is_newer=gesture.stamp > self._latest)
         if refused is not None:
             return Decision(refused)
         self._latest = gesture.stamp
-        # Written so that a confidence of NaN is too little.
+        # `>=` is False for NaN, so a confidence of NaN is too low.
         sure = gesture.confidence >= self.rules.least_confidence
         if gesture.label is None or not sure:
             return Decision("not understood; show the gesture again")
-        return self._decided(gesture.label, gesture.stamp)
+        return self._decide_label(gesture.label, gesture.stamp)
 
-    def hear_phrase(self, phrase: HeardPhrase, now: float) -> Decision:
-        """Decide about what came of a gesture or a pause in a language with phrases.
+    def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
+        """Decide about a phrase event, which follows a gesture or a pause.
 
         Parameters
         ----------
         phrase
-            As the language's grammar makes it.
+            Result of the language's grammar.
         now
-            Seconds, in the clock of the stamps.
+            Current time in seconds, in the clock of the stamps.
 
         """
-        # One picture can tell of two messages: the one that it ends, and the one that it begins.
+        # One picture can end a message and begin another one: two events with the same stamp.
         order = (phrase.stamp, phrase.start)
-        refused = self._refused(phrase, now, is_news=order > self._latest_phrase)
+        refused = self._find_refusal(phrase, now, is_newer=order > self._latest_phrase)
         if refused is None and not self.table.phrase_labels:
             refused = "ignored: the language of the commands has no phrases"
         if refused is not None:
@@ -270,7 +270,7 @@ class CommandDialogue:
         pending = self.pending if self.pending and self.pending.mission else None
         in_time = pending is not None and phrase.stamp <= pending.deadline
         if phrase.kind == "complete" and phrase.mission:
-            return self._completed(phrase, pending if in_time else None)
+            return self._complete(phrase, pending if in_time else None)
         if phrase.kind == "continues" and pending and in_time:
             self.pending = replace(pending, deadline=phrase.stamp + self.rules.confirm_seconds)
         stays = phrase.kind in ("continues", "repeat")
@@ -280,18 +280,18 @@ class CommandDialogue:
         self.pending = None
         return Decision(f"{phrase.text}; {pending.label!r} is forgotten")
 
-    def wait(self, now: float) -> Decision | None:
-        """Let time go by.
+    def check_deadline(self, now: float) -> Decision | None:
+        """Clear the pending gesture or message after its deadline.
 
         Parameters
         ----------
         now
-            Seconds, in the clock of the stamps.
+            Current time in seconds, in the clock of the stamps.
 
         Returns
         -------
-        What that changes. A repetition that ended in time but is not heard yet is waited for as
-        long as it would not be stale.
+        The decision, or None for no change. The deadline is extended by `stale_seconds`, because a
+        repetition that ended in time may arrive that late.
 
         """
         pending = self.pending
@@ -300,25 +300,25 @@ class CommandDialogue:
         self.pending = None
         return Decision(f"{pending.label!r} was not repeated in time; show it twice")
 
-    def _refused(
-        self, heard: HeardGesture | HeardPhrase, now: float, *, is_news: bool
+    def _find_refusal(
+        self, input_: RecognizedGesture | RecognizedPhrase, now: float, *, is_newer: bool
     ) -> str | None:
-        """Tell why something is not listened to at all."""
-        what = "message" if isinstance(heard, HeardPhrase) else "gesture"
-        age = now - heard.stamp
+        """Return why a gesture or message is ignored; None where it is not."""
+        what = "message" if isinstance(input_, RecognizedPhrase) else "gesture"
+        age = now - input_.stamp
         if not abs(age) <= self.rules.stale_seconds:
             return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"
-        if not is_news:
+        if not is_newer:
             return f"ignored: the {what} is not newer than the one before"
-        if heard.language_id != self.table.language_id:
+        if input_.language_id != self.table.language_id:
             return f"ignored: the {what} is of another language than the commands"
         return None
 
-    def _decided(self, label: str, stamp: float) -> Decision:
+    def _decide_label(self, label: str, stamp: float) -> Decision:
         pending, self.pending = self.pending, None
         command = self.table.commands.get(label)
         if label in self.table.phrase_labels - self.rules.cancel - self.rules.emergency:
-            # The message that waits is repeated by such gestures.
+            # Such gestures repeat the pending message.
             self.pending = pending if pending and pending.mission else None
             return Decision(f"{label!r} counts within a phrase only", label=label)
         if label in self.rules.cancel:
@@ -334,9 +334,9 @@ class CommandDialogue:
         self.pending = Pending(label, stamp + self.rules.confirm_seconds)
         return Decision(f"repeat {label!r} to confirm: {command}", label=label)
 
-    def _completed(self, phrase: HeardPhrase, pending: Pending | None) -> Decision:
-        """Decide about a message that is over; `pending` may still be confirmed by it."""
-        # Written so that a confidence of NaN is too little.
+    def _complete(self, phrase: RecognizedPhrase, pending: Pending | None) -> Decision:
+        """Decide about a complete message, which may confirm `pending`."""
+        # `>=` is False for NaN, so a confidence of NaN is too low.
         if not phrase.confidence >= self.rules.least_confidence:
             return Decision("not understood; show the message again")
         self.pending = None

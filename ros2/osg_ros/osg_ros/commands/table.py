@@ -1,4 +1,4 @@
-"""What the gestures of a language file mean, read without OSG Studio."""
+"""Command table: reads the commands of a language file without OSG Studio."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from typing import Any
 from osg_ros.commands.dialogue import CommandTable
 
 
-def command_text(command: str | dict[str, Any] | None) -> str:
-    """Return a gesture's command as one text: its words, or its object as JSON; empty: none."""
+def format_command(command: str | dict[str, Any] | None) -> str:
+    """Return a gesture's command as text, an object as JSON; empty where there is none."""
     if isinstance(command, dict):
         return json.dumps(command, ensure_ascii=False, separators=(",", ":"))
     return command or ""
 
 
 def read_commands(path: str) -> CommandTable:
-    """Return the commands of a language file.
+    """Read the commands of a language file.
 
     Parameters
     ----------
     path
-        Of a file that OSG Studio exported. The recogniser checks it; here only its seal, its
-        labels, its commands and what its phrases use are read.
+        File that OSG Studio exported. The recogniser validates it; this function reads only the
+        checksum, the labels, the commands and the labels that phrases use.
 
     Raises
     ------
     ValueError
-        When it is no such file.
+        When the file is not a language file.
     OSError
-        When it cannot be read.
+        When the file cannot be read.
 
     """
     try:
@@ -41,15 +41,16 @@ def read_commands(path: str) -> CommandTable:
         used = frozenset(_phrase_labels(content.get("grammar") or {}))
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(
-            f"{path} is no language file with a seal ({error!r}); export it from the studio again"
+            f"{path} is not a language file with a checksum ({error!r}); export it from the studio "
+            "again"
         ) from error
-    commands = {label: command_text(command) for label, command in gestures}
+    commands = {label: format_command(command) for label, command in gestures}
     given = {label: text for label, text in commands.items() if text}
     return CommandTable(language_id, given, used)
 
 
 def _phrase_labels(grammar: dict[str, Any]) -> Iterator[str]:
-    """Give every label that a grammar names; none where it has no phrases."""
+    """Yield every label in a grammar; nothing where it has no phrases."""
     if not grammar.get("phrases"):
         return
     yield from (str(grammar[role]) for role in ("start", "end", "cancel") if grammar.get(role))

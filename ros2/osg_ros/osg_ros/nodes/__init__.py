@@ -1,1 +1,1 @@
-"""The ROS 2 nodes: one module a node."""
+"""ROS 2 nodes: one module for each node."""

@@ -1,6 +1,7 @@
-"""Gestures and phrases in, commands out: after confirmation, never of what is rejected or stale.
+"""Command node: turns recognised gestures and phrases into confirmed commands.
 
-It needs no OSG Studio, only the messages, so it runs wherever ROS 2 does.
+Rejected and stale recognitions never become commands. The node needs only the messages, not OSG
+Studio, so it runs wherever ROS 2 does.
 """
 
 from __future__ import annotations
@@ -8,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from osg_interfaces.msg import ActiveLanguage, Command, CommandState, GestureRecognition, Phrase
+from osg_interfaces.msg import ActiveLanguage as LanguageMessage
+from osg_interfaces.msg import Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
 from osg_ros.commands.dialogue import (
@@ -17,18 +19,20 @@ from osg_ros.commands.dialogue import (
     CommandDialogue,
     CommandTable,
     Decision,
-    HeardGesture,
-    HeardPhrase,
+    RecognizedGesture,
+    RecognizedPhrase,
     Rules,
 )
 from osg_ros.commands.table import read_commands
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.nodes.process import spin
 from osg_ros.parameters import Setting
-from osg_ros.topics.stamps import NANOSECONDS, nanoseconds_of, stamp_of
+from osg_ros.topics.stamps import NANOSECONDS, to_nanoseconds, to_stamp
 
 LANGUAGE: Final = Setting(
-    "language", "", "Path of the language file, for where nobody tells the topic `language`."
+    "language",
+    "",
+    "Path of the language file, needed where no node publishes the topic `language`.",
 )
 CONFIRM: Final = Setting(
     "confirm",
@@ -52,15 +56,17 @@ STALE_AFTER: Final = Setting(
 LEAST_CONFIDENCE: Final = Setting(
     "least_confidence", 0.0, "Recognitions below it count as rejected.", 0.0, 1.0
 )
-CANCEL: Final = Setting("cancel", [""], "Labels that take back what waits for its repetition.")
+CANCEL: Final = Setting(
+    "cancel", [""], "Labels that cancel a gesture or message that waits for its repetition."
+)
 EMERGENCY: Final = Setting("emergency", [""], "Labels whose commands need no repetition.")
 
 CHECK_SECONDS: Final = 0.2
-"""Between two looks at the deadline: a diver notices half a second on the display."""
+"""Seconds between two checks of the deadline; a diver notices a delay of 0.5 s on the display."""
 
 
 class CommandNode(ManagedNode):
-    """Gives the commands of the active language; `CommandDialogue` decides."""
+    """Node that publishes the commands of the active language; `CommandDialogue` decides."""
 
     def __init__(self, **options: Any) -> None:
         settings = (
@@ -72,20 +78,20 @@ class CommandNode(ManagedNode):
             CANCEL,
             EMERGENCY,
         )
-        # Divers are silent most of the time.
+        # Divers show no gesture most of the time, so silence is not a fault.
         super().__init__("command_node", settings, "recognition", steady=False, **options)
         self._dialogue = CommandDialogue(Rules())
         self._timer: Any = None
 
     def prepare(self) -> None:
-        """Read the rules and the commands, and make the publishers.
+        """Read the rules and the commands, and create the publishers.
 
         Raises
         ------
         ValueError
-            When the rules contradict each other, or the file is no language.
+            When the rules contradict each other, or the file is not a language.
         OSError
-            When it cannot be read.
+            When the file cannot be read.
 
         """
         rules = Rules(
@@ -99,75 +105,75 @@ class CommandNode(ManagedNode):
         path = self.settings["language"]
         self._table = read_commands(path) if path else CommandTable()
         self._dialogue = CommandDialogue(rules)
-        self._commands = self.publisher(Command, "command", RESULTS)
-        self._state = self.publisher(CommandState, "command_state", LATCHED)
+        self._commands = self.add_publisher(Command, "command", RESULTS)
+        self._state = self.add_publisher(CommandState, "command_state", LATCHED)
 
     def begin(self) -> None:
-        """Listen from now on; nothing of before counts."""
+        """Subscribe, with an empty dialogue."""
         self._dialogue = CommandDialogue(self._dialogue.rules)
-        self._dialogue.speak(self._table)
+        self._dialogue.set_table(self._table)
         self._tell(Decision("waiting for a gesture"), self._now())
-        self.subscription(ActiveLanguage, "language", self._speak, LATCHED)
-        self.subscription(GestureRecognition, "recognition", self._hear, RESULTS)
-        self.subscription(Phrase, "phrase", self._hear_phrase, RESULTS)
+        self.add_subscription(LanguageMessage, "language", self._speak, LATCHED)
+        self.add_subscription(GestureRecognition, "recognition", self._hear, RESULTS)
+        self.add_subscription(Phrase, "phrase", self._hear_phrase, RESULTS)
         self._timer = self.create_timer(CHECK_SECONDS, self._wait)
 
     def halt(self) -> None:
-        """Forget what waits for its repetition."""
+        """Stop the timer of the deadline."""
         if self._timer is not None:
             self.destroy_timer(self._timer)
             self._timer = None
 
     def facts(self) -> Mapping[str, str]:
-        """Tell which commands can be given."""
+        """Return the language and its commands for diagnostics."""
         return {
             "language id": self._dialogue.table.language_id,
             "commands": ", ".join(sorted(self._dialogue.table.commands)),
         }
 
-    def _speak(self, language: ActiveLanguage) -> None:
+    def _speak(self, language: LanguageMessage) -> None:
         meant = zip(language.labels, language.commands, strict=False)
         commands = {label: command for label, command in meant if command}
         table = CommandTable(language.language_id, commands, frozenset(language.phrase_labels))
-        decision = self._dialogue.speak(table)
+        decision = self._dialogue.set_table(table)
         if decision is not None:
             self._tell(decision, self._now())
         rules = self._dialogue.rules
         unknown = sorted((rules.cancel | rules.emergency) - set(language.labels))
         if unknown:
-            self.complain(
-                f"the language {language.name!r} has no {unknown}, which shall cancel or be an "
-                "emergency; correct the parameters or load the language meant"
+            self.report_problem(
+                f"the language {language.name!r} has no gestures {unknown}, which the parameters "
+                "cancel or emergency name; correct them or load another language"
             )
 
     def _hear(self, recognition: GestureRecognition) -> None:
         self.count_input()
-        stamp = nanoseconds_of(recognition.header.stamp)
-        # A message that contradicts itself is a rejection.
+        stamp = to_nanoseconds(recognition.header.stamp)
+        # `rejected` wins where the message has a label too.
         label = None if recognition.rejected else recognition.label or None
-        gesture = HeardGesture(
+        gesture = RecognizedGesture(
             label, recognition.confidence, stamp / NANOSECONDS, recognition.language_id
         )
-        decision = self._dialogue.hear(gesture, self._now() / NANOSECONDS)
+        decision = self._dialogue.decide(gesture, self._now() / NANOSECONDS)
         self._act(decision, recognition)
 
     def _hear_phrase(self, phrase: Phrase) -> None:
         self.count_input()
-        heard = HeardPhrase(
+        heard = RecognizedPhrase(
             kind=phrase.kind,
             mission=phrase.mission,
             text=phrase.text,
             confidence=phrase.confidence,
-            start=nanoseconds_of(phrase.start) / NANOSECONDS,
-            stamp=nanoseconds_of(phrase.header.stamp) / NANOSECONDS,
+            start=to_nanoseconds(phrase.start) / NANOSECONDS,
+            stamp=to_nanoseconds(phrase.header.stamp) / NANOSECONDS,
             label=phrase.label or None,
             language_id=phrase.language_id,
         )
-        self._act(self._dialogue.hear_phrase(heard, self._now() / NANOSECONDS), phrase)
+        self._act(self._dialogue.decide_phrase(heard, self._now() / NANOSECONDS), phrase)
 
     def _act(self, decision: Decision, heard: GestureRecognition | Phrase) -> None:
-        """Tell what was decided about a message, and give the command if there is one."""
-        self._tell(decision, nanoseconds_of(heard.header.stamp))
+        """Publish the decision about a message, and its command if there is one."""
+        self._tell(decision, to_nanoseconds(heard.header.stamp))
         if decision.command is not None:
             self._commands.publish(
                 Command(
@@ -183,18 +189,18 @@ class CommandNode(ManagedNode):
 
     def _wait(self) -> None:
         now = self._now()
-        decision = self._dialogue.wait(now / NANOSECONDS)
+        decision = self._dialogue.check_deadline(now / NANOSECONDS)
         if decision is not None:
             self._tell(decision, now)
 
     def _tell(self, decision: Decision, stamp: int) -> None:
         self.get_logger().info(decision.reason)
         pending = self._dialogue.pending
-        state = CommandState(header=Header(stamp=stamp_of(stamp)), reason=decision.reason)
+        state = CommandState(header=Header(stamp=to_stamp(stamp)), reason=decision.reason)
         if pending is not None:
             state.state = CommandState.CONFIRMING
             state.label = pending.label
-            state.deadline = stamp_of(round(pending.deadline * NANOSECONDS))
+            state.deadline = to_stamp(round(pending.deadline * NANOSECONDS))
         self._state.publish(state)
 
     def _now(self) -> int:

@@ -1,7 +1,7 @@
-"""The whole recogniser in one node: pictures in, bodies, hands, states and recognitions out.
+"""Gesture node: turns pictures into bodies, hands, states and recognitions, in one node.
 
-It runs the same loop as `osg-studio robot`, on a topic in place of a camera. Nothing is sent
-between its parts as messages, so this is the one to use on a robot with few cores.
+It runs the same loop as `osg-studio robot`, with a topic in place of a camera. Its parts exchange
+no messages, which suits a robot with few cores.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from app.recognition.estimation import (
     list_landmarks,
 )
 from app.recognition.language.requirements import require_landmarks
-from app.robot import Event, Frame, PhraseListener, SpokenLanguage, hearing_of
+from app.robot import ActiveLanguage, Event, Frame, PhraseListener, create_listener
 from osg_ros.estimation_settings import ESTIMATOR, HANDS, PROVIDER, THREADS, WATER
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
 from osg_ros.nodes.gesture_worker import GestureWorker
 from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin
 from osg_ros.topics.gesture_topics import GestureTopics
-from osg_ros.topics.image_messages import TRANSPORT, picture_topic
+from osg_ros.topics.image_messages import TRANSPORT, select_image_topic
 from osg_ros.topics.topic_source import TopicSource
 
 
 class GestureNode(ManagedNode):
-    """Recognises the gestures in a topic of pictures."""
+    """Node that recognises the gestures in a topic of pictures."""
 
     def __init__(self, **options: Any) -> None:
         listening = (LANGUAGE, PROFILE, WITHOUT_SALUTES)
@@ -43,12 +43,12 @@ class GestureNode(ManagedNode):
         self._service: LanguageService | None = None
 
     def prepare(self) -> None:
-        """Load the models and the language, and make the publishers.
+        """Load the models and the language, and create the publishers.
 
         Raises
         ------
         EstimatorError
-            Also when no salute could be seen, and gestures are not heard without.
+            When a model cannot be loaded, or the salutes need hands and no hand model is set.
 
         """
         hands = self.settings["hands"]
@@ -64,33 +64,33 @@ class GestureNode(ManagedNode):
                 f"parameter hands is {hands!r}, and without hands no salute is seen; set "
                 "without_salutes to true or hands to others"
             )
-        self._service = LanguageService(self, self._hearing, self._change_language)
+        self._service = LanguageService(self, self._create_listener, self._change_language)
         self._water = self.settings["water"]
         self._topics = GestureTopics(self)
 
     def begin(self) -> None:
-        """Look at pictures from now on, in a thread of their own."""
+        """Process pictures from now on, in a separate thread."""
         assert self._service is not None
         assert self._estimator is not None
-        self._topics.recognitions.active(True)
-        kind, topic = picture_topic(self.settings["image_transport"])
-        source = TopicSource(self.resolve_topic_name(topic), self.complain)
-        self.subscription(kind, topic, source.put, SENSOR_DATA)
+        self._topics.recognitions.publish_active(True)
+        kind, topic = select_image_topic(self.settings["image_transport"])
+        source = TopicSource(self.resolve_topic_name(topic), self.report_problem)
+        self.add_subscription(kind, topic, source.put, SENSOR_DATA)
         language = self._service.language
-        # The worker tells it with the first picture, which may be long in coming.
-        self._topics.recognitions.speaks(language)
-        listener = self._hearing(language)
+        # The worker publishes it with the first picture, which may come much later.
+        self._topics.recognitions.publish_language(language)
+        listener = self._create_listener(language)
         self._worker = GestureWorker(source, self._estimator, listener, self._water, self)
 
     def halt(self) -> None:
-        """Stop after the picture that is looked at now."""
+        """Stop after the current picture."""
         if self._worker is not None:
             self._worker.stop()
             self._worker = None
-            self._topics.recognitions.active(False)
+            self._topics.recognitions.publish_active(False)
 
     def release(self) -> None:
-        """Withdraw the service and release the models."""
+        """Remove the service and release the models."""
         if self._service is not None:
             self._service.close()
             self._service = None
@@ -99,28 +99,28 @@ class GestureNode(ManagedNode):
             self._estimator = None
 
     def facts(self) -> Mapping[str, str]:
-        """Tell the language."""
+        """Return the language for diagnostics."""
         return self._service.facts() if self._service else {}
 
-    def look(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
-        """Publish what was seen in a frame."""
+    def handle_frame(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
+        """Publish the landmarks of a frame."""
         assert source.stopwatch is not None
         header = Header(stamp=source.stopwatch.stamp(frame.time), frame_id=source.frame_id)
-        self._topics.look(header, frame, found)
+        self._topics.publish_frame(header, frame, found)
 
-    def hear(self, source: TopicSource, event: Event, language: SpokenLanguage) -> None:
-        """Publish what happened."""
-        self._topics.hear(event, language, source.stopwatch, source.frame_id)
+    def handle_event(self, source: TopicSource, event: Event, language: ActiveLanguage) -> None:
+        """Publish an event."""
+        self._topics.publish_event(event, language, source.stopwatch, source.frame_id)
 
-    def _hearing(self, language: SpokenLanguage) -> PhraseListener:
+    def _create_listener(self, language: ActiveLanguage) -> PhraseListener:
         assert self._estimator is not None
         landmarks = list_landmarks(self._estimator)
         require_landmarks(language.recognizer.language, landmarks, "the pose estimator")
-        return hearing_of(language, without_salutes=self._without_salutes)
+        return create_listener(language, without_salutes=self._without_salutes)
 
-    def _change_language(self, language: SpokenLanguage) -> None:
+    def _change_language(self, language: ActiveLanguage) -> None:
         if self._worker is not None:
-            self._worker.speak(language)
+            self._worker.set_language(language)
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""One process with the whole recogniser and the commands: what a robot usually runs."""
+"""Gesture process: runs the gesture node and the command node in one process, the usual setup."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The thread in which a node looks at the frames of its topic."""
+"""Gesture worker: thread that processes the frames of a node's topic."""
 
 from __future__ import annotations
 
@@ -9,44 +9,44 @@ from typing import Protocol
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.robot import Event, Frame, PhraseListener, Runtime, SpokenLanguage
+from app.robot import ActiveLanguage, Event, Frame, PhraseListener, Runtime
 from osg_ros.topics.topic_source import TopicSource
 
 LONGEST_FRAME = 10.0
-"""Seconds that the last frame may take when the thread is stopped; a slow robot needs one."""
+"""Seconds to wait for the last frame when the thread is stopped; a slow robot needs one second."""
 
 
-class Watching(Protocol):
-    """Who is told what a worker sees; called in the worker's thread."""
+class FrameHandler(Protocol):
+    """Protocol of a handler of frames and events, called in the worker's thread."""
 
-    def look(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
-        """Take a frame and its landmarks."""
+    def handle_frame(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
+        """Handle a frame and its landmarks."""
         ...
 
-    def hear(self, source: TopicSource, event: Event, language: SpokenLanguage) -> None:
-        """Take what happened, and the language that is listened for."""
+    def handle_event(self, source: TopicSource, event: Event, language: ActiveLanguage) -> None:
+        """Handle an event of the active language."""
         ...
 
-    def complain(self, what: str) -> None:
-        """Take a problem, in one line."""
+    def report_problem(self, what: str) -> None:
+        """Handle a problem, described in one line."""
         ...
 
 
 class GestureWorker:
-    """Runs `app.robot.Runtime` in a thread until it is stopped.
+    """Thread that runs `app.robot.Runtime` until it is stopped.
 
     Parameters
     ----------
     source
-        Closed at the end.
+        Source of the frames; closed at the end.
     estimator
-        Used by nobody else meanwhile.
+        Pose estimator for this worker alone.
     listener
-        Hears the gestures.
+        Recognises the gestures.
     water
         Correction of the frames.
-    watching
-        Who is told.
+    handler
+        Handles frames, events and problems.
 
     """
 
@@ -56,29 +56,29 @@ class GestureWorker:
         estimator: PoseEstimator,
         listener: PhraseListener,
         water: WaterCorrection,
-        watching: Watching,
+        handler: FrameHandler,
     ) -> None:
         self._source = source
-        self._watching = watching
-        self._next: SpokenLanguage | None = None
+        self._handler = handler
+        self._next: ActiveLanguage | None = None
         self._listener = listener
         self._runtime = Runtime(
             source,
             estimator,
             self._listener,
             water=water,
-            changes=self._new_language,
-            observer=lambda frame, found: watching.look(source, frame, found),
+            changes=self._take_language,
+            observer=lambda frame, found: handler.handle_frame(source, frame, found),
         )
         self._thread = threading.Thread(target=self._run, name="gestures", daemon=True)
         self._thread.start()
 
-    def speak(self, language: SpokenLanguage) -> None:
-        """Listen for another language from the next frame on."""
+    def set_language(self, language: ActiveLanguage) -> None:
+        """Recognise another language from the next frame on."""
         self._next = language
 
     def stop(self) -> None:
-        """End after the frame that is looked at now."""
+        """Stop after the current frame."""
         self._runtime.stop()
         self._source.close()
         self._thread.join(LONGEST_FRAME)
@@ -87,10 +87,10 @@ class GestureWorker:
         try:
             with closing(self._source):
                 for event in self._runtime:
-                    self._watching.hear(self._source, event, self._listener.language)
+                    self._handler.handle_event(self._source, event, self._listener.language)
         except OsgError as error:
-            self._watching.complain(str(error))
+            self._handler.report_problem(str(error))
 
-    def _new_language(self) -> SpokenLanguage | None:
+    def _take_language(self) -> ActiveLanguage | None:
         language, self._next = self._next, None
         return language

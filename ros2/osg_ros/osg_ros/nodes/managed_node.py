@@ -1,4 +1,4 @@
-"""What all nodes share: a life cycle that refuses in words, parameters, and diagnostics."""
+"""Managed node: base class of all nodes, with life cycle, parameters and diagnostics."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from osg_ros.diagnostics import Health
 from osg_ros.parameters import Setting, Settings
 
 SENSOR_DATA = qos_profile_sensor_data
-"""Pictures and what is computed from each: the newest counts, a lost one is not sent again."""
+"""For pictures and the results of each picture: best effort, so a lost message is not resent."""
 
 NEWEST = QoSProfile(
     depth=1,
     history=QoSHistoryPolicy.KEEP_LAST,
     reliability=QoSReliabilityPolicy.BEST_EFFORT,
 )
-"""Pictures for whoever takes longer than from one to the next: a queue would only be a delay."""
+"""For pictures in a node that is slower than the camera: a longer queue would only add delay."""
 
 RESULTS = QoSProfile(depth=10)
-"""Recognitions and commands: reliable, a few are kept while a subscriber is slow."""
+"""For recognitions and commands: reliable, with ten messages kept for a slow subscriber."""
 
 LATCHED = QoSProfile(
     depth=1,
@@ -43,7 +43,7 @@ LATCHED = QoSProfile(
     reliability=QoSReliabilityPolicy.RELIABLE,
     durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
 )
-"""State and language: whoever comes later still gets the last one."""
+"""For state and language: a late subscriber gets the last message."""
 
 AUTOSTART = Setting(
     "autostart", True, "Configure and activate at start; false: wait for a lifecycle manager."
@@ -54,33 +54,32 @@ DIAGNOSTIC_PERIOD = Setting(
 
 
 class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
-    """A lifecycle node whose transitions fail with one line that says why.
+    """Lifecycle node whose failed transitions log the reason in one line.
 
-    What a node does is in four methods that do nothing here: `prepare`, `begin`, `halt` and
-    `release`. Publishers and subscriptions made by `publisher` and `subscription` go with the
-    transition that undoes the one they were made in.
+    Subclasses override `prepare`, `begin`, `halt` and `release`, which do nothing here. The reverse
+    transition destroys what `add_publisher` and `add_subscription` created in a transition.
 
     Parameters
     ----------
     name
-        The node's default name.
+        Default name of the node.
     settings
-        Its own parameters.
+        Parameters of the node.
     awaited
-        The topic it works on, for diagnostics.
+        Input topic, for diagnostics.
     steady
-        Whether something is wrong when nothing comes on it.
+        Whether silence on that topic is a fault.
     **options
-        For `rclpy.node.Node`.
+        Options of `rclpy.node.Node`.
 
     Attributes
     ----------
     settings
         All parameters.
     health
-        What diagnostics tell.
+        Counts for diagnostics.
     finished
-        Whether it was shut down and cannot be used again.
+        Whether the node was shut down and cannot be used again.
 
     """
 
@@ -101,7 +100,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         self._subscriptions_made: list[Any] = []
         self._reported = time.monotonic()
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        # Not the node's clock, which stands still while a simulation or a recording is paused.
+        # A steady clock, because the node's clock stops while a simulation or recording is paused.
         self._reporting = self.create_timer(
             self.settings["diagnostic_period"],
             self._report,
@@ -109,76 +108,76 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         )
 
     def prepare(self) -> None:
-        """Read parameters, load files and models, make publishers.
+        """Read parameters, load files and models, create publishers.
 
         Raises
         ------
         ValueError, OSError
-            When that cannot be done; the message says what to change.
+            When that fails; the message says what to change.
 
         """
 
     def begin(self) -> None:
-        """Publish what is known at once, and subscribe; publishers are enabled."""
+        """Publish the first state and subscribe; the publishers are enabled."""
 
     def halt(self) -> None:
-        """Stop what `begin` began; publishers are still enabled."""
+        """Stop what `begin` started; the publishers are still enabled."""
 
     def release(self) -> None:
-        """Let go of what `prepare` took; it may have failed half way."""
+        """Release what `prepare` acquired, also after it failed half way."""
 
     def facts(self) -> Mapping[str, str]:
-        """Return what else diagnostics shall tell."""
+        """Return further keys and values for diagnostics."""
         return {}
 
-    def publisher(self, kind: Any, topic: str, profile: QoSProfile) -> Any:
-        """Make a publisher that speaks while the node is active, and goes when it is cleaned up."""
+    def add_publisher(self, kind: Any, topic: str, profile: QoSProfile) -> Any:
+        """Create a publisher that is enabled in the active state and destroyed by cleanup."""
         made = self.create_lifecycle_publisher(
             kind,
             topic,
-            copy(profile),  # an operator's overrides are written into it
+            copy(profile),  # the operator's overrides change it in place
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         self._publishers_made.append(made)
         return made
 
-    def subscription(
-        self, kind: Any, topic: str, heard: Callable[[Any], None], profile: QoSProfile
+    def add_subscription(
+        self, kind: Any, topic: str, callback: Callable[[Any], None], profile: QoSProfile
     ) -> None:
         """Subscribe until the node is deactivated."""
         self._subscriptions_made.append(
             self.create_subscription(
                 kind,
                 topic,
-                heard,
+                callback,
                 copy(profile),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             )
         )
 
     def count_input(self) -> None:
-        """Count a message that the node worked on."""
+        """Count an input message."""
         self.health.count(time.monotonic())
 
-    def complain(self, what: str) -> None:
-        """Log a problem at most once a second, and tell diagnostics."""
+    def report_problem(self, what: str) -> None:
+        """Log a problem, at most once a second, and add it to the diagnostics."""
         self.health.problem(what)
         self.get_logger().error(what, throttle_duration_sec=1.0)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Prepare; stay unconfigured where that is not possible."""
-        with self._faults_told():
+        with self._log_faults():
             try:
                 self.prepare()
             except (ValueError, OSError) as error:
-                self.complain(" ".join(str(error).split()))
-                self._let_go()
+                self.report_problem(" ".join(str(error).split()))
+                self._release_all()
                 return TransitionCallbackReturn.FAILURE
             return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Enable the publishers, then begin."""
-        with self._faults_told():
+        with self._log_faults():
             done = super().on_activate(state)
             self.health.listen(time.monotonic())
             self.begin()
@@ -186,36 +185,36 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Halt, then disable the publishers."""
-        with self._faults_told():
+        with self._log_faults():
             self._stop()
             return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Release everything."""
-        with self._faults_told():
+        with self._log_faults():
             done = super().on_cleanup(state)
-            self._let_go()
+            self._release_all()
             return done
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop in whatever state the node is, and release everything."""
-        with self._faults_told():
+        """Stop in any state of the node, and release everything."""
+        with self._log_faults():
             self._stop()
             done = super().on_shutdown(state)
-            self._let_go()
+            self._release_all()
             self.finished = True
             return done
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Release everything; the node can be configured again."""
-        with self._faults_told():
+        with self._log_faults():
             self._stop()
-            self._let_go()
+            self._release_all()
             return TransitionCallbackReturn.SUCCESS
 
     @contextmanager
-    def _faults_told(self) -> Iterator[None]:
-        """Log what a transition did not expect; rclpy would only say that it failed."""
+    def _log_faults(self) -> Iterator[None]:
+        """Log an unexpected exception with its traceback; rclpy logs only that it failed."""
         try:
             yield
         except Exception:
@@ -229,7 +228,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         self._subscriptions_made.clear()
         self.halt()
 
-    def _let_go(self) -> None:
+    def _release_all(self) -> None:
         self.release()
         for made in self._publishers_made:
             self.destroy_lifecycle_publisher(made)

@@ -1,4 +1,4 @@
-"""The body in every picture: the first of the separate nodes."""
+"""Pose node: finds the body in every picture; first of the separate nodes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import NEWEST, ManagedNode
 from osg_ros.nodes.process import spin
 from osg_ros.topics.body_topics import BodyTopics
-from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, picture_topic
-from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
+from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, select_image_topic
+from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
 
 
 class PoseNode(ManagedNode):
-    """Publishes the body in a topic of pictures, with every picture's stamp."""
+    """Node that publishes the body in each picture of a topic, with the picture's stamp."""
 
     def __init__(self, **options: Any) -> None:
         settings = (TRANSPORT, WATER, THREADS, PROVIDER)
@@ -26,7 +26,7 @@ class PoseNode(ManagedNode):
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
-        """Load the models and make the publishers."""
+        """Load the models and create the publishers."""
         self._water = self.settings["water"]
         self._tracker = body_tracker(
             threads=self.settings["threads"], provider=self.settings["provider"]
@@ -34,13 +34,13 @@ class PoseNode(ManagedNode):
         self._bodies = BodyTopics(self)
 
     def begin(self) -> None:
-        """Look at pictures from now on, as at those of another camera."""
+        """Process pictures from now on, with tracking reset."""
         assert self._tracker
         self._tracker.reset()
         self._stopwatch = None
         self._decoder = PictureDecoder()
-        kind, topic = picture_topic(self.settings["image_transport"])
-        self.subscription(kind, topic, self._look, NEWEST)
+        kind, topic = select_image_topic(self.settings["image_transport"])
+        self.add_subscription(kind, topic, self._look, NEWEST)
 
     def release(self) -> None:
         """Release the models."""
@@ -49,14 +49,14 @@ class PoseNode(ManagedNode):
     def _look(self, message: Any) -> None:
         assert self._tracker
         self.count_input()
-        stamp = nanoseconds_of(message.header.stamp)
+        stamp = to_nanoseconds(message.header.stamp)
         if self._stopwatch is None:
             self._stopwatch = Stopwatch(stamp)
         try:
             image = correct_colours(self._decoder.decode(message), self._water)
             body = self._tracker.track(image, self._stopwatch.seconds(stamp))
         except OsgError as error:
-            self.complain(f"a picture is left out: {error}")
+            self.report_problem(f"a picture is left out: {error}")
             return
         height, width = image.shape[:2]
         self._bodies.publish(message.header, (width, height), body)

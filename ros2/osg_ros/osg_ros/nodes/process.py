@@ -1,4 +1,4 @@
-"""Nodes as a process: started, kept running, and shut down in order."""
+"""Node process: starts nodes, runs them, and shuts them down in order."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from rclpy.signals import SignalHandlerOptions
 from osg_ros.nodes.managed_node import ManagedNode
 
 NOT_STARTED = 1
-"""Exit code where a node that shall start by itself could not; the log says why."""
+"""Exit code when a node with autostart does not start; the log has the reason."""
 
 LONGEST_WAIT: Final = 0.5
-"""Seconds until a signal is noticed while nothing happens."""
+"""Longest delay until a signal is handled while no messages arrive, in seconds."""
 
 
-def start(node: ManagedNode) -> bool:
-    """Configure and activate a node that shall start by itself.
+def start_node(node: ManagedNode) -> bool:
+    """Configure and activate a node whose parameter `autostart` is true.
 
     Returns
     -------
-    Whether it is in the state that its parameter asks for.
+    Whether it is in the state that the parameter requires.
 
     """
     if not node.settings["autostart"]:
@@ -38,9 +38,9 @@ def start(node: ManagedNode) -> bool:
 
 
 @contextmanager
-def running(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
-    """Give an executor of the nodes; at the end they are shut down and destroyed."""
-    # One thread per node and one for the services that must not wait for pictures.
+def run_nodes(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
+    """Run nodes in an executor; at the end shut them down and destroy them."""
+    # One thread per node, and one for services, which must not wait for pictures.
     executor = MultiThreadedExecutor(num_threads=len(nodes) + 1)
     for node in nodes:
         executor.add_node(node)
@@ -55,10 +55,10 @@ def running(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
 
 
 @contextmanager
-def told_to_end() -> Iterator[threading.Event]:
-    """Give what is set by SIGINT and SIGTERM.
+def catch_stop_signals() -> Iterator[threading.Event]:
+    """Return an event that SIGINT and SIGTERM set.
 
-    ROS's own handlers would take the topics away before a node could say that it is inactive.
+    ROS's own handlers would destroy the topics before a node can publish that it is inactive.
     """
     ending = threading.Event()
     numbers = (signal.SIGINT, signal.SIGTERM)
@@ -73,20 +73,20 @@ def told_to_end() -> Iterator[threading.Event]:
 
 
 def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
-    """Run nodes until the process is told to end; the main function of every executable.
+    """Run nodes until SIGINT or SIGTERM; the main function of every executable.
 
     Parameters
     ----------
     make
-        Makes the nodes once ROS is initialised.
+        Creates the nodes once ROS is initialised.
 
     """
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         nodes = make()
-        with told_to_end() as ending, running(nodes) as executor:
-            # A list: every node shall say what it lacks, not only the first.
-            if not all([start(node) for node in nodes]):
+        with catch_stop_signals() as ending, run_nodes(nodes) as executor:
+            # A list, so that every node logs its problem and not only the first one.
+            if not all([start_node(node) for node in nodes]):
                 sys.exit(NOT_STARTED)
             while not ending.is_set():
                 executor.spin_once(timeout_sec=LONGEST_WAIT)

@@ -1,4 +1,4 @@
-"""Takes, recognitions and phrases of keypoints of other nodes: the third of the separate nodes."""
+"""Recognition node: recognises takes and phrases in keypoints; third of the separate nodes."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from app.recognition import PoseSequence
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
 from app.robot import (
+    ActiveLanguage,
     PhraseHeard,
     PhraseListener,
-    SpokenLanguage,
     StateChanged,
     TakeRecognized,
     TakeRejected,
-    hearing_of,
+    create_listener,
 )
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
 from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin
 from osg_ros.parameters import Setting
-from osg_ros.topics.body_messages import body_in, published_moment
-from osg_ros.topics.optional_messages import message_type
+from osg_ros.topics.body_messages import read_body, read_published_body
+from osg_ros.topics.optional_messages import find_message_type
 from osg_ros.topics.recognition_topics import RecognitionTopics
-from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
+from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
 from osg_ros.topics.synchronization import StampPairs
 
 INPUT: Final = Setting(
     "input",
     "osg",
-    "Whose keypoints: osg (`body_keypoints`, `hands`), or those of the published port's nodes "
+    "Input keypoints: osg (`body_keypoints`, `hands`), or those of the published port's nodes "
     "(`pose_keypoints`, `vulcan_salute_detected`), which have no stamps.",
     choices=("osg", "published"),
 )
@@ -47,105 +47,107 @@ IMAGE_HEIGHT: Final = Setting(
 
 
 class RecognitionNode(ManagedNode):
-    """Recognises the gestures in topics of keypoints."""
+    """Node that recognises the gestures in topics of keypoints."""
 
     def __init__(self, **options: Any) -> None:
         settings = (LANGUAGE, PROFILE, WITHOUT_SALUTES, INPUT, IMAGE_WIDTH, IMAGE_HEIGHT)
         super().__init__("recognition_node", settings, "keypoints", **options)
         self._service: LanguageService | None = None
         self._listener: PhraseListener | None = None
-        # The service that changes the language runs beside what listens.
+        # The service that changes the language runs in another thread than the subscriptions.
         self._listening = threading.Lock()
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
-        """Load the language and make the publishers.
+        """Load the language and create the publishers.
 
         Raises
         ------
         ValueError
-            Also when the published port's messages are asked for and not installed.
+            When the language is refused, or the published port's messages are not installed.
 
         """
-        self._keypoints_type = message_type("keypoints_interfaces", "PoseKeypointsArray")
+        self._keypoints_type = find_message_type("keypoints_interfaces", "PoseKeypointsArray")
         if self.settings["input"] == "published" and self._keypoints_type is None:
             raise ValueError(
                 "parameter input is 'published' and the package keypoints_interfaces is not "
-                "there; build it with this one and source the workspace"
+                "installed; build it with this one and source the workspace"
             )
         self._without_salutes = self.settings["without_salutes"]
-        self._service = LanguageService(self, self._hearing, self._change_language)
+        self._service = LanguageService(self, self._create_listener, self._change_language)
         self._recognitions = RecognitionTopics(self)
 
     def begin(self) -> None:
-        """Listen from now on, as to another camera."""
+        """Subscribe, with a new listener."""
         assert self._service
-        self._listener = self._hearing(self._service.language)
+        self._listener = self._create_listener(self._service.language)
         self._stopwatch = None
-        self._recognitions.active(True)
-        self._recognitions.speaks(self._service.language)
+        self._recognitions.publish_active(True)
+        self._recognitions.publish_language(self._service.language)
         if self.settings["input"] == "osg":
             self._pairs: StampPairs[BodyKeypoints, Hands] = StampPairs()
-            self.subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
-            self.subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
+            self.add_subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
+            self.add_subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
         else:
             self._size = self.settings["image_width"], self.settings["image_height"]
             self._body: Any = None
-            self.subscription(self._keypoints_type, "pose_keypoints", self._keep_body, SENSOR_DATA)
-            self.subscription(Bool, "vulcan_salute_detected", self._take_salute, SENSOR_DATA)
+            self.add_subscription(
+                self._keypoints_type, "pose_keypoints", self._keep_body, SENSOR_DATA
+            )
+            self.add_subscription(Bool, "vulcan_salute_detected", self._take_salute, SENSOR_DATA)
 
     def halt(self) -> None:
-        """Forget the take that was begun."""
+        """Drop the listener with its open take."""
         if self._listener is not None:
             self._listener = None
-            self._recognitions.active(False)
+            self._recognitions.publish_active(False)
 
     def release(self) -> None:
-        """Withdraw the service."""
+        """Remove the service."""
         if self._service is not None:
             self._service.close()
             self._service = None
 
     def facts(self) -> Mapping[str, str]:
-        """Tell the language."""
+        """Return the language for diagnostics."""
         return self._service.facts() if self._service else {}
 
-    def _hearing(self, language: SpokenLanguage) -> PhraseListener:
-        return hearing_of(language, without_salutes=self._without_salutes)
+    def _create_listener(self, language: ActiveLanguage) -> PhraseListener:
+        return create_listener(language, without_salutes=self._without_salutes)
 
     def _take_body(self, body: BodyKeypoints) -> None:
-        pair = self._pairs.first(nanoseconds_of(body.header.stamp), body)
+        pair = self._pairs.first(to_nanoseconds(body.header.stamp), body)
         if pair is not None:
             self._hear(*pair)
 
     def _take_hands(self, hands: Hands) -> None:
-        pair = self._pairs.second(nanoseconds_of(hands.header.stamp), hands)
+        pair = self._pairs.second(to_nanoseconds(hands.header.stamp), hands)
         if pair is not None:
             self._hear(*pair)
 
     def _hear(self, body: BodyKeypoints, hands: Hands) -> None:
-        stamp = nanoseconds_of(body.header.stamp)
-        found = FrameLandmarks(body_in(body), ())
+        stamp = to_nanoseconds(body.header.stamp)
+        found = FrameLandmarks(read_body(body), ())
         size = (body.image_width, body.image_height)
         try:
-            moment = build_frame_sequence(found, self._stopwatch_from(stamp).seconds(stamp), size)
+            moment = build_frame_sequence(found, self._find_stopwatch(stamp).seconds(stamp), size)
         except ValueError as error:
-            self.complain(f"keypoints are left out: {error}")
+            self.report_problem(f"keypoints are left out: {error}")
             return
         self._listen(moment, hands.salute, body.header.frame_id)
 
     def _keep_body(self, body: Any) -> None:
-        """Keep the published port's body until its salute comes, which it sends for every frame."""
+        """Keep the published port's body until the salute of the same frame arrives."""
         self.count_input()
         self._body = body
 
     def _take_salute(self, salute: Bool) -> None:
         now = self.get_clock().now().nanoseconds
         body, self._body = self._body, None
-        moment = published_moment(body, self._stopwatch_from(now).seconds(now), self._size)
+        moment = read_published_body(body, self._find_stopwatch(now).seconds(now), self._size)
         self._listen(moment, float(salute.data), "")
 
-    def _stopwatch_from(self, stamp: int) -> Stopwatch:
+    def _find_stopwatch(self, stamp: int) -> Stopwatch:
         if self._stopwatch is None:
             self._stopwatch = Stopwatch(stamp)
         return self._stopwatch
@@ -159,19 +161,19 @@ class RecognitionNode(ManagedNode):
             for event in self._listener.feed(moment, salute):
                 match event:
                     case TakeRecognized() | TakeRejected():
-                        self._recognitions.taken(event, language, self._stopwatch, frame_id)
+                        self._recognitions.publish_take(event, language, self._stopwatch, frame_id)
                     case PhraseHeard():
-                        self._recognitions.phrased(event, self._stopwatch, frame_id)
+                        self._recognitions.publish_phrase(event, self._stopwatch, frame_id)
                     case StateChanged():
-                        self._recognitions.changed(event, self._stopwatch, frame_id)
+                        self._recognitions.publish_state(event, self._stopwatch, frame_id)
                     case _:
                         pass
 
-    def _change_language(self, language: SpokenLanguage) -> None:
+    def _change_language(self, language: ActiveLanguage) -> None:
         with self._listening:
             if self._listener is not None:
-                self._listener.speak(language)
-                self._recognitions.speaks(language)
+                self._listener.set_language(language)
+                self._recognitions.publish_language(language)
 
 
 def main() -> None:

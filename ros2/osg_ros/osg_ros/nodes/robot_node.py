@@ -1,4 +1,4 @@
-"""The topics of `osg-studio robot --ros2`, which has a camera of its own."""
+"""Robot node: publishes the topics of `osg-studio robot --ros2`, which reads its own camera."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from std_msgs.msg import Header
 
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
-from app.robot import Event, Frame, SourceOpened, SpokenLanguage
+from app.robot import ActiveLanguage, Event, Frame, SourceOpened
 from osg_ros.nodes.managed_node import ManagedNode
-from osg_ros.nodes.process import running, start
+from osg_ros.nodes.process import run_nodes, start_node
 from osg_ros.topics.gesture_topics import GestureTopics
 from osg_ros.topics.stamps import NANOSECONDS, Stopwatch
 
 FRAME_ID = "camera"
-"""Of the headers: the robot's own camera."""
+"""Frame of the headers: the robot's own camera."""
 
 
 class RobotNode(ManagedNode):
-    """Publishes what a runtime that runs elsewhere in this process sees and tells."""
+    """Node that publishes landmarks and events of a runtime in another thread of this process."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("robot_node", (), "the camera", **options)
@@ -32,52 +32,52 @@ class RobotNode(ManagedNode):
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
-        """Make the publishers."""
+        """Create the publishers."""
         self._topics = GestureTopics(self)
 
     def begin(self) -> None:
-        """Say that the camera is looked at."""
+        """Publish that recognition is active."""
         if self._topics is not None:
-            self._topics.recognitions.active(True)
+            self._topics.recognitions.publish_active(True)
 
     def halt(self) -> None:
-        """Wait until the last recognition has arrived, and say that nothing is looked at."""
+        """Publish that recognition is inactive, and wait until the last message has arrived."""
         if self._topics is not None:
-            self._topics.recognitions.active(False)
+            self._topics.recognitions.publish_active(False)
             self._topics.recognitions.flush()
 
     def release(self) -> None:
-        """Let go of the publishers."""
+        """Drop the publishers."""
         self._topics = None
 
-    def look(self, frame: Frame, found: FrameLandmarks) -> None:
-        """Publish what was found in a frame."""
+    def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
+        """Publish the landmarks of a frame."""
         if self._topics is not None and self._stopwatch is not None:
             stamp = self._stopwatch.stamp(frame.time)
             header = Header(stamp=stamp, frame_id=FRAME_ID)
-            self._topics.look(header, frame, found)
+            self._topics.publish_frame(header, frame, found)
 
-    def hear(self, event: Event, language: SpokenLanguage) -> None:
-        """Publish what happened.
+    def publish_event(self, event: Event, language: ActiveLanguage) -> None:
+        """Publish an event.
 
-        Stamps are when a camera's frame had arrived; those of a recording count from now.
+        A camera's stamps are the arrival times of its frames; a recording's count from now.
         """
         if isinstance(event, SourceOpened):
             began = event.began
             now = self.get_clock().now().nanoseconds
             self._stopwatch = Stopwatch(round(began.timestamp() * NANOSECONDS) if began else now)
         if self._topics is not None:
-            self._topics.hear(event, language, self._stopwatch, FRAME_ID)
+            self._topics.publish_event(event, language, self._stopwatch, FRAME_ID)
 
 
 @contextmanager
-def published(arguments: Sequence[str]) -> Iterator[RobotNode]:
-    """Give a node that publishes, whose services are answered in a thread of their own.
+def run_robot_node(arguments: Sequence[str]) -> Iterator[RobotNode]:
+    """Run a robot node while the context is open; a separate thread answers its services.
 
     Parameters
     ----------
     arguments
-        ROS 2's own, from ``--ros-args`` on.
+        ROS 2's arguments, from ``--ros-args`` on.
 
     Raises
     ------
@@ -91,9 +91,9 @@ def published(arguments: Sequence[str]) -> Iterator[RobotNode]:
         raise OsgError(f"ROS 2 does not understand {' '.join(arguments)}: {error}") from error
     try:
         node = RobotNode()
-        with running([node]) as executor:
-            if not start(node):
-                raise OsgError("the ROS 2 node did not start; its log says why")
+        with run_nodes([node]) as executor:
+            if not start_node(node):
+                raise OsgError("the ROS 2 node did not start; see its log")
             threading.Thread(target=executor.spin, name="ros", daemon=True).start()
             yield node
     finally:

@@ -1,4 +1,4 @@
-"""What the recogniser sees, drawn into the picture, for a screen or a recording."""
+"""Visualisation node: draws keypoints, state and recognition into the pictures."""
 
 from __future__ import annotations
 
@@ -14,15 +14,20 @@ from app.recognition.estimation import Image as RGBImage
 from app.recognition.poses.landmarks import SKELETON
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin
-from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, picture_message, picture_topic
-from osg_ros.topics.stamps import nanoseconds_of
+from osg_ros.topics.image_messages import (
+    TRANSPORT,
+    PictureDecoder,
+    select_image_topic,
+    to_image_message,
+)
+from osg_ros.topics.stamps import to_nanoseconds
 from osg_ros.topics.synchronization import StampPairs
 
 BODY, HAND, SALUTE = (64, 224, 255), (255, 200, 64), (64, 255, 96)
-"""Colours, RGB: far apart for colour-blind eyes and bright against water."""
+"""Colours in RGB, distinct for colour-blind viewers and bright against water."""
 
 VISIBLE: Final = 0.5
-"""Visibility from which a landmark is drawn; MediaPipe's drawings use the same."""
+"""Lowest visibility of a landmark that is drawn; MediaPipe's drawings use the same."""
 
 STATES: Final = {
     RecognizerState.INACTIVE: "inactive",
@@ -33,7 +38,7 @@ STATES: Final = {
 
 
 class VisualisationNode(ManagedNode):
-    """Publishes pictures with what was found in them on `processed_frames`."""
+    """Node that publishes annotated pictures on `processed_frames`."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(
@@ -41,34 +46,34 @@ class VisualisationNode(ManagedNode):
         )
 
     def prepare(self) -> None:
-        """Make the publisher."""
-        self._frames = self.publisher(Image, "processed_frames", SENSOR_DATA)
+        """Create the publisher."""
+        self._frames = self.add_publisher(Image, "processed_frames", SENSOR_DATA)
 
     def begin(self) -> None:
-        """Draw from now on."""
+        """Subscribe to the pictures and results."""
         self._decoder = PictureDecoder()
         self._found: StampPairs[BodyKeypoints, Hands] = StampPairs()
         self._drawn: StampPairs[Any, tuple[BodyKeypoints, Hands]] = StampPairs()
         self._state = self._words = ""
-        kind, topic = picture_topic(self.settings["image_transport"])
-        self.subscription(kind, topic, self._take_picture, SENSOR_DATA)
-        self.subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
-        self.subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
-        self.subscription(RecognizerState, "state", self._take_state, LATCHED)
-        self.subscription(GestureRecognition, "recognition", self._take_recognition, RESULTS)
+        kind, topic = select_image_topic(self.settings["image_transport"])
+        self.add_subscription(kind, topic, self._take_picture, SENSOR_DATA)
+        self.add_subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
+        self.add_subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
+        self.add_subscription(RecognizerState, "state", self._take_state, LATCHED)
+        self.add_subscription(GestureRecognition, "recognition", self._take_recognition, RESULTS)
 
     def _take_picture(self, picture: Any) -> None:
-        self._draw(self._drawn.first(nanoseconds_of(picture.header.stamp), picture))
+        self._draw(self._drawn.first(to_nanoseconds(picture.header.stamp), picture))
 
     def _take_body(self, body: BodyKeypoints) -> None:
-        self._take_found(self._found.first(nanoseconds_of(body.header.stamp), body))
+        self._take_found(self._found.first(to_nanoseconds(body.header.stamp), body))
 
     def _take_hands(self, hands: Hands) -> None:
-        self._take_found(self._found.second(nanoseconds_of(hands.header.stamp), hands))
+        self._take_found(self._found.second(to_nanoseconds(hands.header.stamp), hands))
 
     def _take_found(self, found: tuple[BodyKeypoints, Hands] | None) -> None:
         if found is not None:
-            self._draw(self._drawn.second(nanoseconds_of(found[0].header.stamp), found))
+            self._draw(self._drawn.second(to_nanoseconds(found[0].header.stamp), found))
 
     def _take_state(self, state: RecognizerState) -> None:
         self._state = STATES.get(state.state, "")
@@ -85,22 +90,22 @@ class VisualisationNode(ManagedNode):
         try:
             image = np.array(self._decoder.decode(picture))
         except OsgError as error:
-            self.complain(f"a picture is left out: {error}")
+            self.report_problem(f"a picture is left out: {error}")
             return
-        drawn_body(image, body)
-        drawn_hands(image, hands)
-        written(image, f"{self._state}  {self._words}")
-        message = picture_message(image)
+        draw_body(image, body)
+        draw_hands(image, hands)
+        write_text(image, f"{self._state}  {self._words}")
+        message = to_image_message(image)
         message.header = picture.header
         self._frames.publish(message)
 
 
-def drawn_body(image: RGBImage, body: BodyKeypoints) -> None:
+def draw_body(image: RGBImage, body: BodyKeypoints) -> None:
     """Draw the bones between visible landmarks into an RGB image."""
     points = {
         each.name: pixel
         for each in body.keypoints
-        if each.confidence >= VISIBLE and (pixel := pixel_of(each))
+        if each.confidence >= VISIBLE and (pixel := to_pixel(each))
     }
     for one, other in SKELETON:
         if one in points and other in points:
@@ -109,24 +114,24 @@ def drawn_body(image: RGBImage, body: BodyKeypoints) -> None:
         cv2.circle(image, point, 3, BODY, -1, cv2.LINE_AA)
 
 
-def drawn_hands(image: RGBImage, hands: Hands) -> None:
+def draw_hands(image: RGBImage, hands: Hands) -> None:
     """Draw the landmarks of hands into an RGB image, in another colour while one salutes."""
     colour = SALUTE if hands.salute >= VISIBLE else HAND
     for hand in hands.hands:
-        for point in filter(None, map(pixel_of, hand.keypoints)):
+        for point in filter(None, map(to_pixel, hand.keypoints)):
             cv2.circle(image, point, 2, colour, -1, cv2.LINE_AA)
 
 
-def written(image: RGBImage, words: str) -> None:
+def write_text(image: RGBImage, words: str) -> None:
     """Write one line at the bottom of an RGB image."""
-    # OpenCV's letters are ASCII; labels need not be.
+    # OpenCV's fonts have only ASCII; labels may have other characters.
     text = words.encode("ascii", "replace").decode()
     place = (8, image.shape[0] - 10)
     for colour, width in (((0, 0, 0), 4), ((255, 255, 255), 1)):
         cv2.putText(image, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, width, cv2.LINE_AA)
 
 
-def pixel_of(keypoint: Keypoint) -> tuple[int, int] | None:
+def to_pixel(keypoint: Keypoint) -> tuple[int, int] | None:
     """Return the pixel of a keypoint; None where it was not seen or lies far outside."""
     if not (abs(keypoint.x) < 2**15 and abs(keypoint.y) < 2**15):
         return None

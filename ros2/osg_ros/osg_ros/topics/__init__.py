@@ -1,1 +1,1 @@
-"""Messages and topics: what the nodes publish and subscribe to."""
+"""Topics and messages that the nodes publish and subscribe to."""

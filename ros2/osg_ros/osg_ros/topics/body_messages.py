@@ -1,4 +1,4 @@
-"""Bodies as messages: our own, the published port's, and ROS4HRI's; and ours read back."""
+"""Body messages: convert bodies to and from this project's, the published port's and ROS4HRI's."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 DIVER = "diver"
-"""The id of the one body that the pose model follows."""
+"""Id of the one body that the pose model tracks."""
 
 FrameSize = tuple[int, int]
 """Width and height of a picture in pixels."""
@@ -27,20 +27,20 @@ ROS4HRI_POINTS = (
         for side in ("LEFT", "RIGHT")
     ),
 )
-"""The constants of ``hri_msgs/Skeleton2D`` that tell a point's place in it (REP-155)."""
+"""Constants of ``hri_msgs/Skeleton2D`` with the index of each point (REP-155)."""
 
 
-def body_message(header: Header, size: FrameSize, body: Body | None) -> BodyKeypoints:
-    """Return what was seen of the diver in one picture.
+def to_body_message(header: Header, size: FrameSize, body: Body | None) -> BodyKeypoints:
+    """Convert the diver's body in one picture to a message.
 
     Parameters
     ----------
     header
-        Of the picture.
+        Header of the picture.
     size
-        Of the picture.
+        Size of the picture.
     body
-        None: nobody was seen.
+        The body; None when nobody was seen.
 
     """
     made = BodyKeypoints(header=header, image_width=size[0], image_height=size[1])
@@ -56,10 +56,10 @@ def body_message(header: Header, size: FrameSize, body: Body | None) -> BodyKeyp
     return made
 
 
-def body_in(message: BodyKeypoints) -> Body | None:
-    """Return the body of a message, the inverse of `body_message`.
+def read_body(message: BodyKeypoints) -> Body | None:
+    """Read the body of a message, the inverse of `to_body_message`; None when nobody was seen.
 
-    Landmarks are taken by name; what the message lacks is not seen, what is unknown is left out.
+    Landmarks are matched by name: one that the message lacks is NaN, unknown names are ignored.
     """
     if not message.keypoints:
         return None
@@ -72,17 +72,17 @@ def body_in(message: BodyKeypoints) -> Body | None:
     return Body(xy, visibility, message.score)
 
 
-def published_keypoints(kind: Any, part: Any, size: FrameSize, body: Body) -> Any:
-    """Return a body as the published port's pose node sends it.
+def to_published_keypoints(kind: Any, part: Any, size: FrameSize, body: Body) -> Any:
+    """Convert a body to the message of the published port's pose node.
 
     Parameters
     ----------
     kind, part
         The types ``keypoints_interfaces/PoseKeypointsArray`` and ``PoseKeypoints``.
     size
-        Of the picture: coordinates are fractions of its sides.
+        Size of the picture; coordinates in the message are fractions of its sides.
     body
-        What was seen.
+        The body found.
 
     """
     made = kind()
@@ -91,17 +91,17 @@ def published_keypoints(kind: Any, part: Any, size: FrameSize, body: Body) -> An
     return made
 
 
-def published_moment(message: Any, seconds: float, size: FrameSize) -> PoseSequence:
-    """Return the body in a message of the published port's pose node.
+def read_published_body(message: Any, seconds: float, size: FrameSize) -> PoseSequence:
+    """Read the body of a message of the published port's pose node, as one frame.
 
     Parameters
     ----------
     message
-        A ``keypoints_interfaces/PoseKeypointsArray``; None: nobody was seen.
+        A ``keypoints_interfaces/PoseKeypointsArray``; None when nobody was seen.
     seconds
-        When it came; the message itself does not say when the picture was taken.
+        Arrival time; the message has no stamp.
     size
-        Of the picture, which it does not say either.
+        Size of the picture, which the message does not contain.
 
     """
     xy = np.full((1, len(POSE_LANDMARKS), 2), np.nan)
@@ -112,17 +112,17 @@ def published_moment(message: Any, seconds: float, size: FrameSize) -> PoseSeque
     return PoseSequence(landmarks=POSE_LANDMARKS, xy=xy, time=np.array([seconds]), frame_size=size)
 
 
-def skeleton_message(kind: Any, header: Header, size: FrameSize, body: Body) -> Any:
-    """Return a body as ROS4HRI's skeleton.
+def to_skeleton_message(kind: Any, header: Header, size: FrameSize, body: Body) -> Any:
+    """Convert a body to the skeleton of ROS4HRI.
 
     Parameters
     ----------
     kind
         The type ``hri_msgs/Skeleton2D``.
     header, size
-        Of the picture: coordinates are fractions of its sides.
+        Header and size of the picture; coordinates in the message are fractions of its sides.
     body
-        What was seen. Points that were not seen get the confidence 0.
+        The body found. Points that were not seen get the confidence 0.
 
     """
     made = kind(header=header)

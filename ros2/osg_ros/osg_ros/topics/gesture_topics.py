@@ -1,4 +1,4 @@
-"""All topics of the recogniser, fed by the robot's runtime."""
+"""Gesture topics: publish all landmarks and events of the robot's runtime."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from std_msgs.msg import Header
 
 from app.recognition.estimation import FrameLandmarks
 from app.robot import (
+    ActiveLanguage,
     Event,
     Frame,
     LanguageChanged,
@@ -13,7 +14,6 @@ from app.robot import (
     PhraseHeard,
     SourceLost,
     SourceWarned,
-    SpokenLanguage,
     StateChanged,
     TakeRecognized,
     TakeRejected,
@@ -25,17 +25,17 @@ from osg_ros.topics.stamps import Stopwatch
 
 
 class GestureTopics:
-    """Publishes what `app.robot.Runtime` sees and tells.
+    """Publishers of the landmarks and events of `app.robot.Runtime`.
 
     Parameters
     ----------
     node
-        Whose publishers they become.
+        Node that gets the publishers.
 
     Attributes
     ----------
     recognitions
-        Those of them that tell what was recognised.
+        Publishers of the recognitions.
 
     """
 
@@ -45,40 +45,40 @@ class GestureTopics:
         self._bodies = BodyTopics(node)
         self._hands = HandTopics(node)
 
-    def look(self, header: Header, frame: Frame, found: FrameLandmarks) -> None:
-        """Tell what was found in a frame whose picture has that header."""
+    def publish_frame(self, header: Header, frame: Frame, found: FrameLandmarks) -> None:
+        """Publish the landmarks of a frame whose picture has that header."""
         self._node.count_input()
         height, width = frame.image.shape[:2]
         self._bodies.publish(header, (width, height), found.body)
         self._hands.publish(header, (width, height), found.hands)
 
-    def hear(
-        self, event: Event, language: SpokenLanguage, clock: Stopwatch | None, frame_id: str
+    def publish_event(
+        self, event: Event, language: ActiveLanguage, clock: Stopwatch | None, frame_id: str
     ) -> None:
-        """Tell what happened.
+        """Publish an event.
 
         Parameters
         ----------
         event
-            As the runtime gives it.
+            Event of the runtime.
         language
-            That is listened for.
+            The active language.
         clock
-            From its seconds to stamps; None before the first frame.
+            Converts the event's seconds to stamps; None before the first frame.
         frame_id
-            The camera.
+            Frame of the camera.
 
         """
         match event:
             case TakeRecognized() | TakeRejected() if clock:
-                self.recognitions.taken(event, language, clock, frame_id)
+                self.recognitions.publish_take(event, language, clock, frame_id)
             case PhraseHeard() if clock:
-                self.recognitions.phrased(event, clock, frame_id)
+                self.recognitions.publish_phrase(event, clock, frame_id)
             case StateChanged() if clock:
-                self.recognitions.changed(event, clock, frame_id)
+                self.recognitions.publish_state(event, clock, frame_id)
             case LanguageChanged():
-                self.recognitions.speaks(language)
+                self.recognitions.publish_language(language)
             case LanguageRefused() | SourceLost() | SourceWarned():
-                self._node.complain(event.reason)
+                self._node.report_problem(event.reason)
             case _:
                 pass

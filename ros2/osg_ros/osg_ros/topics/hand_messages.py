@@ -1,4 +1,4 @@
-"""Hands as messages: our own and the published port's."""
+"""Hand messages: convert hands to this project's message and to the published port's."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from app.recognition.recording.salute import best_salute
 from osg_ros.topics.body_messages import FrameSize
 
 
-def hands_message(header: Header, size: FrameSize, hands: Sequence[Hand]) -> Hands:
-    """Return the hands that were seen in one picture, and how much they salute.
+def to_hands_message(header: Header, size: FrameSize, hands: Sequence[Hand]) -> Hands:
+    """Convert the hands of one picture to a message, with the salute score of the best hand.
 
     Parameters
     ----------
     header, size
-        Of the picture.
+        Header and size of the picture.
     hands
         At most two, larger first.
 
@@ -36,20 +36,22 @@ def hands_message(header: Header, size: FrameSize, hands: Sequence[Hand]) -> Han
     )
 
 
-def published_hand_keypoints(kind: Any, part: Any, size: FrameSize, hands: Sequence[Hand]) -> Any:
-    """Return hands as the published port's hand node sends them, one after the other.
+def to_published_hand_keypoints(
+    kind: Any, part: Any, size: FrameSize, hands: Sequence[Hand]
+) -> Any:
+    """Convert hands to the message of the published port's hand node, one hand after the other.
 
-    It sent pixels of its heat maps, which meant nothing to whoever read them; here, as its display
-    expects, coordinates are fractions of the picture's sides.
+    That node sends pixels of its heat maps, which subscribers cannot interpret; here coordinates
+    are fractions of the picture's sides, as its display expects.
 
     Parameters
     ----------
     kind, part
         The types ``keypoints_interfaces/HandKeypointsArray`` and ``HandKeypoints``.
     size
-        Of the picture.
+        Size of the picture.
     hands
-        What was seen.
+        The hands found.
 
     """
     made = kind()

@@ -1,4 +1,4 @@
-"""Pictures of `sensor_msgs` as RGB images, without cv_bridge."""
+"""Image messages: convert `sensor_msgs` pictures to RGB images and back, without cv_bridge."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from osg_ros.parameters import Setting
 TRANSPORT: Final = Setting(
     "image_transport",
     "raw",
-    "How pictures come: raw on `image`, or compressed (JPEG, PNG) on `image/compressed`.",
+    "Form of the pictures: raw on `image`, or compressed (JPEG, PNG) on `image/compressed`.",
     choices=("raw", "compressed"),
 )
 
 
-def picture_topic(transport: str) -> tuple[type[Image] | type[CompressedImage], str]:
-    """Return the type and the relative name of the topic of pictures.
+def select_image_topic(transport: str) -> tuple[type[Image] | type[CompressedImage], str]:
+    """Select the type and the relative name of the topic of pictures.
 
     Parameters
     ----------
@@ -34,14 +34,14 @@ def picture_topic(transport: str) -> tuple[type[Image] | type[CompressedImage], 
 
 
 class PictureDecoder:
-    """Turns messages of one topic into pictures."""
+    """Decoder of the pictures of one topic."""
 
     def __init__(self) -> None:
         self._limits = VideoLimits()
         self._packets = PacketDecoder(self._limits)
 
     def decode(self, message: Image | CompressedImage) -> RGBImage:
-        """Return the picture of a message.
+        """Decode the picture of a message.
 
         Returns
         -------
@@ -66,8 +66,8 @@ class PictureDecoder:
         return images[-1]
 
 
-def picture_message(image: RGBImage) -> Image:
-    """Return the message of an RGB image; the caller sets its header."""
+def to_image_message(image: RGBImage) -> Image:
+    """Convert an RGB image to a message; the caller sets its header."""
     height, width, channels = image.shape
     return Image(
         height=height,

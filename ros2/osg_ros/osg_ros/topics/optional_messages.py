@@ -1,4 +1,4 @@
-"""Message types of packages that a robot may have or not."""
+"""Optional messages: finds message types of packages that may not be installed."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from importlib import import_module
 from typing import Any
 
 
-def message_type(package: str, name: str) -> Any | None:
-    """Return a message type.
+def find_message_type(package: str, name: str) -> Any | None:
+    """Find a message type.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ def message_type(package: str, name: str) -> Any | None:
 
     Returns
     -------
-    The type, or None where the package is not there or is too old to have it.
+    The type, or None where the package is not installed or too old to have it.
 
     """
     try:

@@ -1,4 +1,4 @@
-"""The topic on which a node tells which phrases the gestures make."""
+"""Phrase topic: publishes the phrases that the gestures form."""
 
 from __future__ import annotations
 
@@ -8,46 +8,46 @@ from osg_interfaces.msg import Phrase
 from rclpy.duration import Duration
 from std_msgs.msg import Header
 
-from app.robot import PhraseHeard, SpokenLanguage
+from app.robot import ActiveLanguage, PhraseHeard
 from osg_ros.nodes.managed_node import RESULTS, ManagedNode
 from osg_ros.topics.body_messages import DIVER
 from osg_ros.topics.stamps import Stopwatch
 
 
 class PhraseTopic:
-    """Publishes what a `PhraseListener` tells of phrases.
+    """Publisher of the phrases of a `PhraseListener`.
 
     Parameters
     ----------
     node
-        Whose publisher it becomes.
+        Node that gets the publisher.
 
     """
 
     def __init__(self, node: ManagedNode) -> None:
-        self._phrase = node.publisher(Phrase, "phrase", RESULTS)
+        self._phrase = node.add_publisher(Phrase, "phrase", RESULTS)
 
-    def heard(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
-        """Tell what came of a gesture or of a pause; see `RecognitionTopics.taken`."""
+    def publish(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
+        """Publish a phrase event; see `RecognitionTopics.publish_take`."""
         header = Header(stamp=clock.stamp(event.time), frame_id=frame_id)
-        self._phrase.publish(phrase_message(event, clock, header))
+        self._phrase.publish(to_phrase_message(event, clock, header))
 
     def flush(self, patience: Duration) -> None:
-        """Wait until what was said has arrived."""
+        """Wait until the published messages have arrived."""
         self._phrase.wait_for_all_acked(patience)
 
 
-def phrase_message(event: PhraseHeard, clock: Stopwatch, header: Header) -> Phrase:
-    """Return the message of what came of a gesture or of a pause.
+def to_phrase_message(event: PhraseHeard, clock: Stopwatch, header: Header) -> Phrase:
+    """Convert a phrase event to a message.
 
     Parameters
     ----------
     event
-        What the listener says.
+        Event of the listener.
     clock
-        From its seconds to stamps.
+        Converts the event's seconds to stamps.
     header
-        Of the picture after which it was known.
+        Header of the picture after which the event was known.
 
     """
     phrase = event.phrase
@@ -69,7 +69,7 @@ def phrase_message(event: PhraseHeard, clock: Stopwatch, header: Header) -> Phra
     )
 
 
-def phrase_labels(language: SpokenLanguage) -> list[str]:
+def list_phrase_labels(language: ActiveLanguage) -> list[str]:
     """Return the labels that a language's phrases use, each once; none where it has no phrases."""
     grammar = language.recognizer.language.grammar
     if grammar is None or not grammar.phrases:

@@ -1,31 +1,32 @@
-"""The topics on which a node tells what was recognised, in what state, and by which language."""
+"""Recognition topics: publish recognitions, the state of the salutes, and the active language."""
 
 from __future__ import annotations
 
 import json
 
 from builtin_interfaces.msg import Time
-from osg_interfaces.msg import ActiveLanguage, GestureRecognition, RecognizerState
+from osg_interfaces.msg import ActiveLanguage as LanguageMessage
+from osg_interfaces.msg import GestureRecognition, RecognizerState
 from rclpy.duration import Duration
 from std_msgs.msg import Header, String
 
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
+    ActiveLanguage,
     PhraseHeard,
-    SpokenLanguage,
     StateChanged,
     TakeRecognized,
     TakeRejected,
 )
-from osg_ros.commands.table import command_text
+from osg_ros.commands.table import format_command
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.topics.body_messages import DIVER
-from osg_ros.topics.optional_messages import message_type
-from osg_ros.topics.phrase_topic import PhraseTopic, phrase_labels
+from osg_ros.topics.optional_messages import find_message_type
+from osg_ros.topics.phrase_topic import PhraseTopic, list_phrase_labels
 from osg_ros.topics.stamps import Stopwatch
 
 LONGEST_DELIVERY = 2.0
-"""Seconds to wait for a subscriber that may be gone."""
+"""Seconds to wait for a subscriber that may have ended."""
 
 STATES = {
     TakeState.idle: RecognizerState.IDLE,
@@ -35,57 +36,57 @@ STATES = {
 
 
 class RecognitionTopics:
-    """Publishes what a listener tells.
+    """Publishers of a listener's events.
 
-    A rejected take goes out on `recognition` alone, with its reason. What reads only a label must
-    never see one that is not meant.
+    A rejected take is published on `recognition` alone, with its reason, so that a subscriber of
+    the label topics never gets the label of a rejected take.
 
     Parameters
     ----------
     node
-        Whose publishers they become.
+        Node that gets the publishers.
 
     """
 
     def __init__(self, node: ManagedNode) -> None:
         self._node = node
         self._told: int | None = None
-        self._spoken: SpokenLanguage | None = None
-        self._recognition = node.publisher(GestureRecognition, "recognition", RESULTS)
-        self._label = node.publisher(String, "recognized_gesture", RESULTS)
+        self._active_language: ActiveLanguage | None = None
+        self._recognition = node.add_publisher(GestureRecognition, "recognition", RESULTS)
+        self._label = node.add_publisher(String, "recognized_gesture", RESULTS)
         self._phrases = PhraseTopic(node)
-        self._state = node.publisher(RecognizerState, "state", LATCHED)
-        self._language = node.publisher(ActiveLanguage, "language", LATCHED)
-        self._classification_type = message_type("vision_msgs", "Classification")
-        self._hypothesis_type = message_type("vision_msgs", "ObjectHypothesis")
+        self._state = node.add_publisher(RecognizerState, "state", LATCHED)
+        self._language = node.add_publisher(LanguageMessage, "language", LATCHED)
+        self._classification_type = find_message_type("vision_msgs", "Classification")
+        self._hypothesis_type = find_message_type("vision_msgs", "ObjectHypothesis")
         if self._classification_type:
-            self._classification = node.publisher(
+            self._classification = node.add_publisher(
                 self._classification_type, "classification", RESULTS
             )
 
-    def taken(
+    def publish_take(
         self,
         event: TakeRecognized | TakeRejected,
-        language: SpokenLanguage,
+        language: ActiveLanguage,
         clock: Stopwatch,
         frame_id: str,
     ) -> None:
-        """Tell what a take was.
+        """Publish a take.
 
         Parameters
         ----------
         event
-            What the listener says.
+            Event of the listener.
         language
-            That it was recognised by.
+            Language that recognised the take.
         clock
-            From its seconds to stamps.
+            Converts the event's seconds to stamps.
         frame_id
-            The camera.
+            Frame of the camera.
 
         """
         header = Header(stamp=clock.stamp(event.time), frame_id=frame_id)
-        message = recognition_message(event, language, clock, header)
+        message = to_recognition_message(event, language, clock, header)
         self._recognition.publish(message)
         if not isinstance(event, TakeRecognized):
             return
@@ -96,28 +97,28 @@ class RecognitionTopics:
                 self._classification_type(header=header, results=[hypothesis])
             )
 
-    def phrased(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
-        """Tell what came of a gesture or of a pause; see `taken`."""
-        self._phrases.heard(event, clock, frame_id)
+    def publish_phrase(self, event: PhraseHeard, clock: Stopwatch, frame_id: str) -> None:
+        """Publish a phrase event; see `publish_take`."""
+        self._phrases.publish(event, clock, frame_id)
 
-    def changed(self, event: StateChanged, clock: Stopwatch, frame_id: str) -> None:
-        """Tell another state of the salutes; see `taken`."""
+    def publish_state(self, event: StateChanged, clock: Stopwatch, frame_id: str) -> None:
+        """Publish a state of the salutes; see `publish_take`."""
         header = Header(stamp=clock.stamp(event.time), frame_id=frame_id)
         self._tell(header, STATES[event.state])
 
-    def active(self, listening: bool) -> None:
-        """Tell that pictures are looked at from now on, or no longer."""
+    def publish_active(self, listening: bool) -> None:
+        """Publish whether recognition is active."""
         state = RecognizerState.IDLE if listening else RecognizerState.INACTIVE
         self._tell(Header(stamp=self._now()), state)
 
-    def speaks(self, language: SpokenLanguage) -> None:
-        """Tell which language is recognised from now on; once, until it changes."""
-        if language is not self._spoken:
-            self._spoken = language
-            self._language.publish(language_message(language, Header(stamp=self._now())))
+    def publish_language(self, language: ActiveLanguage) -> None:
+        """Publish the active language, unless it is the one published last."""
+        if language is not self._active_language:
+            self._active_language = language
+            self._language.publish(to_language_message(language, Header(stamp=self._now())))
 
     def flush(self) -> None:
-        """Wait until what was said has arrived, for whoever ends right afterwards."""
+        """Wait until the published messages have arrived; for a process that ends afterwards."""
         patience = Duration(seconds=LONGEST_DELIVERY)
         for publisher in (self._recognition, self._label):
             publisher.wait_for_all_acked(patience)
@@ -132,10 +133,10 @@ class RecognitionTopics:
         return self._node.get_clock().now().to_msg()
 
 
-def recognition_message(
-    event: TakeRecognized | TakeRejected, language: SpokenLanguage, clock: Stopwatch, header: Header
+def to_recognition_message(
+    event: TakeRecognized | TakeRejected, language: ActiveLanguage, clock: Stopwatch, header: Header
 ) -> GestureRecognition:
-    """Return the message of a take; see `RecognitionTopics.taken`."""
+    """Convert a take to a message; see `RecognitionTopics.publish_take`."""
     recognized = isinstance(event, TakeRecognized)
     answer = event.recognition
     return GestureRecognition(
@@ -158,16 +159,16 @@ def recognition_message(
     )
 
 
-def language_message(language: SpokenLanguage, header: Header) -> ActiveLanguage:
-    """Return the message of a language."""
-    spoken = language.recognizer.language
-    return ActiveLanguage(
+def to_language_message(language: ActiveLanguage, header: Header) -> LanguageMessage:
+    """Convert a language to a message."""
+    content = language.recognizer.language
+    return LanguageMessage(
         header=header,
         language_id=language.sha256,
         name=language.name,
         revision=language.revision,
         profile=language.recognizer.profile,
-        labels=list(spoken.labels),
-        commands=[command_text(gesture.command) for gesture in spoken.gestures],
-        phrase_labels=phrase_labels(language),
+        labels=list(content.labels),
+        commands=[format_command(gesture.command) for gesture in content.gestures],
+        phrase_labels=list_phrase_labels(language),
     )

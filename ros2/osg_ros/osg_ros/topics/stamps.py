@@ -1,34 +1,34 @@
-"""Time: the nanoseconds of a header's stamp, and the seconds that the recogniser counts in."""
+"""Stamps: convert between header stamps, nanoseconds, and the recogniser's seconds."""
 
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time
 
 NANOSECONDS = 1_000_000_000
-"""In a second."""
+"""Nanoseconds in a second."""
 
 
-def nanoseconds_of(stamp: Time) -> int:
-    """Return a stamp as nanoseconds since the epoch of its clock."""
+def to_nanoseconds(stamp: Time) -> int:
+    """Convert a stamp to nanoseconds since the epoch of its clock."""
     return int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)
 
 
-def stamp_of(nanoseconds: int) -> Time:
-    """Return the message of a moment, the inverse of `nanoseconds_of`."""
+def to_stamp(nanoseconds: int) -> Time:
+    """Convert nanoseconds to a stamp, the inverse of `to_nanoseconds`."""
     seconds, rest = divmod(nanoseconds, NANOSECONDS)
     return Time(sec=seconds, nanosec=rest)
 
 
 class Stopwatch:
-    """Seconds since the first stamp, so that none of its nanoseconds is lost.
+    """Clock of the seconds since the first stamp, exact to the nanosecond.
 
-    A float of the seconds since 1970 is only good to a quarter of a microsecond; counted from the
+    A float of the seconds since 1970 has steps of a quarter of a microsecond; counted from the
     first picture it is exact to the nanosecond for a hundred days.
 
     Parameters
     ----------
     origin
-        The first stamp in nanoseconds.
+        First stamp in nanoseconds.
 
     """
 
@@ -36,9 +36,9 @@ class Stopwatch:
         self.origin = origin
 
     def seconds(self, nanoseconds: int) -> float:
-        """Return seconds after the first stamp."""
+        """Convert nanoseconds to seconds after the first stamp."""
         return (nanoseconds - self.origin) / NANOSECONDS
 
     def stamp(self, seconds: float) -> Time:
-        """Return the stamp that lies so many seconds after the first one."""
-        return stamp_of(self.origin + round(seconds * NANOSECONDS))
+        """Convert seconds after the first stamp to a stamp."""
+        return to_stamp(self.origin + round(seconds * NANOSECONDS))

@@ -1,4 +1,4 @@
-"""Messages of two topics about the same picture, brought together by their stamps."""
+"""Synchronization: pairs messages of two topics that have the same stamp."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ First = TypeVar("First")
 Second = TypeVar("Second")
 
 MOST_WAITING = 15
-"""Messages kept for their partner: half a second of a usual camera, which pose estimation takes on
-a slow robot. They may be raw pictures, and fill memory."""
+"""Messages kept until their partner arrives: half a second of a camera at 30 frames a second, as
+long as pose estimation takes on a slow robot. Raw pictures limit it, as they fill memory."""
 
 
 class StampPairs(Generic[First, Second]):
-    """Joins what has the same stamp.
+    """Buffer that pairs messages with the same stamp.
 
-    Both topics may lose messages. Once a pair is complete, whatever is older than it could no
-    longer be used in order, and is dropped.
+    Both topics may lose messages. Once a pair is complete, older messages are dropped, because they
+    could no longer be used in order.
 
     Attributes
     ----------
     dropped
-        Count of messages that never found their partner.
+        Number of messages dropped without a partner.
 
     """
 
@@ -32,18 +32,18 @@ class StampPairs(Generic[First, Second]):
         self._second: OrderedDict[int, Second] = OrderedDict()
 
     def first(self, stamp: int, message: First) -> tuple[First, Second] | None:
-        """Take a message of the first topic.
+        """Add a message of the first topic.
 
         Parameters
         ----------
         stamp
-            Nanoseconds.
+            Stamp in nanoseconds.
         message
-            Anything.
+            The message.
 
         Returns
         -------
-        The pair, if its partner had come.
+        The pair, if the partner has arrived; otherwise None.
 
         """
         if stamp not in self._second:
@@ -54,7 +54,7 @@ class StampPairs(Generic[First, Second]):
         return message, partner
 
     def second(self, stamp: int, message: Second) -> tuple[First, Second] | None:
-        """Take a message of the second topic; see `first`."""
+        """Add a message of the second topic; see `first`."""
         if stamp not in self._first:
             self._keep(self._second, stamp, message)
             return None
@@ -63,7 +63,7 @@ class StampPairs(Generic[First, Second]):
         return partner, message
 
     def __len__(self) -> int:
-        """Count what waits."""
+        """Return the number of messages without a partner."""
         return len(self._first) + len(self._second)
 
     def _keep(self, waiting: OrderedDict[int, Any], stamp: int, message: Any) -> None:

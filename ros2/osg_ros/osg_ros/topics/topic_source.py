@@ -1,4 +1,4 @@
-"""A topic of pictures as a source of frames for the robot's runtime."""
+"""Topic source: gives the pictures of a topic to the robot's runtime as frames."""
 
 from __future__ import annotations
 
@@ -9,42 +9,42 @@ from typing import Any, Final
 from app.recognition.errors import OsgError
 from app.robot import Frame, Notice, Quiet
 from osg_ros.topics.image_messages import PictureDecoder
-from osg_ros.topics.stamps import Stopwatch, nanoseconds_of
+from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
 
 QUIET_SECONDS: Final = 0.2
-"""Without a picture for so long the runtime is let look for a new language or its end."""
+"""Seconds without a picture after which the runtime gets a turn to check its language and end."""
 
 
 class TopicSource:
-    """The newest picture of a topic; a live `app.robot.Source`.
+    """Live `app.robot.Source` that gives the newest picture of a topic.
 
-    A frame's time is its stamp, counted from that of the first picture. Pictures that come while
-    one is looked at replace each other, so that the answer is never about the past.
+    A frame's time is its stamp, counted from that of the first picture. A picture that arrives
+    while another is processed replaces an older waiting one, so that results have no growing delay.
 
     Parameters
     ----------
     name
-        The topic's, for people.
-    refused
-        Told in one line when a picture cannot be decoded; it is left out.
+        Name of the topic, for people.
+    report_problem
+        Called with one line when a picture cannot be decoded and is skipped.
 
     Attributes
     ----------
     stopwatch
-        From the frames' seconds back to stamps; None before the first picture.
+        Converts the frames' seconds to stamps; None before the first picture.
     frame_id
-        Of the newest picture: the camera.
+        Frame of the newest picture's header, which identifies the camera.
 
     """
 
     live = True
     began = None
 
-    def __init__(self, name: str, refused: Callable[[str], None]) -> None:
+    def __init__(self, name: str, report_problem: Callable[[str], None]) -> None:
         self.name = name
         self.stopwatch: Stopwatch | None = None
         self.frame_id = ""
-        self._refused = refused
+        self._report_problem = report_problem
         self._decoder = PictureDecoder()
         self._news = threading.Condition()
         self._closed = False
@@ -55,16 +55,16 @@ class TopicSource:
 
     @property
     def frame_size(self) -> tuple[int, int]:
-        """Width and height of the first picture, which is waited for; 0 when closed before it."""
+        """Width and height of the first picture; waits for it, and is 0, 0 when closed before."""
         while self._first is None and not self._closed:
-            self._first = self._taken(None)
+            self._first = self._take_frame(None)
         if self._first is None:
             return 0, 0
         height, width = self._first.image.shape[:2]
         return width, height
 
     def put(self, message: Any) -> None:
-        """Take a message of the topic; called by the subscription."""
+        """Add a message of the topic; called by the subscription."""
         with self._news:
             if self._newest is not None:
                 self._dropped += 1
@@ -72,20 +72,20 @@ class TopicSource:
             self._news.notify_all()
 
     def __iter__(self) -> Iterator[Frame | Notice]:
-        """Give frames as they come, until the source is closed."""
+        """Yield frames as they arrive, until the source is closed."""
         while not self._closed:
             first, self._first = self._first, None
-            frame = first or self._taken(QUIET_SECONDS)
+            frame = first or self._take_frame(QUIET_SECONDS)
             yield Quiet(self._time) if frame is None else frame
 
     def close(self) -> None:
-        """Give nothing more."""
+        """Stop the iteration."""
         with self._news:
             self._closed = True
             self._news.notify_all()
 
-    def _taken(self, seconds: float | None) -> Frame | None:
-        """Wait for the next picture and decode it; None where none came, or it is unreadable."""
+    def _take_frame(self, seconds: float | None) -> Frame | None:
+        """Wait for the next picture and decode it; None where none came or it is unreadable."""
         with self._news:
             if self._newest is None and not self._closed:
                 self._news.wait(seconds)
@@ -96,9 +96,9 @@ class TopicSource:
         try:
             image = self._decoder.decode(message)
         except OsgError as error:
-            self._refused(f"a picture on {self.name} is left out: {error}")
+            self._report_problem(f"a picture on {self.name} is left out: {error}")
             return None
-        stamp = nanoseconds_of(message.header.stamp)
+        stamp = to_nanoseconds(message.header.stamp)
         if self.stopwatch is None:
             self.stopwatch = Stopwatch(stamp)
         self.frame_id = message.header.frame_id
