@@ -14,12 +14,12 @@ from app.recognition.decision.shown_gesture import ShownGesture
 from app.recognition.features.motion import build_movement, find_followed_landmarks
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import DtwBatch, DtwReferences
+from app.recognition.matching.dtw import BAND, DtwBatch, DtwReferences
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.motion_voter import BAND, DtwVoter, UnorderedVoter
+from app.recognition.voters.motion.motion_voter import DtwVoter, UnorderedVoter
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.registry import MOTION_VOTERS

@@ -12,12 +12,11 @@ import numpy.typing as npt
 from app.recognition.features.motion import Movement, build_movement, find_hands, list_limbs
 from app.recognition.features.traversals import AS_SHOWN, Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import dtw_pairs
+from app.recognition.matching.dtw import BAND, dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.direction import Direction
 from app.recognition.voters.motion.hand_attitude import HandAttitude
-from app.recognition.voters.motion.motion_voter import BAND
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.posture import Posture
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.recognition.explanation.alignment import Alignment
-from app.recognition.explanation.counterfactual import Counterfactuals
+from app.recognition.explanation.counterfactual_search import Counterfactuals
 from app.recognition.explanation.differences import Difference
 from app.recognition.explanation.vote_breakdown import VoterBreakdown
 

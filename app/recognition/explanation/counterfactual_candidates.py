@@ -8,7 +8,7 @@ import numpy as np
 
 from app.recognition.decision.motion_references import CLEARLY_SLOWER
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.interventions import (
+from app.recognition.explanation.counterfactual_kinds import (
     Intervention,
     KeypointRepair,
     NewDemonstration,

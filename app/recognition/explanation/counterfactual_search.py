@@ -15,8 +15,8 @@ import numpy as np
 
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.interventions import Intervention
-from app.recognition.explanation.search import list_interventions
+from app.recognition.explanation.counterfactual_candidates import list_interventions
+from app.recognition.explanation.counterfactual_kinds import Intervention
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants

@@ -16,7 +16,7 @@ from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import Alignment, Example, align, find_nearest_example
 from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.counterfactual import (
+from app.recognition.explanation.counterfactual_search import (
     NONE_NEEDED,
     find_counterfactuals,
 )

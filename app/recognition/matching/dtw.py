@@ -22,6 +22,10 @@ from app.recognition.matching.step_distances import (
 )
 from app.recognition.poses.sequence import FloatArray
 
+BAND = 8
+"""Steps of 32 that one movement may be ahead of the other (Sakoe-Chiba band): a quarter, where
+accuracy on drawn figures levels off; without a band, a loop could match a corner."""
+
 
 def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
     """Compute the DTW distance of a query to each reference: the cost of the best alignment.

@@ -7,7 +7,7 @@ import pytest
 
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer, Take
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.interventions import (
+from app.recognition.explanation.counterfactual_kinds import (
     Intervention,
     KeypointRepair,
     NewDemonstration,

@@ -6,7 +6,7 @@ import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.counterfactual import (
+from app.recognition.explanation.counterfactual_search import (
     MOST,
     MOST_OF_A_KIND,
     Counterfactuals,

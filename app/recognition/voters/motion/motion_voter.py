@@ -5,14 +5,10 @@ from __future__ import annotations
 from abc import abstractmethod
 
 from app.recognition.features.motion import Movement
-from app.recognition.matching.dtw import DtwReferences
+from app.recognition.matching.dtw import BAND, DtwReferences
 from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
-
-BAND = 8
-"""Steps of 32 that one movement may be ahead of the other (Sakoe-Chiba band): a quarter, where
-accuracy on drawn figures levels off; without a band, a loop could match a corner."""
 
 
 class MotionVoter(Voter):
