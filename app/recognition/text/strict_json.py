@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import rfc8785
 
 MAX_DEPTH = 32
 """Deepest nesting read: a language file needs seven levels, a robot's command a few more."""
@@ -97,20 +99,11 @@ def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any
 
 
 def canonical_json(value: Any) -> str:
-    """Return a value as canonical JSON (RFC 8785): equal values give equal text and hashes.
+    """Write JSON in the one form of RFC 8785, so that its hash means its content.
 
     Keys sorted by UTF-16 code units, no white space, numbers as ECMAScript writes them.
     """
-    if isinstance(value, dict):
-        keys = sorted(value, key=lambda key: key.encode("utf-16-be"))
-        return "{" + ",".join(f"{_string(key)}:{canonical_json(value[key])}" for key in keys) + "}"
-    if isinstance(value, list):
-        return "[" + ",".join(canonical_json(entry) for entry in value) + "]"
-    if isinstance(value, str):
-        return _string(value)
-    if isinstance(value, float):
-        return _number(value)
-    return json.dumps(value)
+    return rfc8785.dumps(value).decode()
 
 
 def build_pointer(*steps: str | int) -> str:
@@ -134,9 +127,9 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) == len(pairs):
         return entries
-    keys = [key for key, _ in pairs]
     ambiguous = _ObjectWithDuplicates(entries)
-    ambiguous.duplicates = sorted({key for key in keys if keys.count(key) > 1})
+    times = Counter(key for key, _ in pairs)
+    ambiguous.duplicates = sorted(key for key, count in times.items() if count > 1)
     return ambiguous
 
 
@@ -181,38 +174,3 @@ def _is_plain_number(value: Any) -> bool:
 
 def _has_lone_surrogate(text: str) -> bool:
     return not text.isascii() and any("\ud800" <= character <= "\udfff" for character in text)
-
-
-def _string(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
-
-
-def _number(number: float) -> str:
-    """Return a finite number as ECMAScript writes it (ECMA-262, Number::toString)."""
-    if number == 0:
-        return "0"
-    if 1e-4 <= abs(number) < 1e16:  # Python and ECMAScript agree here but for a trailing ".0"
-        return repr(number).removesuffix(".0")
-    sign, digits, exponent = _decimal(number)
-    point = len(digits) + exponent
-    if exponent >= 0 and point <= 21:
-        text = digits + "0" * exponent
-    elif 0 < point <= 21:
-        text = f"{digits[:point]}.{digits[point:]}"
-    elif -6 < point <= 0:
-        text = "0." + "0" * -point + digits
-    else:
-        fraction = "." + digits[1:] if len(digits) > 1 else ""
-        text = f"{digits[0]}{fraction}e{point - 1:+d}"
-    return sign + text
-
-
-def _decimal(number: float) -> tuple[str, str, int]:
-    """Split into sign, shortest digits that round-trip, and the exponent of the last digit."""
-    mantissa, _, exponent = repr(abs(number)).partition("e")
-    whole, _, fraction = mantissa.partition(".")
-    fraction = fraction.rstrip("0")
-    digits = (whole + fraction).lstrip("0")
-    shift = int(exponent or 0) - len(fraction)
-    stripped = digits.rstrip("0")
-    return "-" if number < 0 else "", stripped, shift + len(digits) - len(stripped)

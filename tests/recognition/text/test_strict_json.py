@@ -171,4 +171,18 @@ def test_the_canonical_form_means_the_same_and_is_its_own(value: object) -> None
     text = canonical_json(value)
     # Both as doubles: a large float is written without an exponent, like an integer.
     assert json.loads(text, parse_int=float) == json.loads(json.dumps(value), parse_int=float)
-    assert canonical_json(json.loads(text)) == text
+    # As ECMAScript reads it: what is beyond the safe integers is a double.
+    again = json.loads(text, parse_int=lambda digits: _read_number(int(digits)))
+    assert canonical_json(again) == text
+
+
+def _read_number(integer: int) -> int | float:
+    return integer if abs(integer) <= MAX_SAFE_INTEGER else float(integer)
+
+
+@pytest.mark.timeout(60)  # counting each key among all others takes minutes
+def test_very_many_keys_that_occur_twice_are_refused_at_once() -> None:
+    keys = [f'"{index}": 0' for index in range(100_000)]
+    document = ("{" + ", ".join(keys + keys) + "}").encode()
+    with pytest.raises(StrictJSONError, match="occurs twice"):
+        read_json(document, len(document))
