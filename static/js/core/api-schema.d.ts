@@ -1406,7 +1406,7 @@ export interface components {
         TuningEntry: {
             /**
              * Weights
-             * @description Factor per voter on its say, 0: off. Voters left out keep 1.
+             * @description Weight factor per voter, 0: off. Voters left out keep 1.
              * @default {}
              */
             weights: {
