@@ -10,6 +10,7 @@ these that the shipped thresholds reject; the interval is Wilson's.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -35,12 +36,21 @@ Name = Callable[[PoseSequence], Recognition | str | None]
 
 
 def positions(poses: PoseSequence) -> FloatArray:
-    """Return ``(N, D)`` positions of arms in time, free of place and size."""
+    """Return ``(N, D)`` positions of arms in time: torso lengths from the shoulders' mean place.
+
+    Without a torso they are free of place and size.
+    """
     trajectory = Trajectory.from_poses(poses)
     arms = [name for name in trajectory.landmarks if name.split("_", 1)[-1] in MOVING]
-    paths = trajectory.select(arms or trajectory.landmarks).fill_gaps().resample_in_time(STEPS).xy
-    paths = np.nan_to_num(paths - np.nanmean(paths, axis=0))
-    return np.asarray(paths.reshape(STEPS, -1) / max(float(np.sqrt((paths**2).mean())), 1e-9))
+    centre, length = poses.torso_centre(), poses.torso_length()
+    if centre is None or length is None:
+        paths = trajectory.select(arms or trajectory.landmarks).fill_gaps().resample_in_time(STEPS)
+        free = np.nan_to_num(paths.xy - np.nanmean(paths.xy, axis=0))
+        return np.asarray(free.reshape(STEPS, -1) / max(float(np.sqrt((free**2).mean())), 1e-9))
+    shoulders = (poses.column("left_shoulder") + poses.column("right_shoulder")) / 2
+    fixed = replace(poses.select(arms), xy=poses.select(arms).xy - np.nanmedian(shoulders, axis=0))
+    paths = replace(trajectory.select(arms), xy=fixed.xy / length).fill_gaps()
+    return np.asarray(np.nan_to_num(paths.resample_in_time(STEPS).xy).reshape(STEPS, -1))
 
 
 def velocities(poses: PoseSequence) -> FloatArray:
@@ -51,10 +61,12 @@ def velocities(poses: PoseSequence) -> FloatArray:
 
 def plain_dtw(
     describe: Callable[[PoseSequence], FloatArray], templates: Sequence[PoseSequence]
-) -> Callable[[PoseSequence], int]:
-    """Return what finds the nearest template by plain DTW."""
+) -> Callable[[PoseSequence], FloatArray]:
+    """Return what finds the DTW distances to all templates, in their typical distance."""
     references = np.stack([describe(each) for each in templates])
-    return lambda poses: int(dtw_distances(describe(poses), references, BAND).argmin())
+    between = [dtw_distances(each, references, BAND) for each in references]
+    typical = float(np.median(np.array(between)[np.triu_indices(len(references), 1)]))
+    return lambda poses: dtw_distances(describe(poses), references, BAND) / typical
 
 
 def score(recorded: RecordedSet, chosen: Draw) -> Iterator[tuple[str, str, Share, Share]]:
@@ -70,8 +82,10 @@ def score(recorded: RecordedSet, chosen: Draw) -> Iterator[tuple[str, str, Share
     for relation, queries in (("UD", chosen.own), ("UI", chosen.others)):
         for query in queries:
             poses, label = recorded.recordings[query], str(recorded.labels[query])
-            for name, nearest in plain.items():
-                yield name, relation, Share(labels[nearest(poses)] == label, 1), Share(0, 0)
+            compared = {name: distances(poses) for name, distances in plain.items()}
+            compared["DTW of both"] = np.asarray(sum(compared.values()))
+            for name, distances in compared.items():
+                yield name, relation, Share(labels[distances.argmin()] == label, 1), Share(0, 0)
             try:
                 result = full.recognize(poses)
             except PoseError:

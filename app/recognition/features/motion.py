@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.landmarks import TORSO, other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
@@ -54,6 +54,20 @@ LIMBS = (
 
 SIDES = ("left_", "right_")
 
+ARM_JOINTS = ("elbow", "wrist")
+"""Joints of an arm whose places in time are compared, of both arms."""
+
+RESTING_SPEED = 0.15
+"""Speed below which the arms rest before and after a gesture, as a share of the gesture's speed.
+
+Recordings begin and end with hanging arms for as long as it pleases; the speed is the 95th
+percentile, because a single frame may jump."""
+
+SPEED_PERCENTILE = 95.0
+
+LEAST_MOVING = 4
+"""Least moments between the rests at both ends; with fewer, nothing is cut."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Movement:
@@ -68,12 +82,19 @@ class Movement:
         ``(N, B, 2)``: vectors along the arms' bones; NaN where an end was not seen.
     reached
         ``(N,)`` seconds after the start at which each step was reached.
+    places
+        ``(N, A, 2)`` in the trajectory's unit: `list_arm_landmarks` at N equal times, relative to
+        the body without its drift; NaN for landmarks that were not seen.
+    relative_to_body
+        Whether `places` are measured from a torso and in its lengths.
 
     """
 
     paths: FloatArray
     limbs: FloatArray
     reached: FloatArray
+    places: FloatArray
+    relative_to_body: bool
 
     @cached_property
     def figure(self) -> FloatArray:
@@ -98,7 +119,9 @@ class Movement:
 
     def reorder(self, order: npt.NDArray[np.intp]) -> Movement:
         """Return the movement with its steps in another order, each as long as before."""
-        return replace(self, paths=self.paths[order], limbs=self.limbs[order])
+        return replace(
+            self, paths=self.paths[order], limbs=self.limbs[order], places=self.places[order]
+        )
 
     def with_sides_exchanged(self, landmarks: Sequence[str]) -> Movement:
         """Return the movement with the left and right landmarks and limbs exchanged.
@@ -112,8 +135,10 @@ class Movement:
         parts = tuple(parse_body_part(name) for name in landmarks)
         sides = _sides_of(parts)
         by_side = self.limbs.reshape(len(self.limbs), len(sides), len(LIMBS), 2)
+        placed = tuple(parse_body_part(name) for name in list_arm_landmarks(landmarks))
         return replace(
             self,
+            places=self.places[:, [_index_across(placed, part) for part in placed]],
             paths=self.paths[:, [_index_across(parts, part) for part in parts]],
             limbs=by_side[:, [_index_across(sides, side) for side in sides]].reshape(
                 self.limbs.shape
@@ -138,6 +163,13 @@ def normalize_size(vectors: FloatArray) -> FloatArray:
 def find_followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return the landmarks that are salient in any gesture of a language, in alphabetical order."""
     return tuple(sorted({name for names in salient for name in names}))
+
+
+def list_arm_landmarks(landmarks: Sequence[str]) -> tuple[str, ...]:
+    """Return the landmarks of `Movement.places`: joints of both arms, then other followed ones."""
+    parts = [parse_body_part(name) for name in landmarks]
+    joints = tuple(side + joint for side in SIDES for joint in ARM_JOINTS)
+    return (*joints, *(part for part in parts if part not in joints))
 
 
 def list_limbs(landmarks: Sequence[str]) -> tuple[tuple[str, str], ...]:
@@ -188,11 +220,10 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
         The followed ones, see `find_followed_landmarks`; those never seen do not move.
 
     """
-    places = _places(trajectory.landmarks, tuple(landmarks))
-    smooth = _smooth(
-        replace(trajectory, landmarks=places.needed, xy=trajectory.xy.take(places.columns, axis=1))
-    )
-    followed, path = places.followed, places.paths
+    at = _find_columns(trajectory.landmarks, tuple(landmarks))
+    needed = replace(trajectory, landmarks=at.needed, xy=trajectory.xy.take(at.columns, axis=1))
+    smooth = _cut_rests(_smooth(needed), at.moving)
+    followed, path = at.followed, at.paths
     seen = np.isfinite(smooth.xy[0]).all(axis=1).take(followed)
     if not seen.all():
         followed, path = followed[seen], path[seen]
@@ -205,13 +236,24 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
     paths = np.zeros((STEPS, len(landmarks), 2))
     places_shown = even.take(followed, axis=1)
     paths[:, path] = places_shown - np.add.reduce(places_shown) / STEPS
-    limbs = np.full((STEPS, places.bones, 2), np.nan)
-    limbs[:, places.shown] = even.take(places.outer, axis=1) - even.take(places.inner, axis=1)
-    return Movement(paths=paths, limbs=limbs, reached=reached - reached[0])
+    limbs = np.full((STEPS, at.bones, 2), np.nan)
+    limbs[:, at.shown] = even.take(at.outer, axis=1) - even.take(at.inner, axis=1)
+    in_time = smooth.resample_in_time(STEPS).xy
+    places = np.full((STEPS, at.arms, 2), np.nan)
+    places[:, at.placed] = in_time.take(at.joints, axis=1)
+    if at.torso is not None:
+        places += in_time[:, [at.torso]]
+    return Movement(
+        paths=paths,
+        limbs=limbs,
+        reached=reached - reached[0],
+        places=places,
+        relative_to_body=trajectory.unit == "torso_length",
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class _Places:
+class _Columns:
     """Indices that map the landmarks of a trajectory to a movement.
 
     Attributes
@@ -225,6 +267,14 @@ class _Places:
         `needed`.
     bones
         Number of all bones.
+    placed, joints
+        Of the arms' landmarks in the trajectory: indices in the places, and in `needed`.
+    arms
+        Number of all landmarks of the arms.
+    moving
+        Indices in `needed` of the landmarks whose speed shows rests.
+    torso
+        Index of the torso's path in `needed`; None where the trajectory has none.
 
     """
 
@@ -236,12 +286,17 @@ class _Places:
     inner: npt.NDArray[np.intp]
     outer: npt.NDArray[np.intp]
     bones: int
+    placed: npt.NDArray[np.intp]
+    joints: npt.NDArray[np.intp]
+    arms: int
+    moving: npt.NDArray[np.intp]
+    torso: int | None
 
 
 @lru_cache(maxsize=256)
-def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
-    bones = list_limbs(landmarks)
-    joints = {joint for bone in bones for joint in bone}
+def _find_columns(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Columns:
+    bones, arms = list_limbs(landmarks), list_arm_landmarks(landmarks)
+    joints = {TORSO, *arms, *(joint for bone in bones for joint in bone)}
     needed = tuple(name for name in names if name in landmarks or parse_body_part(name) in joints)
     at = {parse_body_part(name): index for index, name in enumerate(needed)}
     here = [(needed.index(name), path) for path, name in enumerate(landmarks) if name in needed]
@@ -251,8 +306,10 @@ def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
         if inner in at and outer in at
     ]
     followed, paths = np.array(here, dtype=np.intp).reshape(-1, 2).T
+    placed = [(index, at[name]) for index, name in enumerate(arms) if name in at]
+    places, columns = np.array(placed, dtype=np.intp).reshape(-1, 2).T
     limbs, inner_ends, outer_ends = np.array(shown, dtype=np.intp).reshape(-1, 3).T
-    return _Places(
+    return _Columns(
         needed=needed,
         columns=np.array([names.index(name) for name in needed], dtype=np.intp),
         followed=followed,
@@ -261,7 +318,27 @@ def _places(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Places:
         inner=inner_ends,
         outer=outer_ends,
         bones=len(bones),
+        placed=places,
+        joints=columns,
+        arms=len(arms),
+        moving=columns if len(columns) else followed,
+        torso=at.get(TORSO),
     )
+
+
+def _cut_rests(trajectory: Trajectory, moving: npt.NDArray[np.intp]) -> Trajectory:
+    """Cut the rests before and after a movement; `moving` are the landmarks whose speed counts."""
+    time = trajectory.time
+    if len(time) <= LEAST_MOVING:
+        return trajectory
+    paths = np.nan_to_num(trajectory.xy.take(moving, axis=1)).reshape(len(time), -1)
+    velocity = np.gradient(paths, time, axis=0)
+    speed = np.sqrt(np.vecdot(velocity, velocity))
+    under_way = np.flatnonzero(speed > RESTING_SPEED * np.percentile(speed, SPEED_PERCENTILE))
+    if len(under_way) < LEAST_MOVING:
+        return trajectory
+    inside = slice(under_way[0], under_way[-1] + 1)
+    return replace(trajectory, xy=trajectory.xy[inside], time=time[inside])
 
 
 def _smooth(trajectory: Trajectory) -> Trajectory:

@@ -15,14 +15,14 @@ import numpy.typing as npt
 
 from app.recognition.features.motion import STEPS, Movement
 
-BACKWARD_PENALTY = 1.5
+BACKWARD_PENALTY = 2.0
 """Factor on the distances to a gesture traversed backwards.
 
 People keep the demonstrated direction more often than they reverse it. On other people's digits
 and commands the accuracy is flat from 1.2 to 2 and falls beyond.
 """
 
-EXCHANGED_PENALTY = 2.0
+EXCHANGED_PENALTY = 3.0
 """Factor on the distances to a gesture with exchanged sides.
 
 One in fourteen recorded two-handed figures has left and right exchanged throughout. They are

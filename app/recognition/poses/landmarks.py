@@ -70,6 +70,10 @@ HAND_LANDMARKS: Final = (
 SHOULDERS: Final = ("left_shoulder", "right_shoulder")
 HIPS: Final = ("left_hip", "right_hip")
 
+TORSO: Final = "torso"
+"""Path of the torso's centre in trajectories: the body's lean and sway, without its drift. It
+belongs to no recording; `Trajectory.from_poses` computes it."""
+
 LANDMARK_GROUPS: Final[dict[str, tuple[str, ...]]] = {
     "right_hand": ("right_wrist", "right_index", "right_pinky", "right_thumb"),
     "left_hand": ("left_wrist", "left_index", "left_pinky", "left_thumb"),
@@ -94,7 +98,7 @@ steadily of a hand's four landmarks, and the nose of the head's eleven.
 """
 
 UPPER_BODY: Final = frozenset(
-    {*SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
+    {TORSO, *SHOULDERS, *HIPS, "left_elbow", "right_elbow", "nose"}
     | {*LANDMARK_GROUPS["left_hand"], *LANDMARK_GROUPS["right_hand"]}
 )
 """Landmarks that gestures are made with or measured against, without the details of the face."""

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.landmarks import other_side
+from app.recognition.poses.landmarks import TORSO, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
 
 Result = TypeVar("Result")
@@ -23,6 +23,9 @@ MAX_GAP_SECONDS = 0.5
 Reaching movements last 0.5 s and more (Flash and Hogan 1985): a longer line could replace a whole
 stroke, and an invented stroke is worse than a gap.
 """
+
+MIN_MOMENTS_OF_DRIFT = 3
+"""Least moments from which the torso's drift is told from its sway: two are always a line."""
 
 MIN_EXTENT_IN_FRAME = 0.005
 """Least extent that counts as motion without a torso, as a share of the frame's longer side.
@@ -62,7 +65,9 @@ class Trajectory:
         """Normalise a pose sequence: torso-centre translation per frame, one scale for all frames.
 
         Translating or uniformly scaling the recording, and shifting its clock, leave the
-        trajectory as it is (paper, Sec. IV-C; the published code never does this).
+        trajectory as it is (paper, Sec. IV-C; the published code never does this). The motion of
+        the torso's centre itself is kept as one more path, `TORSO`, without its drift: a leaning
+        body is part of a gesture, a drifting one is not.
 
         Raises
         ------
@@ -85,7 +90,13 @@ class Trajectory:
             return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="extent")
         # Repeated: numpy broadcasts pairs of numbers one by one, which is slow.
         xy = (poses.xy - np.repeat(centre[:, None], len(poses.landmarks), axis=1)) / length
-        return cls(landmarks=poses.landmarks, xy=xy, time=time, unit="torso_length")
+        sway = _remove_drift(centre, time) / length
+        return cls(
+            landmarks=(*poses.landmarks, TORSO),
+            xy=np.concatenate([xy, sway[:, None]], axis=1),
+            time=time,
+            unit="torso_length",
+        )
 
     def __len__(self) -> int:
         """Count the moments, T."""
@@ -239,6 +250,15 @@ class Trajectory:
 def _equal_shares(count: int) -> FloatArray:
     """Return `count` numbers from 0 to 1 at equal steps."""
     return np.linspace(0.0, 1.0, count)
+
+
+def _remove_drift(path: FloatArray, time: FloatArray) -> FloatArray:
+    """Subtract from ``(T, 2)`` its straight line of least squares in time."""
+    if len(path) < MIN_MOMENTS_OF_DRIFT:
+        return np.zeros_like(path)
+    since = time - time.mean()
+    velocity = since @ path / (since @ since)
+    return np.asarray(path - path.mean(axis=0) - since[:, None] * velocity)
 
 
 def _extent(xy: FloatArray) -> float:

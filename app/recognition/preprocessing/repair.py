@@ -130,7 +130,7 @@ def _exchange_sides(repair: Repair) -> Repair:
 
 def _remove_outliers(repair: Repair) -> Repair:
     poses = repair.poses
-    off = find_outliers(repair.trajectory)
+    off = find_outliers(repair.trajectory.select(poses.landmarks))
     if not off.any():
         return repair
     xy = np.where(off[..., None], np.nan, poses.xy)

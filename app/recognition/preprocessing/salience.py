@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.recognition.errors import GestureError
-from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS
+from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, TORSO
 from app.recognition.poses.trajectory import Trajectory
 
 MIN_DISPLACEMENT = 0.3
@@ -33,7 +33,7 @@ turns round there, so little of them is lost.
 
 _GROUP_OF = {name: group for group, names in LANDMARK_GROUPS.items() for name in names}
 
-_NEVER_SALIENT = frozenset(POSE_LANDMARKS) - frozenset(_GROUP_OF)
+_NEVER_SALIENT = frozenset({*POSE_LANDMARKS, TORSO}) - frozenset(_GROUP_OF)
 """MediaPipe's arms, trunk and legs, which only the author can choose.
 
 Shoulders and hips are the frame of reference, elbows follow the hands, and legs swim.

@@ -126,7 +126,7 @@ HAND_PARTS = frozenset({"hand", "hand_tip", "index", "pinky", "thumb"})
 ARM_PARTS = HAND_PARTS | {"elbow", "wrist"}
 """Landmarks that an arm moves together."""
 
-TRUNK_AND_LEGS = frozenset({"shoulder", "hip", "knee", "ankle", "heel", "foot_index"})
+TRUNK_AND_LEGS = frozenset({"torso", "shoulder", "hip", "knee", "ankle", "heel", "foot_index"})
 """Landmarks that gestures do not use: they only sway."""
 
 

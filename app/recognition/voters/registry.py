@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import Final
 
+from app.recognition.voters.motion.arm_path import ArmPath
 from app.recognition.voters.motion.cloud import Cloud
 from app.recognition.voters.motion.direction import Direction
 from app.recognition.voters.motion.hand_attitude import HandAttitude
 from app.recognition.voters.motion.motion_voter import MotionVoter
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.path_length import PathLength
+from app.recognition.voters.motion.place import Place
 from app.recognition.voters.motion.posture import Posture
 from app.recognition.voters.motion.stroke_direction import StrokeDirection
 from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.motion.velocity import Velocity
 from app.recognition.voters.motion.which_hand import WhichHand
 from app.recognition.voters.motion.wrist_bend import WristBend
 from app.recognition.voters.shape.aspect_ratio import AspectRatio
@@ -39,6 +42,9 @@ PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
 MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
     Path(),
     Direction(),
+    Velocity(),
+    ArmPath(),
+    Place(),
     Posture(),
     HandAttitude(),
     WristBend(),

@@ -19,7 +19,7 @@ class Cloud(UnorderedVoter):
 
     name = "cloud"
     unit = "mean distance to the nearest step of the other figure, in sizes"
-    prior = 0.2
+    prior = 0.0
     within = 0.18
     between = 0.43
 

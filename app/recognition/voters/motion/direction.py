@@ -20,7 +20,7 @@ class Direction(DtwVoter):
     name = "direction"
     unit = "mean squared difference of unit vectors along the alignment, at most 4 a step"
     prior = 1.0
-    within = 0.131
+    within = 0.21
     between = 1.3
     cue = Cue("figure", weight=0.5, reach=7.0)
 

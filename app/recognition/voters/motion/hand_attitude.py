@@ -20,8 +20,8 @@ class HandAttitude(DtwVoter):
 
     name = "hand_attitude"
     unit = "mean squared difference of the hands' bones along the alignment, in squared sizes"
-    prior = 1.0
-    within = 0.13
+    prior = 0.0
+    within = 0.2
     between = 0.56
     cue = Cue("posture", weight=2.0, reach=4.0)
 

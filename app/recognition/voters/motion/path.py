@@ -17,8 +17,8 @@ class Path(DtwVoter):
 
     name = "path"
     unit = "mean squared distance along the alignment, in squared sizes of the gesture"
-    prior = 1.0
-    within = 0.077
+    prior = 0.0
+    within = 0.13
     between = 1.1
     cue = Cue("figure", weight=1.0, reach=7.0)
 

@@ -23,8 +23,8 @@ class Posture(DtwVoter):
 
     name = "posture"
     unit = "mean squared difference of the limbs along the alignment, in squared sizes"
-    prior = 3.0
-    within = 0.19
+    prior = 0.0
+    within = 0.25
     between = 1.1
     cue = Cue("posture", weight=1.0, reach=4.0)
 

@@ -19,7 +19,7 @@ class StrokeDirection(MotionVoter):
 
     name = "stroke_direction"
     unit = "sizes between the ends, squared sizes between the signed areas"
-    prior = 0.05
+    prior = 0.0
     within = 0.35
     between = 2.5
 

@@ -15,7 +15,7 @@ class WhichHand(MotionVoter):
 
     name = "which_hand"
     unit = "distance between unit vectors of the landmarks' shares, at most sqrt 2"
-    prior = 0.05
+    prior = 0.0
     within = 0.05
     between = 0.5
 

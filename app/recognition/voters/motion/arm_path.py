@@ -1,0 +1,29 @@
+"""Voter `arm_path`: the paths of elbows and wrists in time, aligned by DTW."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.features.motion import Movement, normalize_size
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.motion.motion_voter import DtwVoter
+
+
+class ArmPath(DtwVoter):
+    """DTW distance between the paths of elbows and wrists at equal times.
+
+    As `Path`, but of all joints of both arms, whichever are salient, and in time: an elbow's share
+    in a movement tells whole arms apart, and the steps keep their speed.
+    """
+
+    name = "arm_path"
+    unit = "mean squared distance along the alignment, in squared sizes of the movement"
+    prior = 1.0
+    within = 0.2
+    between = 1.0
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 A)`` coordinates in sizes, NaN where not seen."""
+        places = movement.places
+        centred = places - np.add.reduce(places) / len(places)
+        return normalize_size(centred).reshape(len(centred), -1)
