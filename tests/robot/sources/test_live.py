@@ -138,8 +138,8 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
 @pytest.mark.slow
 def test_a_stream_that_falls_silent_counts_as_lost_and_is_opened_again() -> None:
     with MjpegServer(pictures=20) as server, closing(quick_to_return(server.address)) as source:
-        told = (each for each in source if isinstance(each, SourceLost | SourceRestored))
-        lost, restored = islice(told, 2)
+        notices = (each for each in source if isinstance(each, SourceLost | SourceRestored))
+        lost, restored = islice(notices, 2)
     assert isinstance(lost, SourceLost)
     assert f"no frame for {SILENT_SECONDS:g} s" in lost.reason
     assert isinstance(restored, SourceRestored)
