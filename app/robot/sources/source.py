@@ -34,7 +34,7 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class Quiet:
+class NoFrame:
     """A pause without frames, given so that the caller can do other work.
 
     Attributes
@@ -47,8 +47,8 @@ class Quiet:
     time: float
 
 
-Notice = SourceLost | SourceRestored | SourceWarned | Quiet
-"""What a source yields besides frames; the runtime emits all of them but `Quiet`."""
+Notice = SourceLost | SourceRestored | SourceWarned | NoFrame
+"""What a source yields besides frames; the runtime emits all of them but `NoFrame`."""
 
 
 class Source(Protocol):
