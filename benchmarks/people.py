@@ -1,4 +1,4 @@
-"""Accuracy on people whom nobody tuned on, beside plain DTW of positions and of velocities.
+"""Accuracy on people not used for tuning, beside plain DTW of positions and of velocities.
 
 One demonstration a gesture from one person; queries from the same person (UD) or from everybody
 else (UI). `nearest` is the share whose nearest gesture is the right one, `refused` the share of
@@ -52,7 +52,7 @@ def velocities(poses: PoseSequence) -> FloatArray:
 def plain_dtw(
     describe: Callable[[PoseSequence], FloatArray], templates: Sequence[PoseSequence]
 ) -> Callable[[PoseSequence], int]:
-    """Return what finds the nearest template by plain DTW."""
+    """Return a function that finds the nearest template by plain DTW."""
     references = np.stack([describe(each) for each in templates])
     return lambda poses: int(dtw_distances(describe(poses), references, BAND).argmin())
 
