@@ -134,12 +134,14 @@ class Language:
         """CRC-32 of everything that the thresholds depend on, in eight hexadecimal digits."""
         checksum = crc32(RULE.encode())
         for gesture in self.gestures:
-            relevant = (gesture.salient, gesture.switches, gesture.image.any())
-            checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
-            if gesture.trajectory is not None:
-                shown = gesture.trajectory
-                checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
-                checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+            for each in gesture.single_demonstrations():
+                relevant = (each.salient, each.switches, each.image.any())
+                checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
+                if (shown := each.trajectory) is not None:
+                    checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
+                    checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+            if gesture.further:
+                checksum = crc32(repr(len(gesture.further)).encode(), checksum)
         return f"{checksum:08x}"
 
     def calibrated(self) -> Language:
