@@ -97,6 +97,11 @@ class Language:
             raise LanguageError(
                 f"{len(self.gestures)} gestures, the limit is {MAX_GESTURES}", "/gestures"
             )
+        shown = sum(1 + len(gesture.further) for gesture in self.gestures)
+        if shown > MAX_GESTURES:
+            raise LanguageError(
+                f"{shown} demonstrations of all gestures, the limit is {MAX_GESTURES}", "/gestures"
+            )
         labels: set[str] = set()
         for index, gesture in enumerate(self.gestures):
             if gesture.label in labels:
