@@ -34,7 +34,7 @@ def test_a_gestures_distance_is_that_of_its_nearest_demonstration(
             Recognizer(Language("one", [each]), "paper").recognize(query).distances[:, 0]
             for each in several.single_demonstrations()
         ]
-        np.testing.assert_array_equal(found[:, column], np.min(alone, axis=0))
+        np.testing.assert_allclose(found[:, column], np.min(alone, axis=0), atol=1e-9)
 
 
 def test_a_second_demonstration_makes_its_figure_known() -> None:
