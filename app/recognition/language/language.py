@@ -174,6 +174,19 @@ class Language:
         """
         return replace(self, gestures=(*self.gestures, gesture), revision=self.revision + 1)
 
+    def with_changed(self, gesture: Gesture) -> Language:
+        """Return the next revision, with a gesture in the place of the one of the same label.
+
+        Raises
+        ------
+        LanguageError
+            When there is none.
+
+        """
+        former = self.gesture(gesture.label)
+        gestures = [gesture if each is former else each for each in self.gestures]
+        return replace(self, gestures=gestures, revision=self.revision + 1)
+
     def without(self, label: str) -> Language:
         """Return the next revision, without the gesture of that label.
 

@@ -57,6 +57,17 @@ def test_every_edit_is_the_next_revision_and_leaves_the_old_one() -> None:
         third.without("circle")
 
 
+def test_a_changed_gesture_takes_the_place_of_the_old_one() -> None:
+    first = Language("pool", [gesture("circle"), gesture("line")])
+    changed = gesture("circle").with_demonstration(recording(wedge), "Ben")
+    second = first.with_changed(changed)
+    assert second.labels == first.labels
+    assert second.revision == 2
+    assert second.gesture("circle") is changed
+    with pytest.raises(LanguageError, match="no gesture 'square'"):
+        first.with_changed(gesture("square"))
+
+
 def test_a_label_cannot_occur_twice() -> None:
     with pytest.raises(LanguageError, match="'circle' occurs twice: rename") as refusal:
         Language("pool", [gesture("circle"), gesture("line"), gesture("circle")])
