@@ -30,6 +30,7 @@ from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
 from app.api.routes import (
     checks,
     clips,
+    demonstrations,
     events,
     gestures,
     health,
@@ -114,6 +115,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         checks.router,
         pair_differences.router,
         gestures.router,
+        demonstrations.router,
         phrases.router,
         previews.router,
         recognitions.router,

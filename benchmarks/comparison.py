@@ -44,7 +44,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 @dataclass
 class Outcome:
-    """What came of one method.
+    """Results of one method.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ def _ask(
 
 
 def teach_and_ask_once(name: str, data: Path) -> None:
-    """Do what the memory is measured of."""
+    """Run the work whose memory is measured."""
     recorded = next(iter(recorded_sets(data / "trajectories")))
     (draw,) = draws(recorded, 1, QUERIES_OF_THE_CHILD, seed=1)
     method = new_method(name)

@@ -96,7 +96,7 @@ DAMAGES: dict[str, Damage] = {
 
 
 def unit(poses: PoseSequence) -> float:
-    """Return a torso length in pixels, or what stands in for it."""
+    """Return a torso length in pixels, or the size used in its place."""
     low, high = np.nanpercentile(poses.xy, (5, 95), axis=0)
     extent = float(np.linalg.norm(high - low, axis=1).max())
     return poses.torso_length() or TORSOS_PER_EXTENT * extent
@@ -124,7 +124,7 @@ def question(language: Language, poses: PoseSequence, label: str) -> Question:
 def recorded_questions(
     folder: Path, count: int, queries: int, seed: int
 ) -> Iterator[tuple[str, Question]]:
-    """Ask other people where people are known, anybody where not."""
+    """Return queries by other people, or by anyone where people are unknown."""
     for recorded in recorded_sets(folder):
         if recorded.name not in SETS:
             continue
@@ -155,7 +155,7 @@ def _recording(kept: Path, name: str) -> Recording:
 
 
 def is_named(recognizer: Recognizer, poses: PoseSequence, label: str) -> bool:
-    """Tell whether the gesture is named right; what cannot be judged is not."""
+    """Return whether the gesture is recognised; a take with a fault counts as not recognised."""
     try:
         return recognizer.recognize(poses).nearest == label
     except PoseError:

@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.endurance`` runs 30 minutes of stream time as fast as it goes, and states how
 memory grows, how many frames are remembered, and whether every loop says the same. What the process
-has of the system's memory is told apart from what is allocated in it: an allocator keeps pieces
+has of the system's memory is distinguished from what is allocated in it: an allocator keeps pieces
 that are free, and takes more when several stages need theirs in the same moment.
 ``--models-once`` lets the models look at the first loop alone: all else is done for every frame.
 """
@@ -43,7 +43,7 @@ from app.robot import (
 )
 
 SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
-"""Seconds that do not count for the slope: what may be remembered has been by then."""
+"""Seconds that do not count for the slope: caches are filled by then."""
 
 SAME: Final = 0.02
 """Seconds that the same stamp may differ by from loop to loop: half a frame."""
@@ -59,7 +59,7 @@ STOCK_EVERY: Final = 10
 
 
 class Looped(Source, Protocol):
-    """A source that says the same again and again.
+    """A source that repeats the same frames.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class LoopedClip:
         self.loops = int(np.ceil(seconds / self.period))
 
     def __iter__(self) -> Iterator[Frame | Notice]:
-        """Give the frames of every loop."""
+        """Iterate over the frames of every loop."""
         for loop in range(self.loops):
             with FrameReader(self._clip) as reader:
                 for frame in reader:
@@ -160,8 +160,8 @@ class FirstLoopEstimator:
 
 
 @dataclass(frozen=True)
-class Said:
-    """What one take was answered with.
+class LoopAnswer:
+    """The answer to one take.
 
     Attributes
     ----------
@@ -179,8 +179,8 @@ class Said:
     end: float
     confidence: float | None
 
-    def is_same(self, other: Said) -> bool:
-        """Tell whether two loops said the same at the same moments."""
+    def is_same(self, other: LoopAnswer) -> bool:
+        """Return whether two loops gave the same answer at the same moments."""
         apart = max(abs(self.start - other.start), abs(self.end - other.end))
         return self.label == other.label and apart <= SAME
 
@@ -201,8 +201,8 @@ class Lap:
         Bytes at its end, see `allocated_bytes`.
     objects
         Blocks that Python has given out at its end, an object or two each.
-    said
-        What its takes were answered with.
+    answers
+        The answers to its takes.
 
     """
 
@@ -211,7 +211,7 @@ class Lap:
     memory: int = 0
     allocated: int = 0
     objects: int = 0
-    said: list[Said] = field(default_factory=list)
+    answers: list[LoopAnswer] = field(default_factory=list)
 
 
 def endure(
@@ -233,7 +233,7 @@ def endure(
             loop = int((event.end + BEAT) // source.period)
             start, end = (moment - loop * source.period for moment in (event.start, event.end))
             label = event.label if isinstance(event, TakeRecognized) else None
-            laps[loop].said.append(Said(label, start, end, event.confidence))
+            laps[loop].answers.append(LoopAnswer(label, start, end, event.confidence))
     return [laps[loop] for loop in sorted(laps)]
 
 
@@ -247,7 +247,7 @@ def own_bytes() -> int:
 
 
 class HeapStatistics(ctypes.Structure):
-    """What glibc tells of its heaps (``struct mallinfo2``)."""
+    """Heap statistics of glibc (``struct mallinfo2``)."""
 
     _fields_ = tuple(
         (name, ctypes.c_size_t)
@@ -284,15 +284,17 @@ def slope_of(values: Sequence[float], period: float) -> tuple[float, float]:
 
 
 def report(laps: Sequence[Lap], period: float) -> None:
-    """Print what was found; of more loops than it takes to settle."""
+    """Print the result of the loops after the settling time."""
     settled = laps[int(SETTLING / period) :]
-    first = settled[0].said
+    first = settled[0].answers
     same = sum(
-        len(lap.said) == len(first)
-        and all(one.is_same(other) for one, other in zip(lap.said, first, strict=True))
+        len(lap.answers) == len(first)
+        and all(one.is_same(other) for one, other in zip(lap.answers, first, strict=True))
         for lap in laps
     )
-    sure = [said.confidence for lap in laps for said in lap.said if said.confidence is not None]
+    sure = [
+        answer.confidence for lap in laps for answer in lap.answers if answer.confidence is not None
+    ]
     frames = sum(lap.frames for lap in laps)
     print(f"{len(laps)} loops, {len(laps) * period / 60:.1f} min of stream, {frames} frames")
     for name, unit, values in (

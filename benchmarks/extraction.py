@@ -27,7 +27,7 @@ ROUNDS = 5
 
 @dataclass(frozen=True, eq=False)
 class ModelCall:
-    """One run of one model: the session, the outputs asked for, a copy of what it was fed."""
+    """One run of one model: the session, the requested outputs, a copy of its inputs."""
 
     session: Any
     outputs: list[str]

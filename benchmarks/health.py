@@ -63,7 +63,7 @@ class Forecasts:
 
     @property
     def mean(self) -> float:
-        """The mean of what was forecast, by take."""
+        """Mean estimate over takes."""
         return float(np.average(self.predicted, weights=self.takes))
 
     @property
@@ -81,7 +81,7 @@ class Forecasts:
 
     @property
     def rank_correlation(self) -> float:
-        """Spearman's correlation of what was forecast and the share that came true.
+        """Spearman's rank correlation of estimates and observed rates.
 
         0 where it came true of all alike.
         """
@@ -115,7 +115,7 @@ class Study:
 
 
 def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
-    """Teach takes of one person, rehearse, and let that person or the others perform.
+    """Compare estimates from one person's demonstrations with takes of that person or of others.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def _compared(
 
 
 def row(name: str, found: Forecasts, bar: float) -> str:
-    """Say in a row of a table how forecasts fit what was observed."""
+    """Format a table row: estimates against observed rates."""
     warned = found.within(bar, np.inf)
     came_true = int((warned.happened > 0).sum())
     return (
@@ -182,7 +182,7 @@ def row(name: str, found: Forecasts, bar: float) -> str:
 
 
 def calibration(found: Forecasts) -> Iterator[str]:
-    """Say, row by row, what came of forecasts about as high."""
+    """Yield the calibration table: observed rate per bin of estimates."""
     for low, high in pairwise(BINS):
         inside = found.within(low, high)
         if len(inside.predicted):
@@ -199,7 +199,7 @@ def _ranks(values: FloatArray) -> FloatArray:
 
 
 def main() -> None:
-    """Print one row a set, kind of performer and kind of forecast, and then what came of them."""
+    """Print one row per set, performer and kind of estimate, then the calibration table."""
     parser = set_arguments(__doc__, draws=10, queries=10)
     parser.add_argument("--variants", type=int, default=16, help="rehearsed takes of each gesture")
     given = parser.parse_args()

@@ -34,7 +34,7 @@ CUT = 0.35
 """Share of a take's duration that is missing."""
 
 APPROACH_SECONDS = 0.6
-"""What a hand takes to come from beside the hip."""
+"""Seconds of the hand's way from beside the hip."""
 
 
 def turned_round(take: Trajectory) -> Trajectory:
@@ -112,7 +112,7 @@ FAULTS: dict[str, tuple[Fault, list[str]]] = {
 
 
 def main() -> None:
-    """Print per fault what is told."""
+    """Print the differences reported per fault."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--takes", type=int, default=10, help="per gesture")
     parser.add_argument("--seed", type=int, default=0)
@@ -123,7 +123,7 @@ def main() -> None:
         first, named, told = Share(0, 0), Share(0, 0), Counter[str]()
         for gesture in language.gestures:
             for take in drawn(gesture, arguments.takes, arguments.seed):
-                found = told_of(recognizer, gesture, condense(spoil(take)))
+                found = list_difference_kinds(recognizer, gesture, condense(spoil(take)))
                 told[found[0] if found else "none"] += 1
                 first += Share(int(found[:1] == kinds), 1)
                 named += Share(int({*kinds} <= {*found} if kinds else not found), 1)
@@ -136,8 +136,8 @@ def drawn(gesture: Gesture, count: int, seed: int) -> tuple[Trajectory, ...]:
     return draw_variants(gesture.trajectory, count, seed=seed, person="another")
 
 
-def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list[str]:
-    """Return the kinds of difference that are told of a query, the first one first."""
+def list_difference_kinds(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list[str]:
+    """Return the kinds of difference reported for a query, most important first."""
     compared = recognizer.compare(query)
     at = recognizer.language.labels.index(gesture.label)
     reading = compared.traversals[at] or AS_SHOWN
@@ -148,7 +148,7 @@ def told_of(recognizer: Recognizer, gesture: Gesture, query: Trajectory) -> list
 
 
 def _of_arms(take: Trajectory) -> npt.NDArray[np.bool_]:
-    """Tell ``(K,)`` which landmarks an arm moves."""
+    """Return a mask ``(K,)`` of the landmarks of the arms."""
     return np.array(
         [parse_body_part(name).split("_", 1)[-1] in ARM_PARTS for name in take.landmarks]
     )

@@ -46,7 +46,7 @@ Query = tuple[str, PoseSequence]
 
 
 class Reading(NamedTuple):
-    """What was shown, its label, and the nearest gesture; None where none could be compared."""
+    """A query, its label, and the nearest gesture; None if nothing could be compared."""
 
     shown: str
     label: str | None
@@ -65,7 +65,7 @@ def readings(recognizer: Recognizer, queries: Sequence[Query]) -> Iterator[Readi
 
 
 def sample_strokes() -> tuple[list[Query], list[Query]]:
-    """Return demonstrations and tests: what lies between the salutes of the sample clips."""
+    """Return demonstrations and test takes of the sample clips."""
     demonstrations: list[Query] = []
     tests: list[Query] = []
     with closing(create_estimator()) as estimator:

@@ -35,7 +35,7 @@ LISTS = ("/api/v1/languages", "/api/v1/clips")
 
 @dataclass
 class Page:
-    """What an open page knows.
+    """State of an open page.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Page:
             assert answer.status_code == 304
 
     async def change(self) -> None:
-        """Rename a language, and load what changed, as every open page does."""
+        """Rename a language, and load the change as every open page does."""
         place = f"/api/v1/languages/{self.language}"
         name = f"renamed {time.monotonic_ns()}"
         assert (await self.client.patch(place, json={"name": name})).status_code == 200
@@ -107,7 +107,7 @@ def fill(studio: Studio, languages: int, clips: int) -> tuple[str, str]:
 
 
 async def costs(languages: int, clips: int) -> dict[str, float]:
-    """Return what each thing that a page does costs a server with that much in it."""
+    """Return the cost of every action of a page on a server with that much data."""
     with tempfile.TemporaryDirectory() as folder:
         app = create_app(Settings(data_dir=Path(folder), samples_dir=Path(folder) / "none"))
         transport = httpx.ASGITransport(app)
@@ -126,7 +126,7 @@ async def costs(languages: int, clips: int) -> dict[str, float]:
 
 
 def main() -> None:
-    """Print the ratio of what the large and the small library cost."""
+    """Print the ratio of costs between the large and the small library."""
     small, large = (asyncio.run(costs(*size)) for size in (SMALL, LARGE))
     for doing in small:
         ratio = large[doing] / small[doing]

@@ -30,7 +30,7 @@ class Draw:
 
 
 def draws(recorded: RecordedSet, count: int, queries: int, seed: int) -> Iterator[Draw]:
-    """Draw `count` languages with up to `queries` queries of each kind; a seed gives the same."""
+    """Draw `count` languages with up to `queries` queries of each kind, reproducibly by seed."""
     generator = np.random.default_rng(seed)
     for _ in range(count):
         person = generator.choice(np.unique(recorded.people))

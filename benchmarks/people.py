@@ -1,4 +1,4 @@
-"""Accuracy on people whom nobody tuned on, beside plain DTW of positions and of velocities.
+"""Accuracy on people not used for tuning, beside plain DTW of positions and of velocities.
 
 One demonstration a gesture from one person; queries from the same person (UD) or from everybody
 else (UI). `nearest` is the share whose nearest gesture is the right one, `refused` the share of
@@ -62,7 +62,7 @@ def velocities(poses: PoseSequence) -> FloatArray:
 def plain_dtw(
     describe: Callable[[PoseSequence], FloatArray], templates: Sequence[PoseSequence]
 ) -> Callable[[PoseSequence], FloatArray]:
-    """Return what finds the DTW distances to all templates, in their typical distance."""
+    """Return a function that measures the distances to all templates, over their median."""
     references = np.stack([describe(each) for each in templates])
     between = [dtw_distances(each, references, BAND) for each in references]
     typical = float(np.median(np.array(between)[np.triu_indices(len(references), 1)]))

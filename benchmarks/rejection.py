@@ -25,7 +25,7 @@ RESAMPLES = 1000
 
 @dataclass(frozen=True, eq=False)
 class Outcomes:
-    """What came of N queries to languages of one set.
+    """Outcomes of N queries to languages of one set.
 
     Attributes
     ----------
@@ -68,11 +68,11 @@ class Outcomes:
 
     @property
     def own_bar(self) -> float:
-        """The bar that refuses `REFUSED` of the true takes."""
+        """The threshold that refuses `REFUSED` of the true takes."""
         return float(np.quantile(self.novelty[self.known], 1 - REFUSED))
 
     def accepted_at(self, bar: float) -> float:
-        """Return the share of foreign movements no more novel than a bar."""
+        """Return the share of out-of-vocabulary movements at or below a threshold."""
         return float((self.novelty[~self.known] <= bar).mean())
 
 
@@ -80,12 +80,12 @@ Statistic = Callable[[Sequence[Outcomes]], float]
 
 
 def accepted_at_own_bars(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets, each with a bar of its own."""
+    """Average over the sets, each with its own threshold."""
     return float(np.mean([each.accepted_at(each.own_bar) for each in sets]))
 
 
 def accepted_at_one_bar(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets, all with the bar that refuses `REFUSED` on average."""
+    """Average over the sets, all with the threshold that refuses `REFUSED` on average."""
     true = np.concatenate([each.novelty[each.known] for each in sets])
     counted = [int(each.known.sum()) for each in sets]
     weight = np.concatenate([np.full(count, 1 / count / len(sets)) for count in counted])

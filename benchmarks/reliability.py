@@ -70,7 +70,7 @@ class Answer:
 def answers(
     recorded: RecordedSet, draws: int, queries: int, seed: int, *, same_person: bool
 ) -> Iterator[Answer]:
-    """Ask the person of the templates, or everybody else."""
+    """Return queries by the person of the templates, or by all others."""
     random = np.random.default_rng(seed)
     classes = np.unique(recorded.labels)
     for number in range(draws):
@@ -109,7 +109,7 @@ def outcomes(asked: Sequence[Answer]) -> Outcomes:
 
 
 def row(name: str, asked: Sequence[Answer]) -> str:
-    """Write what one set's languages refused and accepted as a row of a table."""
+    """Format a table row: rejected and accepted shares of one set."""
     found = outcomes(asked)
     known = int(found.known.sum())
     return (
@@ -131,7 +131,7 @@ def reliability(asked: Sequence[Answer]) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print the reliability table, and what is refused and accepted, set by set and on average."""
+    """Print the reliability table, then rejected and accepted shares per set and on average."""
     parser = set_arguments(__doc__, draws=20, queries=30)
     parser.add_argument("--seeds", type=int, nargs="+", help="several instead of one")
     given = parser.parse_args()

@@ -43,7 +43,7 @@ def evaluate(
     """Score a method, user-dependent and user-independent."""
     own, others = Share(0, 0), Share(0, 0)
     for draw in drawn(recorded, draws, queries, seed):
-        answer = answerer(recorded, draw.templates, method)
+        answer = build_answerer(recorded, draw.templates, method)
         own += _named(recorded, draw.own, answer)
         others += _named(recorded, draw.others, answer)
     return own, others
@@ -54,7 +54,7 @@ def _named(recorded: RecordedSet, queries: npt.NDArray[np.intp], answer: Answer)
     return Share(sum(named), len(named))
 
 
-def answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer:
+def build_answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer:
     """Teach a method one template a class."""
     if method not in PROFILES:
         taught = new_method(method)

@@ -35,7 +35,7 @@ IN_A_ROW = 4
 FRAMES = 60
 
 ARM = {"elbow": 0.5, "wrist": 1.0, "index": 1.15, "pinky": 1.15, "thumb": 1.1}
-"""How far out along the right arm a landmark lies, in lengths from shoulder to wrist."""
+"""Position of a landmark along the right arm, from 0 at the shoulder to 1 at the wrist."""
 
 
 def whole_body(seed: int) -> PoseSequence:
@@ -115,7 +115,7 @@ def seconds_a_frame() -> float:
 def published_steps(
     demonstrations: list[PoseSequence], query: PoseSequence
 ) -> Callable[[], object] | None:
-    """Return what names a query by the published steps; None where mahotas is not installed."""
+    """Return a function that labels a query by the published steps; None without mahotas."""
     try:
         from benchmarks.methods.published import PublishedCode
     except ModuleNotFoundError:

@@ -26,19 +26,19 @@ from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
-from benchmarks.streams import Event, Stream, composed, with_body
+from benchmarks.streams import Event, Stream, compose, with_body
 from languages.build import FOLDER
 
 SETS = ("digits", "letters", "grufba3d")
 BARS = (0.5, 0.7, 0.8, 0.9, 0.95)
-"""Confidences from which a report counts; the first is what the spotter is asked for."""
+"""Thresholds on a report's confidence; the spotter runs with the first."""
 
 CLIP_FRAMES = 60
 """Frames of a clip on which pose estimation is timed."""
 
 
 @dataclass(frozen=True)
-class Heard:
+class Detections:
     """A stream with all that was reported in it, and when."""
 
     stream: Stream
@@ -60,10 +60,10 @@ def streams(
         ]
         recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)))
         people = ~own if others else own
-        yield recognizer, composed(recorded, known.tolist(), people, events, random)
+        yield recognizer, compose(recorded, known.tolist(), people, events, random)
 
 
-def heard(recognizer: Recognizer, stream: Stream) -> Heard:
+def detect(recognizer: Recognizer, stream: Stream) -> Detections:
     """Listen to a stream frame by frame."""
     spotter = Spotter(recognizer, confident=BARS[0])
     reports: list[tuple[float, Spotted]] = []
@@ -73,11 +73,11 @@ def heard(recognizer: Recognizer, stream: Stream) -> Heard:
         reports += [(moment, each) for each in found]
     worked = perf_counter() - begun
     end = float(stream.poses.time[-1])
-    return Heard(stream, reports + [(end, each) for each in spotter.finish()], worked)
+    return Detections(stream, reports + [(end, each) for each in spotter.finish()], worked)
 
 
-def judged(one: Heard, bar: float) -> tuple[int, int, Counter[str]]:
-    """Count what was found, what was reported, and on what the false alarms fell."""
+def judge(one: Detections, bar: float) -> tuple[int, int, Counter[str]]:
+    """Count hits, reports, and the events on which false alarms fall."""
     unfound = [event for event in one.stream.events if event.label is not None]
     found, alarms = 0, Counter[str]()
     reports = [each for _, each in one.reports if each.recognition.confidence >= bar]
@@ -96,14 +96,14 @@ def _at(events: tuple[Event, ...], moment: float) -> Event | None:
     return next((event for event in events if event.start <= moment <= event.end), None)
 
 
-def print_judgement(name: str, everything: list[Heard]) -> None:
-    """Print one line a bar."""
+def print_judgement(name: str, everything: list[Detections]) -> None:
+    """Print one line per threshold."""
     hours = sum(one.stream.poses.duration for one in everything) / 3600
     gestures = sum(e.label is not None for one in everything for e in one.stream.events)
     for bar in BARS:
         found, reported, alarms = 0, 0, Counter[str]()
         for one in everything:
-            right, reports, wrong = judged(one, bar)
+            right, reports, wrong = judge(one, bar)
             found, reported, alarms = found + right, reported + reports, alarms + wrong
         print(
             f"{name:16} {bar:4} precision {Share(found, reported)} recall {Share(found, gestures)} "
@@ -143,7 +143,7 @@ def main() -> None:
         recorded = with_body(bodiless)
         for others in (False, True) if len(np.unique(recorded.people)) > 1 else (False,):
             drawn = streams(recorded, others, given.streams, given.events, given.seed)
-            everything = [heard(recognizer, stream) for recognizer, stream in drawn]
+            everything = [detect(recognizer, stream) for recognizer, stream in drawn]
             print_judgement(f"{recorded.name} {'other' if others else 'same'}", everything)
             worked += sum(one.seconds_worked for one in everything)
             frames += sum(len(one.stream.poses) for one in everything)

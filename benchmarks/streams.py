@@ -49,7 +49,7 @@ SHARES = (0.4, 0.3, 0.3)
 
 @dataclass(frozen=True)
 class Event:
-    """What happens in a stream from `start` to `end` seconds; `label` None: nothing that counts."""
+    """An event in a stream from `start` to `end` seconds; `label` None: background motion."""
 
     kind: str
     label: str | None
@@ -70,7 +70,11 @@ def with_body(recorded: RecordedSet) -> RecordedSet:
     widths = [np.ptp(each.xy, axis=0) for each in recorded.recordings]
     extents = [np.linalg.norm(width, axis=1).max() for width in widths]
     scale = TORSO / float(np.median(extents))
-    landmarks = (*SHOULDERS, *HIPS, *(_wrist(name) for name in recorded.recordings[0].landmarks))
+    landmarks = (
+        *SHOULDERS,
+        *HIPS,
+        *(_name_wrist(name) for name in recorded.recordings[0].landmarks),
+    )
     middle = np.array(IN_FRONT if len(landmarks) == len(BODY) + 1 else (0.0, IN_FRONT[1]))
     recordings = []
     for each in recorded.recordings:
@@ -81,11 +85,11 @@ def with_body(recorded: RecordedSet) -> RecordedSet:
     return replace(recorded, recordings=recordings)
 
 
-def _wrist(name: str) -> str:
+def _name_wrist(name: str) -> str:
     return "left_wrist" if name.startswith("left") else "right_wrist"
 
 
-def composed(
+def compose(
     recorded: RecordedSet,
     known: Sequence[str],
     people: npt.NDArray[np.bool_],
@@ -112,7 +116,7 @@ def composed(
     resting = np.array([RESTING[name.split("_")[0]] for name in names]) * TORSO
     is_known = np.isin(recorded.labels, known)
     accidents = simulate_background_motion(seed=int(random.integers(2**31)))
-    parts: list[FloatArray] = [_still(resting, random.uniform(*REST))]
+    parts: list[FloatArray] = [_hold(resting, random.uniform(*REST))]
     truth: list[Event] = []
     for _ in range(events):
         kind = str(random.choice(KINDS, p=SHARES))
@@ -127,13 +131,13 @@ def composed(
             label = str(recorded.labels[index]) if kind == "gesture" else None
         if random.uniform() < RESTED:
             parts.append(_reach(parts[-1][-1], resting, random.uniform(*REACH)))
-            parts.append(_still(resting, random.uniform(*REST)))
+            parts.append(_hold(resting, random.uniform(*REST)))
         parts.append(_reach(parts[-1][-1], path[0], random.uniform(*REACH)))
-        parts.append(_still(path[0], random.uniform(*PAUSE)))
+        parts.append(_hold(path[0], random.uniform(*PAUSE)))
         start = sum(map(len, parts)) / RATE
-        parts += [path, _still(path[-1], random.uniform(*PAUSE))]
+        parts += [path, _hold(path[-1], random.uniform(*PAUSE))]
         truth.append(Event(kind, label, start, start + len(path) / RATE))
-    parts += [_reach(parts[-1][-1], resting, 0.7), _still(resting, 2.0)]
+    parts += [_reach(parts[-1][-1], resting, 0.7), _hold(resting, 2.0)]
     hands = np.concatenate(parts)
     body = np.broadcast_to(BODY * TORSO, (len(hands), *BODY.shape))
     xy = np.concatenate([body, hands], axis=1)
@@ -142,7 +146,7 @@ def composed(
     return Stream(poses, tuple(truth))
 
 
-def _still(place: FloatArray, seconds: float) -> FloatArray:
+def _hold(place: FloatArray, seconds: float) -> FloatArray:
     return np.repeat(place[None], max(1, round(seconds * RATE)), axis=0)
 
 

@@ -72,11 +72,11 @@ FIRST_POSES = """() => {
 }"""
 
 
-def long_clip(path: Path, frames: int) -> Path:
+def write_long_clip(path: Path, frames: int) -> Path:
     """Write a sample clip's frames over and over, enlarged, at the rate of the recordings."""
     sample = samples_dir() / "clips" / "circle-demonstration.mp4"
     with read_frames(sample) as read:
-        pictures = [_enlarged(frame.image) for frame in read]
+        pictures = [_enlarge(frame.image) for frame in read]
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=RATE, options={"preset": "ultrafast"})
         stream.width, stream.height, stream.pix_fmt = *SIZE, "yuv420p"
@@ -87,7 +87,7 @@ def long_clip(path: Path, frames: int) -> Path:
     return path
 
 
-def _enlarged(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+def _enlarge(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     enlarged: npt.NDArray[np.uint8] = cv2.resize(image, SIZE)  # type: ignore[assignment]
     return enlarged
 
@@ -103,11 +103,11 @@ def opened() -> Iterator[tuple[Running, Page, Path]]:
         settings = Settings(data_dir=folder / "data", samples_dir=folder / "none")
         browser = playwright.chromium.launch(executable_path=executable, args=list(WEBGL))
         with running(settings) as server:
-            yield server, _page(browser, server), folder
+            yield server, _open_page(browser, server), folder
         browser.close()
 
 
-def _page(browser: Browser, server: Running) -> Page:
+def _open_page(browser: Browser, server: Running) -> Page:
     page = browser.new_page(viewport={"width": 1280, "height": 800})
     page.set_default_timeout(4 * PATIENCE_MS)
     page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
@@ -115,8 +115,8 @@ def _page(browser: Browser, server: Running) -> Page:
     return page
 
 
-def scrubbed(server: Running, page: Page, clip: Path) -> dict[str, Any]:
-    """Scrub through a clip whose poses are known; return what was shown."""
+def scrub(server: Running, page: Page, clip: Path) -> dict[str, Any]:
+    """Scrub through a clip whose poses are known; return the page's measurements."""
     clip_id = add_clip(server, *SHAPES, name=clip.name, video=clip)
     page.goto(f"{server.address}/?clip={clip_id}")
     page.frame_locator("#lab").locator("canvas").first.wait_for()
@@ -130,7 +130,7 @@ def scrubbed(server: Running, page: Page, clip: Path) -> dict[str, Any]:
     return found
 
 
-def first_poses(page: Page, clip: Path) -> tuple[int, int]:
+def count_first_poses(page: Page, clip: Path) -> tuple[int, int]:
     """Drop a clip; return how many frames of how many were done when poses were on screen."""
     drop(page, clip)
     done, total = page.wait_for_function(FIRST_POSES, polling="raf").json_value()
@@ -142,9 +142,9 @@ def main() -> None:
     """Print the ratios."""
     frames = min(SECONDS * RATE, len(recording_of(*SHAPES).poses))
     with opened() as (server, page, folder):
-        clip = long_clip(folder / "long.mp4", frames)
-        done, total = first_poses(page, clip)
-        found = scrubbed(server, page, clip)
+        clip = write_long_clip(folder / "long.mp4", frames)
+        done, total = count_first_poses(page, clip)
+        found = scrub(server, page, clip)
     print(
         f"scrubbing {frames} frames of 720p at {ASKED_PER_SECOND} frames a second: "
         f"{found['shown'] / ASKED:.2f} of the frames asked for were shown, "

@@ -62,7 +62,7 @@ class TakeComparison:
 
 
 def demonstration_of(gesture: Gesture) -> Trajectory:
-    """Return what a gesture made of recorded poses always has."""
+    """Return a gesture's demonstration, which gestures made of poses always have."""
     assert gesture.trajectory is not None
     return gesture.trajectory
 

@@ -21,8 +21,8 @@ def coverage(real: FloatArray, varied: FloatArray, share: float = 0.95) -> float
     return float((real <= np.quantile(varied, share, axis=1)).mean())
 
 
-def told_apart(real: FloatArray, varied: FloatArray, folds: int = 5) -> float:
-    """Return how well a logistic regression tells variants from real takes, cross-validated.
+def separability(real: FloatArray, varied: FloatArray, folds: int = 5) -> float:
+    """Return the cross-validated separability of variants and real takes by logistic regression.
 
     The area under the curve: 0.5 is not at all, 1 always. Features are standardised, and their
     squares stand beside them, so that a wrong spread is seen as well as a wrong mean.

@@ -44,7 +44,7 @@ RATE, RATE_FACTOR = 25, 26
 
 @dataclass(frozen=True)
 class Found:
-    """What was found in some clips, as shares except for the counts.
+    """Detection rates over some clips, as shares except for the counts.
 
     Attributes
     ----------
@@ -68,17 +68,17 @@ class Found:
     clips: int
 
 
-def degraded(images: Sequence[Image], murk: float, *, far: bool) -> Iterator[Image]:
+def degrade(images: Sequence[Image], murk: float, *, far: bool) -> Iterator[Image]:
     """Mix each image with `murk` of the water's colour and with noise; halve it before if `far`."""
     generator = np.random.default_rng(0)
     for image in images:
-        clear = _halved(image) if far else image
+        clear = _halve(image) if far else image
         noise = generator.normal(0, NOISE * murk, clear.shape)
         mixed = (1 - murk) * clear + murk * np.array(WATER_COLOUR) + noise
         yield np.clip(mixed, 0, 255).astype(np.uint8)
 
 
-def _halved(image: Image) -> Image:
+def _halve(image: Image) -> Image:
     """Shrink the image to half and draw its edges out to its old size."""
     height, width = image.shape[:2]
     small = cv2.resize(image, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
@@ -101,7 +101,7 @@ def measure(
         recording = record(clip, estimator=estimator, water=water)
         body.append(np.isfinite(recording.poses.xy).all(axis=(1, 2)).mean())
         hands.append(np.mean([len(found) for found in recording.hands]) / 2)
-        saluting, resting = _seen_salutes(recording, phases[clip.stem])
+        saluting, resting = _rate_salutes(recording, phases[clip.stem])
         salutes.append(saluting)
         false_salutes.append(resting)
         found = takes_in(recording)
@@ -119,7 +119,7 @@ def measure(
     )
 
 
-def _seen_salutes(
+def _rate_salutes(
     recording: Recording, phases: Sequence[tuple[str, float, float]]
 ) -> tuple[float, float]:
     """Shares of a clip's saluting and of its other frames in which a salute is seen."""
@@ -153,7 +153,7 @@ def main() -> None:
             clips = [Path(scratch) / f"{name}.mp4" for name in names]
             for clip in clips:
                 with read_frames(folder / clip.name) as frames:
-                    images = list(degraded([one.image for one in frames], murk, far=arguments.far))
+                    images = list(degrade([one.image for one in frames], murk, far=arguments.far))
                 clip.write_bytes(encode(images, RATE, RATE_FACTOR))
             for water in arguments.water:
                 found = measure(clips, water, estimator, recognizer, phases)

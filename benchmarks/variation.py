@@ -45,11 +45,11 @@ from benchmarks.one_shot_draws import draws
 from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 from benchmarks.take_comparison import FEATURES, LOOKS, TakeComparison, demonstration_of
-from benchmarks.two_samples import coverage, kolmogorov_smirnov, told_apart
+from benchmarks.two_samples import coverage, kolmogorov_smirnov, separability
 from benchmarks.variation_models import MODELS, Model, ours, scaled
 
 ARTEFACTS = {"grufba3d": ("aspect_ratio",), "natops": ("tempo", "duration")}
-"""What a set's makers made the same for all takes: the shape of the box, the number of frames."""
+"""Features that a set's authors normalised: the shape of the box, the number of frames."""
 
 SCALES = (0.7, 0.85, 1.0, 1.2, 1.4)
 QUANTILES = (10, 50, 90)
@@ -59,7 +59,7 @@ QUERIES = 24
 
 @dataclass(frozen=True)
 class Relation:
-    """Takes of a set whose second is by the same person, another or anybody."""
+    """A set with a choice of second takes: by the same person, another person or anyone."""
 
     recorded: RecordedSet
     kind: str
@@ -69,7 +69,7 @@ class Relation:
 
     @property
     def person(self) -> Person:
-        """Whose variants to compare with."""
+        """Person model of the variants to compare with."""
         return "same" if self.kind == "same" else "another"
 
     @property
@@ -78,7 +78,7 @@ class Relation:
         return ~np.isin(FEATURES, ARTEFACTS.get(self.recorded.name, ()))
 
     def others(self, first: int) -> npt.NDArray[np.intp]:
-        """Return the further takes of the first one's class."""
+        """Return the further takes of the same class as the first."""
         recorded = self.recorded
         others = recorded.labels == recorded.labels[first]
         if self.kind != "anybody":
@@ -87,8 +87,8 @@ class Relation:
         return np.flatnonzero(others)
 
 
-def relations(folder: Path, names: list[str] | None) -> Iterator[Relation]:
-    """Return whose takes can be told in the named sets."""
+def list_relations(folder: Path, names: list[str] | None) -> Iterator[Relation]:
+    """Return the relations that the named sets can show."""
     for recorded in recorded_sets(folder / "trajectories"):
         if not names or recorded.name in names:
             known = len(np.unique(recorded.people)) > 1
@@ -120,15 +120,15 @@ class Comparison:
             )
         )
 
-    def told_apart(self, names: tuple[str, ...]) -> float:
-        """Tell one variant of each demonstration from the further take."""
+    def separability(self, names: tuple[str, ...]) -> float:
+        """Area under the curve of a classifier of variants against further takes."""
         columns = [FEATURES.index(name) for name in names]
         real, varied = self.real[:, columns], self.varied[:, 0, columns]
-        return told_apart(_even(real, names), _even(varied, names))
+        return separability(_even_out(real, names), _even_out(varied, names))
 
 
-def _even(sample: FloatArray, names: tuple[str, ...]) -> FloatArray:
-    """Bring distances to logarithms, which looks are already; what cannot be compared to none."""
+def _even_out(sample: FloatArray, names: tuple[str, ...]) -> FloatArray:
+    """Take logarithms of distances (looks are logarithms already); missing values become 0."""
     logarithms = np.log(np.clip(np.where(np.isfinite(sample), sample, 0.0), 0.0, None) + 1e-3)
     return np.where(np.isin(names, LOOKS), sample, logarithms)
 
@@ -154,8 +154,8 @@ def compared(
     return Comparison(np.array(real), np.array(varied))
 
 
-def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
-    """Report how near each model comes to people."""
+def report_models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
+    """Report the difference between each model's variants and people's takes."""
     yield "set | model | voters differ | looks differ | told by voters | by looks"
     voters = tuple(name for name in VOTER_NAMES if relation.measured[FEATURES.index(name)])
     seen = tuple(name for name in LOOKS if relation.measured[FEATURES.index(name)])
@@ -169,11 +169,11 @@ def models(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[st
         yield (
             f"{relation} | {name:8} | {found.differences(voters):.2f} "
             f"(+-{1.96 * np.std(resamples):.2f}) | {found.differences(seen):.2f} | "
-            f"{found.told_apart(voters):.2f} | {found.told_apart(seen):.2f}"
+            f"{found.separability(voters):.2f} | {found.separability(seen):.2f}"
         )
 
 
-def voters(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
+def report_voters(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report quantiles of real and varied takes, feature by feature."""
     found = compared(relation, ours, pairs, count, seed)
     yield f"set | voter | real {QUANTILES} % | varied | differ | covered"
@@ -190,8 +190,8 @@ def voters(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[st
             )
 
 
-def confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str]:
-    """Report what a language of all classes reads in real takes and in variants."""
+def report_confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str]:
+    """Report confusions of real takes and of variants in a language of all classes."""
     recorded = relation.recorded
     real, variants = Share(0, 0), Share(0, 0)
     for draw in draws(recorded, max(1, pairs // QUERIES), QUERIES, seed):
@@ -212,7 +212,7 @@ def _named(vote: FusedVote, take: Trajectory, label: str) -> Share:
     return Share(int(result is not None and result.nearest == label), 1)
 
 
-def refused(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
+def report_refusals(relation: Relation, pairs: int, count: int, seed: int) -> Iterator[str]:
     """Report how many real takes and variants lie beyond the demonstration's thresholds."""
     random = np.random.default_rng(seed)
     recordings = relation.recorded.recordings
@@ -262,10 +262,10 @@ def scale(every: list[Relation], pairs: int, count: int, seed: int) -> Iterator[
 
 Report = Callable[[Relation, int, int, int], Iterator[str]]
 REPORTS: dict[str, Report] = {
-    "models": models,
-    "voters": voters,
-    "confusion": confusion,
-    "refused": refused,
+    "models": report_models,
+    "voters": report_voters,
+    "confusion": report_confusion,
+    "refused": report_refusals,
 }
 
 
@@ -279,7 +279,7 @@ def main() -> None:
     parser.add_argument("--variants", type=int, default=5, help="per pair")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
-    every = list(relations(given.data, given.sets))
+    every = list(list_relations(given.data, given.sets))
     size = (given.pairs, given.variants, given.seed)
     for report in given.reports:
         if report == "scale":

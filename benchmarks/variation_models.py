@@ -35,7 +35,7 @@ STROKE_WAVES, RISING_WAVES = 16, 4.0
 
 
 def ours(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Trajectory, ...]:
-    """Draw what the recogniser is calibrated with."""
+    """Draw variants as for the recogniser's calibration."""
     return draw_variants(shown, count, seed=seed, person=person)
 
 
@@ -67,7 +67,7 @@ def stochastically_resampled(
 def salient_points(
     shown: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
-    """Move ends and corners, and what lies between by minimum jerk (Cabrera and Wachs 2017)."""
+    """Move ends and corners, and strokes between by minimum jerk (Cabrera and Wachs 2017)."""
     random = np.random.default_rng(seed)
     found = []
     for take in _without_waver(shown, count, seed, person):
@@ -86,7 +86,7 @@ def salient_points(
 def varied_strokes(
     shown: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
-    """Vary the length and direction of what follows what (after Plamondon 1995).
+    """Vary the length and direction of successive strokes (after Plamondon 1995).
 
     Sigma-lognormal variation changes each stroke's amplitude and angle; here both vary smoothly
     along the way, so that no strokes need to be found.

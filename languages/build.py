@@ -103,7 +103,7 @@ LANGUAGES = {
 }
 
 
-def gesture(entry: Entry) -> Gesture:
+def make_gesture(entry: Entry) -> Gesture:
     """Make a gesture from the only closed take of its demonstration clip."""
     clip = FOLDER / "clips" / f"{entry.label}-demonstration.mp4"
     (take,) = [take for take in find_takes(clip) if take.closed]
@@ -114,7 +114,7 @@ def gesture(entry: Entry) -> Gesture:
 
 def main() -> None:
     """Write every language beside this file."""
-    gestures = {entry.label: gesture(entry) for entry in TABLE_2}
+    gestures = {entry.label: make_gesture(entry) for entry in TABLE_2}
     for stem, sample in LANGUAGES.items():
         language = Language(
             name=sample.name,

@@ -20,16 +20,18 @@ from app import __version__
 from app.cli.check import check
 from app.cli.clip_argument import (
     ClipReading,
-    Demonstration,
+    DiverOption,
     FrameRateOption,
     FrameSizeOption,
     LandmarkOption,
     clip_and_span,
-    demonstration_poses,
+    define_gesture,
     keypoint_options,
+    parse_demonstrations,
     read_clip,
     spot_takes,
 )
+from app.cli.demonstrations import demonstrations_command
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
 from app.cli.mcap_file import name_recognitions, save_session
@@ -43,7 +45,7 @@ from app.cli.terminal import (
     show_explanation,
     show_recognition,
 )
-from app.recognition import Gesture, Language, Recognition, Recognizer, Take
+from app.recognition import Language, Recognition, Recognizer, Take
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import RecognitionContext
@@ -67,6 +69,7 @@ models_command = typer.Typer(
     help="Pose and hand models: install, list, export.", invoke_without_command=True
 )
 command_line.add_typer(models_command, name="models")
+command_line.add_typer(demonstrations_command, name="demonstrations")
 command_line.command()(evaluate)
 command_line.command()(check)
 command_line.command()(robot)
@@ -122,14 +125,16 @@ def define(
     demonstrations: Annotated[
         list[str],
         typer.Argument(
-            metavar="LABEL=CLIP...",
+            metavar="LABEL=CLIP[,CLIP...]...",
             help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without. "
-            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file.",
+            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file. Up to five clips "
+            "per gesture, best of several divers.",
         ),
     ],
     name: Annotated[str, typer.Option(help="Name of the language.")],
     output: Annotated[Path, typer.Option(help="Language file to write.")],
     author: Annotated[str, typer.Option(help="Author of the language.")] = "",
+    diver: DiverOption = "",
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -137,18 +142,11 @@ def define(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Create a language from one demonstration clip per gesture."""
+    """Create a language from one demonstration clip per gesture, or several."""
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     reading = ClipReading(water, estimator, hands, keypoints=keypoints)
-    gestures = []
-    for demonstration in [Demonstration.parse(text) for text in demonstrations]:
-        poses = demonstration_poses(demonstration, reading)
-        gesture = Gesture.from_demonstration(demonstration.label, poses)
-        people.print(
-            f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
-            f"salient: {', '.join(gesture.salient)}"
-        )
-        gestures.append(gesture)
+    given = [parse_demonstrations(text) for text in demonstrations]
+    gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
     language = Language(name=name, gestures=gestures, author=author).calibrated()
     language.save(output)
     people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")

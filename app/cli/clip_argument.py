@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +15,7 @@ from app.bags import bag_and_topic
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import ClipSource, ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
-from app.recognition import Language, PoseSequence, Recognition, Recording, Take, takes_in
+from app.recognition import Gesture, Language, PoseSequence, Recognition, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
 from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
@@ -42,6 +43,11 @@ LandmarkOption = Annotated[
     typer.Option(
         metavar="NAME=LANDMARK", help="What a keypoint file's name means here; repeat for more."
     ),
+]
+
+
+DiverOption = Annotated[
+    str, typer.Option(metavar="NAME", help="Name of the diver who shows all given clips.")
 ]
 
 
@@ -145,7 +151,7 @@ class ReadClip:
 
 @dataclass(frozen=True)
 class Demonstration:
-    """What ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line names.
+    """One clip of ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line.
 
     Attributes
     ----------
@@ -162,23 +168,56 @@ class Demonstration:
     clip: Path
     span: tuple[float, float] | None = None
 
-    @classmethod
-    def parse(cls, text: str) -> Demonstration:
-        """Read an argument.
 
-        Raises
-        ------
-        GestureError
-            When it is not of that form.
+def parse_demonstrations(text: str) -> list[Demonstration]:
+    """Parse ``LABEL=CLIP[,CLIP...]``; a file whose very name has commas is taken as it is.
 
-        """
-        label, equals, rest = text.partition("=")
-        if not equals or not label.strip() or not rest:
-            raise GestureError(
-                f"{text!r} is not LABEL=CLIP: name the gesture and its clip, as in circle=dive.mp4"
-            )
-        clip, span = clip_and_span(rest)
-        return cls(label.strip(), clip, span)
+    Raises
+    ------
+    GestureError
+        When it is not of that form.
+
+    """
+    label, equals, rest = (part.strip() for part in text.partition("="))
+    whole = bag_and_topic(str(clip_and_span(rest)[0]))[0].exists()
+    clips = [rest] if whole else [clip.strip() for clip in rest.split(",")]
+    if not equals or not label or not all(clips):
+        raise GestureError(
+            f"{text!r} is not LABEL=CLIP[,CLIP...]: name the gesture and its clips, as in "
+            "circle=dive.mp4 or circle=ana.mp4,ben.mp4"
+        )
+    return [Demonstration(label, *clip_and_span(clip)) for clip in clips]
+
+
+def define_gesture(
+    demonstrations: Sequence[Demonstration],
+    reading: ClipReading,
+    *,
+    diver: str = "",
+    gesture: Gesture | None = None,
+) -> Gesture:
+    """Make a gesture of clips, or add them to a `gesture`, and print what each one shows.
+
+    Raises
+    ------
+    GestureError
+        When a clip does not hold exactly one closed take, or there are too many.
+
+    """
+    for shown in demonstrations:
+        poses = demonstration_poses(shown, reading)
+        if gesture is None:
+            gesture = Gesture.from_demonstration(shown.label, poses, diver=diver)
+        else:
+            gesture = gesture.with_demonstration(poses, diver)
+        salient = gesture.further[-1].salient if gesture.further else gesture.salient
+        people.print(
+            f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
+            f"salient: {', '.join(salient)}",
+            markup=False,
+        )
+    assert gesture is not None  # an argument names one clip at least
+    return gesture
 
 
 def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:

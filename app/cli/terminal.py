@@ -31,7 +31,7 @@ def show_recognition(take: Take, result: Recognition) -> None:
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")
     if result.fault:
-        people.print(f"the take from {take.start:.2f} s is too poor to judge: {result.fault}")
+        people.print(f"the take from {take.start:.2f} s cannot be recognised: {result.fault}")
     table = build_vote_table(result)
     # In a narrow terminal lines wrap; rich would crop them and lose distances.
     unlimited = people.options.update(max_width=10_000)

@@ -27,7 +27,7 @@ from app.robot.listeners.salute_listener import LandmarkListener, Listener
 from app.robot.listeners.spotting_listener import SpottingListener
 from app.robot.runtime import Runtime
 from app.robot.sources.registry import open_source
-from app.robot.sources.source import Frame, Notice, Quiet, Source
+from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
 __all__ = [
     "ActiveLanguage",
@@ -38,10 +38,10 @@ __all__ = [
     "LanguageChanged",
     "LanguageRefused",
     "Listener",
+    "NoFrame",
     "Notice",
     "PhraseHeard",
     "PhraseListener",
-    "Quiet",
     "Runtime",
     "Source",
     "SourceEnded",

@@ -26,7 +26,7 @@ from app.robot.events import (
     SourceWarned,
 )
 from app.robot.listeners.salute_listener import LandmarkListener
-from app.robot.sources.source import Frame, Notice, Quiet, Source
+from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
 REPORT_SECONDS: Final = 10.0
 """Seconds between two events about dropped frames; keeps a log of several days readable."""
@@ -156,7 +156,7 @@ class Runtime:
                 yield notice
             case SourceWarned():
                 yield notice
-            case Quiet():
+            case NoFrame():
                 pass
 
     def _update_language(self) -> Iterator[Event]:

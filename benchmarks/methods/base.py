@@ -1,4 +1,4 @@
-"""What a method of one-shot recognition has to do to be compared with others."""
+"""Protocol of a one-shot recognition method that is compared with others."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Method(ABC):
         """
 
     def prepare(self) -> None:  # noqa: B027 - most methods have nothing to do here
-        """Do what has to be done anew whenever a gesture was added, before the next query."""
+        """Prepare after gestures are added, before the next query."""
 
     @abstractmethod
     def answer(self, query: PoseSequence) -> str | None:

@@ -7,7 +7,7 @@ from benchmarks.methods.base import Method
 
 
 class OurProfile(Method):
-    """A profile of the recogniser; names what is nearest, also where it would be refused.
+    """A profile of the recogniser; answers the nearest gesture, also if it is rejected.
 
     The other methods never refuse, so a refusal would not be compared with anything.
     """

@@ -114,7 +114,7 @@ def salient_keypoints(poses: PoseSequence) -> tuple[str, ...]:
 
 
 def frames_of(poses: PoseSequence, names: Collection[str]) -> Frames:
-    """Convert some of the keypoints of a recording to what the published implementation gathers."""
+    """Convert keypoints of a recording to the input of the published implementation."""
     columns = [(name, index) for index, name in enumerate(poses.landmarks) if name in names]
     shares, seen = (poses.xy / poses.frame_size).tolist(), poses.seen.tolist()
     return [

@@ -16,7 +16,7 @@ LEVELS = 7
 linear function of where the hand is."""
 
 REACH = 2.0
-"""Largest coordinate told apart, in sizes."""
+"""Largest coordinate distinguished, in sizes."""
 
 PHASES = 8
 """Parts of the way, each with weights of its own: what is far left at first is not so at last."""
@@ -44,7 +44,7 @@ class RandomField(TrainedOnVariants):
         self._tagger.open_inmemory(self._model)
 
     def likeliest(self, sequence: FloatArray) -> int:
-        """Return the gesture that most steps are named, on the likeliest way through the field."""
+        """Return the most frequent gesture label on the likeliest path through the field."""
         named = np.array(self._tagger.tag(_attributes(sequence)), dtype=int)
         return int(np.bincount(named).argmax())
 

@@ -1,4 +1,4 @@
-"""Movements as equal steps: what every method but ours and the published one is given.
+"""Movements as equal steps: the input of all methods but ours and the published one.
 
 All landmarks together, resampled to steps of equal length along their joint path, centred and
 scaled by one size. The methods then differ in how they compare, not in how they were prepared.

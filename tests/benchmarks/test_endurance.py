@@ -62,8 +62,8 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
     laps = endure(stream, stream, listener, water="off")
     assert len(laps) == round(60 * MINUTES / stream.period)
     for lap in laps:
-        assert [said.label for said in lap.said] == ["circle", "line"]
-        for one, first in zip(lap.said, laps[0].said, strict=True):
+        assert [answer.label for answer in lap.answers] == ["circle", "line"]
+        for one, first in zip(lap.answers, laps[0].answers, strict=True):
             assert one.is_same(first)
             # The last bits of later times move the edge of a stroke by one frame, which makes a
             # confidence of 1.00 one of 0.94.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.two_samples import coverage, kolmogorov_smirnov, told_apart
+from benchmarks.two_samples import coverage, kolmogorov_smirnov, separability
 
 
 def normal(seed: int, *shape: int) -> FloatArray:
@@ -22,10 +22,10 @@ def test_a_sample_like_the_variants_is_covered_as_promised() -> None:
 
 
 def test_samples_alike_are_told_apart_by_chance_alone() -> None:
-    assert told_apart(normal(3, 300, 4), normal(4, 300, 4)) == pytest.approx(0.5, abs=0.1)
+    assert separability(normal(3, 300, 4), normal(4, 300, 4)) == pytest.approx(0.5, abs=0.1)
 
 
 @pytest.mark.parametrize(("shift", "spread"), [(2.0, 1.0), (0.0, 4.0)])
 def test_another_mean_and_another_spread_are_seen(shift: float, spread: float) -> None:
     other = shift + spread * normal(6, 300, 2)
-    assert told_apart(normal(5, 300, 2), other) > 0.8
+    assert separability(normal(5, 300, 2), other) > 0.8

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition.estimation import Image
-from benchmarks.underwater import WATER_COLOUR, degraded
+from benchmarks.underwater import WATER_COLOUR, degrade
 
 
 def chequered(height: int, width: int) -> Image:
@@ -15,12 +15,12 @@ def chequered(height: int, width: int) -> Image:
 
 
 def test_without_murk_nothing_changes() -> None:
-    (shown,) = degraded([chequered(48, 64)], 0.0, far=False)
+    (shown,) = degrade([chequered(48, 64)], 0.0, far=False)
     np.testing.assert_array_equal(shown, chequered(48, 64))
 
 
 def test_murk_leaves_its_complement_of_the_contrast_and_pulls_to_the_water_s_colour() -> None:
-    (shown,) = degraded([chequered(96, 128)], 0.75, far=False)
+    (shown,) = degrade([chequered(96, 128)], 0.75, far=False)
     assert abs(float(shown.std(axis=(0, 1)).mean()) - 0.25 * 127.5) < 2
     expected = 0.25 * 127.5 + 0.75 * np.array(WATER_COLOUR)
     np.testing.assert_allclose(shown.mean(axis=(0, 1)), expected, atol=1)
@@ -29,6 +29,6 @@ def test_murk_leaves_its_complement_of_the_contrast_and_pulls_to_the_water_s_col
 def test_far_away_the_picture_keeps_its_size() -> None:
     picture = np.zeros((48, 64, 3), np.uint8)
     picture[8:40, 8:56] = 255
-    (shown,) = degraded([picture], 0.0, far=True)
+    (shown,) = degrade([picture], 0.0, far=True)
     assert shown.shape == picture.shape
     assert abs(int((shown > 127).sum()) - (picture > 127).sum() / 4) < 40

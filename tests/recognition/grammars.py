@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
-from math import prod
+from math import isqrt, prod
 
-from hypothesis import assume
 from hypothesis import strategies as st
 
-from app.recognition import LanguageError
 from app.recognition.phrases.automaton import Contribution, Parse
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
@@ -53,9 +52,7 @@ _TYPES = (SlotType("first", "number", {"a": 1, "b": 2}), SlotType("second", "tex
 
 
 @st.composite
-def members(draw: st.DrawFn, name: str) -> OneOf | Slot:
-    least = draw(st.integers(0, 1))
-    most = draw(st.integers(1, 2))
+def members(draw: st.DrawFn, name: str, *, least: int, most: int) -> OneOf | Slot:
     if draw(st.booleans()):
         return Slot(name, draw(st.sampled_from(["first", "second"])), least, most)
     gestures = draw(st.lists(st.sampled_from(LABELS), min_size=1, max_size=2, unique=True))
@@ -63,33 +60,59 @@ def members(draw: st.DrawFn, name: str) -> OneOf | Slot:
 
 
 @st.composite
-def parts(draw: st.DrawFn, name: str) -> Part:
+def parts(draw: st.DrawFn, name: str, *, least: int) -> Part:
+    most = draw(st.integers(1, 2))
     if draw(st.integers(0, 3)) > 0:
-        return draw(members(name))
-    inside = [draw(members(f"{name}_{index}")) for index in range(draw(st.integers(1, 2)))]
-    return Group(tuple(inside), draw(st.integers(0, 1)), draw(st.integers(1, 2)))
+        return draw(members(name, least=least, most=most))
+    count = draw(st.integers(1, 2))
+    needed = draw(st.integers(0, count - 1))
+    inside = [
+        draw(
+            members(
+                f"{name}_{index}",
+                least=1 if index == needed else draw(st.integers(0, 1)),
+                # Only one of a slot and its group may be repeated.
+                most=1 if most > 1 else draw(st.integers(1, 2)),
+            )
+        )
+        for index in range(count)
+    ]
+    return Group(tuple(inside), least, most)
+
+
+@st.composite
+def phrases(draw: st.DrawFn, name: str, most_ways: int) -> Phrase:
+    """Draw a phrase that can be shown in one way at least and in `most_ways` at most."""
+    count = draw(st.integers(1, 3))
+    needed = draw(st.integers(0, count - 1))
+    drawn: list[Part] = []
+    for index in range(count):
+        least = 1 if index == needed else draw(st.integers(0, 1))
+        part = _limit(draw(parts(f"slot{index}", least=least)), most_ways)
+        most_ways //= _ways(part)
+        drawn.append(part)
+    return Phrase(name, tuple(drawn))
+
+
+def _limit(part: Part, most_ways: int) -> Part:
+    """Take away from a part until it can be shown in so many ways at most."""
+    smaller: list[Part] = [part, replace(part, most=1), replace(part, least=1, most=1)]
+    if isinstance(part, Group):
+        smaller += [replace(member, least=1, most=1) for member in part.parts]
+    fitting = (each for each in smaller if _ways(each) <= most_ways)
+    return next(fitting, one(LABELS[0]))
 
 
 @st.composite
 def grammars(draw: st.DrawFn) -> Grammar:
     """Draw a small grammar over three gestures, with or without start and end."""
-    phrases = [
-        Phrase(
-            f"phrase {number}",
-            tuple(draw(parts(f"slot{index}")) for index in range(draw(st.integers(1, 3)))),
-        )
-        for number in range(draw(st.integers(1, 3)))
-    ]
     frame = st.sampled_from([None, "a", "start"])
     start, end = draw(frame), draw(st.sampled_from([None, "c", "end"]))
     most = draw(st.integers(1, 2)) if end is not None else 1
-    single = sum(prod(map(_ways, phrase.parts)) for phrase in phrases)
-    assume(sum(single**count for count in range(1, most + 1)) <= MOST_MESSAGES)
-    try:
-        return Grammar(tuple(phrases), _TYPES, start, end, most_phrases=most)
-    except LanguageError:
-        assume(False)  # a phrase without a needed part, for instance
-        raise
+    count = draw(st.integers(1, 3))
+    single = MOST_MESSAGES if most == 1 else isqrt(MOST_MESSAGES) - 1
+    drawn = [draw(phrases(f"phrase {number}", single // count)) for number in range(count)]
+    return Grammar(tuple(drawn), _TYPES, start, end, most_phrases=most)
 
 
 def _ways(part: Part) -> int:

@@ -36,6 +36,6 @@ def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:
     ]
 
 
-def heard(listener: LandmarkListener, recording: Recording) -> list[Event]:
+def run_listener(listener: LandmarkListener, recording: Recording) -> list[Event]:
     """Feed a whole recording without ending the stream."""
     return [event for frame in moments_of(recording) for event in listener.feed(*frame)]

@@ -62,7 +62,7 @@ class MjpegServer(CameraServer):
                             self.wfile.write(f"{head}\r\n\r\n".encode() + jpeg + b"\r\n")
                             sent += 1
                 except OSError:
-                    pass  # whoever watched has left
+                    pass  # the client has disconnected
 
             def log_message(self, format: str, *args: object) -> None:
                 """Say nothing on stderr."""

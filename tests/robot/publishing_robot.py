@@ -15,28 +15,28 @@ from app.robot import ActiveLanguage, Event, Listener, PhraseListener
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
-from tests.robot.languages import heard, language_of
+from tests.robot.languages import language_of, run_listener
 
 PAUSE = 0.2
-"""Seconds between two rounds: whoever listens may join at any time."""
+"""Seconds between two rounds: a subscriber may join at any time."""
 
 PHOTO = Phrase("photo", (OneOf(("circle",)),), {"do": "photo"}, "take a photo")
 
 
-def told() -> list[Event]:
-    """Return what is said in every round: a gesture that is a message, and one that is unknown."""
+def list_round_events() -> list[Event]:
+    """Return the events of a round: a gesture that is a phrase, and an unknown gesture."""
     made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line")
     return [
         build_language_changed(0.0, language),
-        *heard(PhraseListener(Listener(language)), shown),
+        *run_listener(PhraseListener(Listener(language)), shown),
     ]
 
 
 def main() -> None:
     """Publish until the process is ended."""
-    events = told()
+    events = list_round_events()
     with closing(open_publisher("dds")) as publisher:
         while True:
             for event in events:

@@ -38,22 +38,22 @@ from app.robot.messages import (
 )
 from tests.api.recordings import recording_of
 from tests.recognition.grammars import MISSIONS
-from tests.robot.languages import heard, spoken
+from tests.robot.languages import run_listener, spoken
 
 SCHEMA = json.loads(read_schema())
 SEAL = "0123456789abcdef" * 4
 
 
 def recognized(command: str | dict[str, Any] | None = None) -> TakeRecognized:
-    told = heard(Listener(spoken("circle", "line")), recording_of("line"))
-    (said,) = [event for event in told if isinstance(event, TakeRecognized)]
-    return replace(said, command=command)
+    emitted = run_listener(Listener(spoken("circle", "line")), recording_of("line"))
+    (event,) = [event for event in emitted if isinstance(event, TakeRecognized)]
+    return replace(event, command=command)
 
 
 def rejected() -> TakeRejected:
-    told = heard(Listener(spoken("circle")), recording_of("line"))
-    (said,) = [event for event in told if isinstance(event, TakeRejected)]
-    return said
+    emitted = run_listener(Listener(spoken("circle")), recording_of("line"))
+    (event,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    return event
 
 
 def phrases(*shown: str) -> list[Event]:
@@ -98,20 +98,20 @@ def test_a_line_obeys_the_schema_and_can_be_read_back(event: Event) -> None:
 
 
 def test_a_recognition_tells_what_was_said_when_and_in_which_language() -> None:
-    said = recognized("Come here")
-    content = json.loads(format_line(said))
-    assert content.pop("margin") == said.recognition.margin
+    event = recognized("Come here")
+    content = json.loads(format_line(event))
+    assert content.pop("margin") == event.recognition.margin
     assert content == {
         "event": "take_recognized",
-        "time": said.time,
-        "start": said.start,
-        "end": said.end,
+        "time": event.time,
+        "start": event.start,
+        "end": event.end,
         "closed": True,
         "label": "line",
         "nearest": "line",
-        "confidence": said.confidence,
+        "confidence": event.confidence,
         "command": "Come here",
-        "sha256": said.sha256,
+        "sha256": event.sha256,
         "revision": 1,
     }
 

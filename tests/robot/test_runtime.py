@@ -52,9 +52,9 @@ def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: 
             Listener(spoken("circle")),
             observer=lambda frame, found: looked_at.append(frame.time),
         )
-        told = list(runtime)
+        emitted = list(runtime)
     assert looked_at == record(clip, estimator=estimator).poses.time.tolist()
-    assert told == [
+    assert emitted == [
         SourceOpened(0.0, str(clip), False, (WIDTH, HEIGHT), None),
         LanguageChanged(
             0.0, "pool", spoken("circle").sha256, 1, ("circle",), "full", "as the profile does"
@@ -82,14 +82,14 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
         source = LiveSource("reef", partial(NetworkStream, first.address), first_wait=0.05)
         runtime = Runtime(source, estimator, Listener(spoken("circle")))
         events = iter(runtime)
-        told = [next(events) for _ in range(3)]
+        emitted = [next(events) for _ in range(3)]
     with closing(source):
-        told.append(next(events))
+        emitted.append(next(events))
         with MjpegServer(first.port):
-            told.append(next(events))
+            emitted.append(next(events))
             runtime.stop()
-            told.extend(events)
-    opened, _, idle, lost, restored, *_, ended = told
+            emitted.extend(events)
+    opened, _, idle, lost, restored, *_, ended = emitted
     assert isinstance(opened, SourceOpened)
     assert opened.live
     assert opened.began == source.began
@@ -109,7 +109,7 @@ def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_r
         None,
         LanguageError("not a language file", "/format"),
     ]
-    told: list[Event] = []
+    emitted: list[Event] = []
     with MjpegServer() as server, closing(open_source(server.address)) as source:
         runtime = Runtime(
             source,
@@ -118,12 +118,12 @@ def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_r
             changes=lambda: changes.pop(0) if changes else None,
         )
         for event in runtime:
-            told.append(event)
+            emitted.append(event)
             if isinstance(event, LanguageRefused):
                 runtime.stop()
-    before, after = [event for event in told if isinstance(event, LanguageChanged)]
+    before, after = [event for event in emitted if isinstance(event, LanguageChanged)]
     assert (before.gestures, after.gestures) == (("circle",), ("circle", "line"))
-    (refused,) = [event for event in told if isinstance(event, LanguageRefused)]
+    (refused,) = [event for event in emitted if isinstance(event, LanguageRefused)]
     assert refused.reason == "/format: not a language file"
     assert (refused.sha256, refused.revision) == (after.sha256, 2)
 

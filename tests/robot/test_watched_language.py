@@ -30,7 +30,7 @@ def news(language: WatchedLanguage) -> ActiveLanguage | OsgError:
         if change := language.next_change():
             return change
         clock.sleep(0.05)
-    raise AssertionError("nothing new was told")
+    raise AssertionError("no language was loaded or refused")
 
 
 @pytest.fixture

@@ -46,7 +46,7 @@ def with_phrases(rules: Rules = RULES) -> CommandDialogue:
 def signed(
     stamp: float, kind: str = "complete", mission: str = "photo", **other: Any
 ) -> RecognizedPhrase:
-    told = RecognizedPhrase(
+    phrase = RecognizedPhrase(
         kind=kind,
         mission=mission if kind == "complete" else "",
         text=f"{kind}: {mission}",
@@ -56,21 +56,23 @@ def signed(
         label="circle",
         language_id="language",
     )
-    return replace(told, **other)
+    return replace(phrase, **other)
 
 
-def answers(*heard: RecognizedGesture | RecognizedPhrase, rules: Rules = RULES) -> list[str | None]:
+def answers(
+    *arrival: RecognizedGesture | RecognizedPhrase, rules: Rules = RULES
+) -> list[str | None]:
     """Return the commands that a dialogue gives when it hears everything at once."""
     made = with_phrases(rules)
-    return [decided(made, each, each.stamp).command for each in heard]
+    return [decided(made, each, each.stamp).command for each in arrival]
 
 
 def decided(
-    made: CommandDialogue, heard: RecognizedGesture | RecognizedPhrase, now: float
+    made: CommandDialogue, arrival: RecognizedGesture | RecognizedPhrase, now: float
 ) -> Decision:
-    if isinstance(heard, RecognizedPhrase):
-        return made.decide_phrase(heard, now)
-    return made.decide(heard, now)
+    if isinstance(arrival, RecognizedPhrase):
+        return made.decide_phrase(arrival, now)
+    return made.decide(arrival, now)
 
 
 def test_a_word_gives_no_command_alone() -> None:
@@ -102,8 +104,8 @@ def test_a_message_is_confirmed_by_showing_it_again() -> None:
 
 
 def test_another_message_takes_the_place_of_the_first() -> None:
-    heard = [signed(1), signed(2, mission="dive"), signed(3), signed(4)]
-    assert answers(*heard) == [None, None, None, "photo"]
+    arrivals = [signed(1), signed(2, mission="dive"), signed(3), signed(4)]
+    assert answers(*arrivals) == [None, None, None, "photo"]
 
 
 @pytest.mark.parametrize("kind", ["ambiguous", "cancelled", "timed_out", "unexpected", "outside"])
@@ -134,8 +136,8 @@ def test_a_long_message_may_be_finished_when_it_goes_on_in_time() -> None:
 
 
 def test_one_picture_may_end_a_message_and_begin_the_next() -> None:
-    heard = [signed(1), signed(9, start=2), signed(9, "continues", start=8)]
-    assert answers(*heard) == [None, "photo", None]
+    arrivals = [signed(1), signed(9, start=2), signed(9, "continues", start=8)]
+    assert answers(*arrivals) == [None, "photo", None]
 
 
 def test_a_message_that_is_played_again_is_ignored() -> None:
@@ -180,17 +182,17 @@ def test_a_mission_comes_of_a_whole_sure_fresh_message_of_the_language_that_was_
     both: list[tuple[RecognizedGesture | RecognizedPhrase, float]],
 ) -> None:
     made = with_phrases()
-    for heard, late in both:
+    for arrival, late in both:
         before = made.pending
-        decision = decided(made, heard, heard.stamp + late)
-        if isinstance(heard, RecognizedPhrase) and decision.command is not None:
-            assert heard.kind == "complete"
-            assert heard.confidence >= RULES.least_confidence
+        decision = decided(made, arrival, arrival.stamp + late)
+        if isinstance(arrival, RecognizedPhrase) and decision.command is not None:
+            assert arrival.kind == "complete"
+            assert arrival.confidence >= RULES.least_confidence
             assert abs(late) <= RULES.stale_seconds
-            assert heard.language_id == PHRASES.language_id
+            assert arrival.language_id == PHRASES.language_id
             assert before is not None
-            assert decision.command == heard.mission == before.mission
-            assert heard.stamp <= before.deadline
+            assert decision.command == arrival.mission == before.mission
+            assert arrival.stamp <= before.deadline
             assert made.pending is None
 
 
@@ -199,9 +201,9 @@ def test_no_word_gives_a_command_but_an_emergency(
     both: list[tuple[RecognizedGesture | RecognizedPhrase, float]],
 ) -> None:
     made = with_phrases()
-    for heard, late in both:
-        decision = decided(made, heard, heard.stamp + late)
-        if isinstance(heard, RecognizedGesture) and heard.label in PHRASES.phrase_labels:
+    for arrival, late in both:
+        decision = decided(made, arrival, arrival.stamp + late)
+        if isinstance(arrival, RecognizedGesture) and arrival.label in PHRASES.phrase_labels:
             assert decision.command is None or decision.emergency
 
 
@@ -210,9 +212,9 @@ def test_a_confirmed_message_gives_one_command_however_often_it_arrives(
     after: list[str], copies: int
 ) -> None:
     made = with_phrases()
-    heard = [signed(1), *[signed(2)] * copies]
+    arrivals = [signed(1), *[signed(2)] * copies]
     later = [signed(3.0 + place, kind, mission="") for place, kind in enumerate(after)]
-    given = [made.decide_phrase(each, each.stamp).command for each in (*heard, *later)]
+    given = [made.decide_phrase(each, each.stamp).command for each in (*arrivals, *later)]
     assert [command for command in given if command] == ["photo"]
 
 

@@ -1,4 +1,4 @@
-"""The message packages build with ROS 2's own generators, or it is said why they cannot here."""
+"""The message packages build with ROS 2's own generators; a skip states what is missing here."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.ros2 import workspace
 def test_another_process_imports_what_was_built() -> None:
     if (reason := workspace.missing()) is not None:
         pytest.skip(f"{reason}; so the tests in tests/ros2/nodes are left out")
-    said = subprocess.run(
+    ran = subprocess.run(
         [
             sys.executable,
             "-c",
@@ -24,4 +24,4 @@ def test_another_process_imports_what_was_built() -> None:
         text=True,
         check=True,
     )
-    assert "Keypoint(name='nose', x=1.5, y=0.0, confidence=0.0)" in said.stdout
+    assert "Keypoint(name='nose', x=1.5, y=0.0, confidence=0.0)" in ran.stdout

@@ -121,7 +121,7 @@ def generate(package: Path, made: Path) -> None:
 
 
 def _arguments(package: str, files: Sequence[str], made: Path, generator: str) -> dict[str, Any]:
-    """Return what every generator is told."""
+    """Return the arguments that every generator gets."""
     arguments: dict[str, Any] = legacy_generator_arguments(
         package_name=package,
         interface_files=list(files),

@@ -36,7 +36,7 @@ def add_gesture(
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
-    """Save a demonstration as a gesture of the language."""
+    """Save a demonstration as a new gesture of the language."""
     demonstration = demonstration_at(studio, draft)
     gesture = Gesture.from_demonstration(
         draft.label,
@@ -44,6 +44,7 @@ def add_gesture(
         salient=draft.salient or None,
         description=draft.description,
         command=draft.command,
+        diver=draft.diver,
     )
     switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
     gesture = replace(gesture, switches=switches)

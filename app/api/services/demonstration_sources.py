@@ -20,9 +20,11 @@ def keep_source(
     label: str,
     where: NewDemonstration,
     demonstration: Demonstration,
+    *,
+    index: int = 0,
 ) -> None:
-    """Keep where the demonstration of a gesture, as it was just saved, comes from."""
-    saved = next(each for each in studio.language(state).gestures if each.label == label)
+    """Keep where a demonstration of a gesture, as it was just saved, comes from."""
+    saved = studio.language(state).gesture(label).single_demonstrations()[index]
     if (key := _key(saved)) is None:
         return
     start = demonstration.start if where.start is None else where.start
@@ -41,14 +43,19 @@ def keep_source(
     studio.sources.keep(source)
 
 
-def sources_in(studio: Studio, language: Language) -> dict[str, SourceView]:
-    """Return by label where the demonstrations of a language come from, as far as is known."""
-    keys = {gesture.label: key for gesture in language.gestures if (key := _key(gesture))}
-    known = studio.sources.of(set(keys.values()))
+def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView | None]]:
+    """Return by label where every demonstration of a language comes from; None: not known."""
+    keys = {
+        gesture.label: [_key(each) for each in gesture.single_demonstrations()]
+        for gesture in language.gestures
+    }
+    known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
     return {
-        label: SourceView(**known[key].model_dump(exclude={"trajectory"}))
-        for label, key in keys.items()
-        if key in known
+        label: [
+            SourceView(**known[key].model_dump(exclude={"trajectory"})) if key in known else None
+            for key in row
+        ]
+        for label, row in keys.items()
     }
 
 

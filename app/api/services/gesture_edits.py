@@ -5,13 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.api.http.problems import Fault, ProblemError
-from app.api.http.schemas.gestures import GestureChange, NewDemonstration, SwitchPosition
+from app.api.http.schemas.gestures import (
+    DemonstrationDraft,
+    GestureChange,
+    NewDemonstration,
+    SwitchPosition,
+)
 from app.api.services.clip_ranges import Demonstration, demonstration_in
 from app.api.services.studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
 
-WORDS = frozenset({"label", "description", "command"})
+WORDS = frozenset({"label", "description", "command", "diver"})
 """What of a gesture is for people and the robot, and does not change what is recognised."""
 
 
@@ -81,7 +86,8 @@ def change_gesture_of(
     }
     changed = gesture
     if demonstration is not None:
-        changed = _remake(gesture, demonstration, change.salient)
+        diver = "" if change.demonstration is None else change.demonstration.diver
+        changed = _remake(gesture, demonstration, change.salient, diver)
     elif change.salient:
         changed = _set_salient(gesture, change.salient)
     switches = set_switches(changed.switches, change.direction, change.tempo, change.mirror)
@@ -90,6 +96,61 @@ def change_gesture_of(
         language = language.renamed(gesture.label, changed.label)  # and in its phrases
     gestures = [changed if each.label == changed.label else each for each in language.gestures]
     return replace(language, gestures=gestures)
+
+
+def add_demonstration_to(
+    language: Language, draft: DemonstrationDraft, demonstration: Demonstration
+) -> Language:
+    """Return a language in which a gesture has one more demonstration.
+
+    Raises
+    ------
+    ProblemError
+        404 without such a gesture.
+    GestureError
+        When the demonstration is none, or the gesture has as many as it may.
+
+    """
+    gesture = gesture_in(language, draft.label)
+    salient = draft.salient or None
+    return language.with_changed(
+        gesture.with_demonstration(demonstration.poses, draft.diver, salient=salient)
+    )
+
+
+def remove_demonstration_from(language: Language, label: str, index: int) -> Language:
+    """Return a language in which a gesture has one demonstration less.
+
+    Raises
+    ------
+    ProblemError
+        404 without such a gesture or demonstration, 409 when it is the only one.
+
+    """
+    gesture = gesture_in(language, label)
+    require_demonstration(gesture, index)
+    try:
+        return language.with_changed(gesture.without_demonstration(index))
+    except GestureError as error:
+        raise ProblemError(409, "demonstration_needed", str(error)) from error
+
+
+def require_demonstration(gesture: Gesture, index: int) -> Gesture:
+    """Return the gesture of one demonstration.
+
+    Raises
+    ------
+    ProblemError
+        404 when there is none of that index.
+
+    """
+    shown = gesture.single_demonstrations()
+    if not 0 <= index < len(shown):
+        detail = (
+            f"{gesture.label!r} has no demonstration {index}; it has {len(shown)}, counted from 0"
+        )
+        raise ProblemError(404, "not_found", detail)
+    return shown[index]
 
 
 def gesture_in(language: Language, label: str) -> Gesture:
@@ -122,14 +183,19 @@ def require_free(language: Language, label: str) -> None:
         raise ProblemError(409, "label_taken", detail, errors=[fault])
 
 
-def _remake(gesture: Gesture, demonstration: Demonstration, salient: list[str] | None) -> Gesture:
-    """Make a gesture from another demonstration; what it says and what counts stays."""
-    made = Gesture.from_demonstration(gesture.label, demonstration.poses, salient=salient or None)
+def _remake(
+    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
+) -> Gesture:
+    """Replace the first demonstration; what the gesture says and what counts stays."""
+    made = Gesture.from_demonstration(
+        gesture.label, demonstration.poses, salient=salient or None, diver=diver
+    )
     return replace(
         made,
         description=gesture.description,
         command=gesture.command,
         switches=gesture.switches,
+        further=gesture.further,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,6 +12,7 @@ import numpy as np
 from app.recognition import Language
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.phrases.grammar import Grammar
+from app.recognition.text.wording import join_words
 
 Kind = Literal["added", "removed", "changed", "same"]
 
@@ -121,6 +123,7 @@ def _describe_gesture(before: Gesture, after: Gesture) -> tuple[str, ...]:
             ("label", before.label, after.label),
             ("description", before.description, after.description),
             ("command", _command_text(before), _command_text(after)),
+            ("diver", before.diver, after.diver),
             *(
                 (f"switch for {name}", value, getattr(after.switches, name))
                 for name, value in vars(before.switches).items()
@@ -129,9 +132,11 @@ def _describe_gesture(before: Gesture, after: Gesture) -> tuple[str, ...]:
         if old != new
     ]
     words += _describe_salient(before, after)
-    if _differ_in_demonstration(before, after):
+    if further := _describe_further(before, after):
+        words += further
+    elif _differ_in_demonstration(before, after):
         words.append(f"another demonstration{_seconds(before, after)}")
-    elif not (words or np.array_equal(before.image, after.image)):
+    elif not words and _are_drawn_otherwise(before, after):
         words.append("drawn anew from the same demonstration")
     if before.thresholds != after.thresholds:
         words.append("other thresholds of rejection")
@@ -146,6 +151,32 @@ def _describe_salient(before: Gesture, after: Gesture) -> list[str]:
         for names, verb in ((new, "is followed now"), (gone, "is not followed any more"))
         if names
     ]
+
+
+def _describe_further(before: Gesture, after: Gesture) -> list[str]:
+    """Count the demonstrations that come and go, of gestures with several."""
+    old, new = before.single_demonstrations(), after.single_demonstrations()
+    if len(old) == len(new) == 1:
+        return []
+    added = [each for each in new if all(_differ_in_demonstration(one, each) for one in old)]
+    removed = [each for each in old if all(_differ_in_demonstration(one, each) for one in new)]
+    return [
+        f"{len(shown)} demonstration{'s' if len(shown) > 1 else ''} {verb}{_divers_of(shown)}"
+        for shown, verb in ((added, "added"), (removed, "removed"))
+        if shown
+    ]
+
+
+def _divers_of(shown: Sequence[Gesture]) -> str:
+    divers = dict.fromkeys(_quote(each.diver) for each in shown if each.diver)
+    return f", by {join_words([*divers])}" if divers else ""
+
+
+def _are_drawn_otherwise(before: Gesture, after: Gesture) -> bool:
+    old, new = before.single_demonstrations(), after.single_demonstrations()
+    return any(
+        not np.array_equal(one.image, other.image) for one, other in zip(old, new, strict=False)
+    )
 
 
 def _differ_in_demonstration(before: Gesture, after: Gesture) -> bool:

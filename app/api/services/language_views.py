@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from urllib.parse import quote
+from collections.abc import Sequence
+from itertools import zip_longest
+from urllib.parse import quote, urlencode
 
 from fastapi import Response
 
 from app.api.http.revisions import revision_tag
-from app.api.http.schemas.gestures import GestureView, SourceView
+from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.studio import Studio
@@ -32,8 +34,7 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
     return LanguageView(
         **view_summary(state).model_dump(),
         gestures=[
-            view_gesture(state, gesture, sources.get(gesture.label))
-            for gesture in language.gestures
+            view_gesture(state, gesture, sources[gesture.label]) for gesture in language.gestures
         ],
         grammar=None if language.grammar is None else grammar_to_entry(language.grammar),
         profile=language.profile,
@@ -59,9 +60,9 @@ def view_summary(state: LanguageState) -> LanguageSummary:
 
 
 def view_gesture(
-    state: LanguageState, gesture: Gesture, source: SourceView | None = None
+    state: LanguageState, gesture: Gesture, sources: Sequence[SourceView | None] = ()
 ) -> GestureView:
-    """Return a gesture of a revision; `source` is the clip of its demonstration."""
+    """Return a gesture of a revision; `sources` are the clips of its demonstrations."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
     place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
     switches = gesture.switches
@@ -75,5 +76,27 @@ def view_gesture(
         salient=list(gesture.salient),
         thumbnail=f"{place}?revision={state.revision.revision}",
         has_trajectory=gesture.trajectory is not None,
-        source=source,
+        source=sources[0] if sources else None,
+        demonstrations=view_demonstrations(state, gesture, sources),
     )
+
+
+def view_demonstrations(
+    state: LanguageState, gesture: Gesture, sources: Sequence[SourceView | None] = ()
+) -> list[DemonstrationView]:
+    """Return the demonstrations of a gesture of a revision."""
+    place = f"/api/v1/languages/{state.record.id}/demonstrations"
+    query = urlencode({"label": gesture.label, "revision": state.revision.revision})
+    return [
+        DemonstrationView(
+            index=index,
+            diver=shown.diver,
+            salient=list(shown.salient),
+            seconds=None if shown.trajectory is None else float(shown.trajectory.time[-1]),
+            thumbnail=f"{place}/{index}/image?{query}",
+            source=source,
+        )
+        for index, (shown, source) in enumerate(
+            zip_longest(gesture.single_demonstrations(), sources)
+        )
+    ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -39,7 +40,9 @@ class MajorityVote:
     def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
         self._factors = tuning.weights_of([voter.name for voter in PAPER_VOTERS])
-        self._shapes = ShapeReferences(gestures, tuning.simplification)
+        shown = [gesture.single_demonstrations() for gesture in gestures]
+        self._first = np.cumsum([0, *map(len, shown[:-1])])
+        self._shapes = ShapeReferences([*chain(*shown)], tuning.simplification)
 
     @property
     def landmarks(self) -> tuple[str, ...]:
@@ -56,8 +59,11 @@ class MajorityVote:
         return None
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:
-        """Compare a condensed query with every gesture, voter by voter."""
-        distances = self._shapes.distances(trajectory)
+        """Compare a condensed query with every gesture, voter by voter.
+
+        A gesture's distance is that of its nearest demonstration.
+        """
+        distances = np.minimum.reduceat(self._shapes.distances(trajectory), self._first, axis=1)
         count = len(self._labels)
         return ScoreTable(
             voters=tuple(voter.name for voter in PAPER_VOTERS),

@@ -1,4 +1,4 @@
-"""Gestures: one demonstration, with the image, descriptors and thresholds derived from it."""
+"""Gestures: one demonstration or several, with the thresholds derived from them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Final
 
-import numpy as np
-
-from app.recognition.errors import GestureError, PoseError
+from app.recognition.errors import GestureError
 from app.recognition.features.contour import CLOSING_DIAMETER, BinaryImage
 from app.recognition.features.trajectory_image import (
     MARGIN,
@@ -19,20 +17,21 @@ from app.recognition.features.trajectory_image import (
     SIZE,
     STROKE_WIDTH,
     Drawing,
-    draw,
 )
+from app.recognition.gestures.demonstration import (
+    MAX_DEMONSTRATIONS,
+    Demonstration,
+    check_diver,
+    freeze_descriptors,
+    freeze_image,
+    is_shown_by,
+)
+from app.recognition.gestures.demonstration import MAX_LANDMARKS as MAX_LANDMARKS
+from app.recognition.gestures.demonstration import MAX_MOMENTS as MAX_MOMENTS
+from app.recognition.gestures.demonstration import condense as condense
 from app.recognition.gestures.switches import AUTOMATIC, Switches
-from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.quality import find_fault
-from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.preprocessing.salience import (
-    MIN_DISPLACEMENT,
-    choose_landmarks,
-    find_salient_landmarks,
-    measure_displacements,
-)
 from app.recognition.text.strict_json import read_json
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.fourier import HARMONICS, SAMPLES
@@ -51,22 +50,6 @@ MAX_COMMAND_BYTES = 4000
 
 MAX_COMMAND_DEPTH = 16
 """Nesting of a command object: within a language file, below the JSON reader's limit."""
-
-MIN_FRAMES = 3
-"""Least frames of a demonstration: two points are always a straight line."""
-
-MAX_MOMENTS = 100
-"""Most moments kept of a demonstration; longer ones are resampled evenly in time.
-
-With `MAX_LANDMARKS` it keeps a gesture's file entry below 40 kB. In a gesture of ten seconds, ten
-moments a second are left, enough to follow the arm.
-"""
-
-MAX_LANDMARKS = 16
-"""Most landmarks kept of a demonstration: the salient ones first, then the upper body's."""
-
-DIGITS = 4
-"""Decimals kept of a trajectory: 0.05 mm of a diver, below what any pose model resolves."""
 
 SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
     {
@@ -118,8 +101,8 @@ class Gesture:
     image
         ``(224, 224)``: the salient landmarks' paths, 255 on black.
     trajectory
-        The demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None when
-        the gesture was imported from a file that has only images.
+        The first demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None
+        when the gesture was imported from a file that has only images.
     descriptors
         Per voter's name its descriptor of the image; empty when the image is.
     thresholds
@@ -133,6 +116,11 @@ class Gesture:
         What the robot should do: free text, a JSON object, or None.
     switches
         Whether the gesture's direction, tempo and mirror image count.
+    diver
+        Name of the diver of the first demonstration; empty: not known.
+    further
+        Its demonstrations beside the first, `MAX_DEMONSTRATIONS` in all; `salient`, `image`,
+        `trajectory` and `descriptors` are the first one's.
 
     Raises
     ------
@@ -151,26 +139,25 @@ class Gesture:
     description: str = ""
     command: str | dict[str, Any] | None = None
     switches: Switches = AUTOMATIC
+    diver: str = ""
+    further: tuple[Demonstration, ...] = ()
 
     def __post_init__(self) -> None:
         """Validate texts, command and image, and freeze mutable fields."""
         object.__setattr__(self, "label", check_label(self.label))
         object.__setattr__(self, "description", check_text(self.description))
         object.__setattr__(self, "command", check_command(self.command))
-        image = np.array(self.image, dtype=np.uint8)
-        if image.shape != (SIZE, SIZE) or not np.isin(image, (0, 255)).all():
-            raise GestureError(
-                f"image of gesture {self.label!r} must be {SIZE} x {SIZE} of 0 and 255, "
-                f"got shape {image.shape}"
-            )
-        image.setflags(write=False)
-        object.__setattr__(self, "image", image)
+        object.__setattr__(self, "image", freeze_image(self.image))
         object.__setattr__(self, "salient", tuple(sorted(self.salient)))
-        descriptors = {name: values.copy() for name, values in self.descriptors.items()}
-        for values in descriptors.values():
-            values.setflags(write=False)
-        object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
+        object.__setattr__(self, "descriptors", freeze_descriptors(self.descriptors))
         object.__setattr__(self, "thresholds", MappingProxyType(dict(self.thresholds)))
+        object.__setattr__(self, "diver", check_diver(self.diver))
+        object.__setattr__(self, "further", tuple(self.further))
+        if len(self.further) >= MAX_DEMONSTRATIONS:
+            raise GestureError(
+                f"{self.label!r} would have {1 + len(self.further)} demonstrations, the limit is "
+                f"{MAX_DEMONSTRATIONS}: remove one first"
+            )
 
     @classmethod
     def from_demonstration(
@@ -181,6 +168,7 @@ class Gesture:
         salient: Sequence[str] | None = None,
         description: str = "",
         command: str | dict[str, Any] | None = None,
+        diver: str = "",
     ) -> Gesture:
         """Create a gesture from one demonstration.
 
@@ -192,7 +180,7 @@ class Gesture:
             The demonstration, without the salutes around it; it is repaired first.
         salient
             Landmarks to use instead of those chosen by `find_salient_landmarks`.
-        description, command
+        description, command, diver
             See the class.
 
         Raises
@@ -202,37 +190,16 @@ class Gesture:
 
         """
         label = check_label(label)
-        if len(poses) < MIN_FRAMES:
-            raise GestureError(
-                f"the demonstration of {label!r} has {len(poses)} frames, a gesture needs at "
-                f"least {MIN_FRAMES}: choose a longer range of the clip"
-            )
-        try:
-            seen = repair_poses(poses).poses
-            trajectory = Trajectory.from_poses(seen)
-        except PoseError as error:
-            raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
-        if salient is None:
-            names = find_salient_landmarks(trajectory)
-        else:
-            names = choose_landmarks(trajectory, salient)
-        if poor := find_fault(seen, names):
-            raise GestureError(
-                f"the demonstration of {label!r} is too poor to use: {poor}; show the "
-                f"gesture again in view of the camera, or choose another range of the clip"
-            )
-        kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
-        drawing = draw(kept.select(names)) if names else None
-        if drawing is None or drawing.empty:
-            raise GestureError(_explain_nothing_moves(label, trajectory, names))
+        shown = Demonstration.from_poses(label, poses, salient=salient, diver=diver)
         return cls(
             label=label,
-            salient=names,
-            image=drawing.image,
-            trajectory=kept,
-            descriptors=describe_drawing(drawing, PAPER_VOTERS),
+            salient=shown.salient,
+            image=shown.image,
+            trajectory=shown.trajectory,
+            descriptors=shown.descriptors,
             description=description,
             command=command,
+            diver=shown.diver,
         )
 
     @property
@@ -240,6 +207,62 @@ class Gesture:
         """The gesture's drawing, which shape voters compare."""
         seen = None if self.trajectory is None else self.trajectory.select(self.salient)
         return Drawing(self.image, seen)
+
+    def single_demonstrations(self) -> tuple[Gesture, ...]:
+        """Return one gesture for each demonstration, the first one's first."""
+        first = replace(self, further=()) if self.further else self
+        return (first, *(first._with_shown((each,)) for each in self.further))
+
+    def with_demonstration(
+        self, poses: PoseSequence, diver: str = "", *, salient: Sequence[str] | None = None
+    ) -> Gesture:
+        """Return the gesture with one more demonstration.
+
+        Parameters
+        ----------
+        poses
+            The take, without the salutes around it; it is repaired first.
+        diver
+            Name of the diver who shows it; empty: not known.
+        salient
+            Its salient landmarks. By default those of the first demonstration, or its own where
+            none of those moves, such as a take with the other hand.
+
+        Raises
+        ------
+        GestureError
+            When the gesture has `MAX_DEMONSTRATIONS` already, or the take cannot be used.
+
+        """
+        made = Demonstration.from_poses(
+            self.label, poses, salient=salient, like=self.salient, diver=diver
+        )
+        return replace(self, further=(*self.further, made))
+
+    def without_demonstration(self, index: int) -> Gesture:
+        """Return the gesture without one of its demonstrations, counted from 0.
+
+        Without the first, the second takes its place.
+
+        Raises
+        ------
+        GestureError
+            When there is no such demonstration, or no other.
+
+        """
+        count = 1 + len(self.further)
+        if not 0 <= index < count:
+            raise GestureError(
+                f"{self.label!r} has no demonstration {index}, it has {count}, counted from 0"
+            )
+        if count == 1:
+            raise GestureError(
+                f"the only demonstration of {self.label!r} cannot be removed: add another one "
+                f"first, or remove the gesture"
+            )
+        if index == 0:
+            return self._with_shown(self.further)
+        return replace(self, further=self.further[: index - 1] + self.further[index:])
 
     def mirror(self) -> Gesture:
         """Return the mirror image, as if shown with the other hand.
@@ -250,79 +273,68 @@ class Gesture:
             When only an image of the gesture is known.
 
         """
-        if self.trajectory is None:
-            raise GestureError(
-                f"{self.label!r} was imported without its demonstration and cannot be mirrored: "
-                f"define it again from a clip"
-            )
-        trajectory = self.trajectory.compute_once("mirrored", self.trajectory.mirror)
-        salient = tuple(other_side(name) for name in self.salient)
-        drawing = draw(trajectory.select(sorted(salient)))
-        return replace(
-            self,
-            salient=salient,
-            trajectory=trajectory,
-            image=drawing.image,
-            descriptors=describe_drawing(drawing, PAPER_VOTERS),
-        )
+        first = self._require_first("cannot be mirrored: define it again from a clip")
+        return self._with_shown([each.mirror() for each in (first, *self.further)])
 
     def with_salient(self, salient: Sequence[str]) -> Gesture:
         """Return the gesture with other salient landmarks, with image and descriptors recomputed.
 
+        A further demonstration in which none of them moves keeps its own.
+
         Raises
         ------
         GestureError
-            When only an image of the gesture is known, or its demonstration lacks one of them.
+            When only an image of the gesture is known, or its first demonstration lacks one of
+            them.
 
         """
-        if self.trajectory is None:
-            raise GestureError(
-                f"the gesture {self.label!r} was imported without its demonstration, so its "
-                f"salient keypoints cannot be changed; save it again from a clip"
-            )
-        return replace(self, salient=choose_landmarks(self.trajectory, salient)).redraw()
+        first = self._require_first(
+            "has salient keypoints that cannot be changed; save it again from a clip"
+        )
+        further = [
+            each.with_salient(salient) if is_shown_by(salient, each.trajectory) else each
+            for each in self.further
+        ]
+        return self._with_shown([first.with_salient(salient), *further])
 
     def redraw(self, simplification: float = SIMPLIFICATION) -> Gesture:
-        """Return the gesture with image and descriptors recomputed from its demonstration.
+        """Return the gesture with images and descriptors recomputed from its demonstrations.
 
         Where only an image is known, it is kept, and the descriptors are computed from it.
         """
-        drawing = self.drawing
-        if drawing.trajectory is not None and self.salient:
-            drawing = draw(drawing.trajectory, simplification)
-        descriptors = describe_drawing(drawing, PAPER_VOTERS)
-        return replace(self, image=drawing.image, descriptors=descriptors)
+        further = tuple(each.redraw(simplification) for each in self.further)
+        if (first := self._first) is None:
+            descriptors = describe_drawing(self.drawing, PAPER_VOTERS)
+            return replace(self, descriptors=descriptors, further=further)
+        return self._with_shown((first.redraw(simplification), *further))
 
+    @property
+    def _first(self) -> Demonstration | None:
+        if self.trajectory is None:
+            return None
+        return Demonstration(
+            self.trajectory, self.salient, self.image, self.descriptors, self.diver
+        )
 
-def condense(trajectory: Trajectory) -> Trajectory:
-    """Condense a trajectory: bridge gaps, limit the number of moments, and round.
+    def _require_first(self, otherwise: str) -> Demonstration:
+        if (first := self._first) is None:
+            raise GestureError(
+                f"{self.label!r} was imported without its demonstration and {otherwise}"
+            )
+        return first
 
-    Applied to references and queries, so that recognition with a saved file equals recognition
-    before saving, to the last bit.
-
-    Returns
-    -------
-    A trajectory of at most `MAX_MOMENTS` moments, rounded to `DIGITS` decimals.
-
-    """
-    bounded = trajectory.fill_gaps()
-    if len(bounded) > MAX_MOMENTS:
-        bounded = bounded.resample_in_time(MAX_MOMENTS)
-    # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
-    return replace(
-        bounded, xy=np.round(bounded.xy, DIGITS) + 0.0, time=np.round(bounded.time, DIGITS) + 0.0
-    )
-
-
-def _choose_kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tuple[str, ...]:
-    """Choose the landmarks to keep, in the trajectory's order."""
-    names = trajectory.landmarks
-    upper = [name for name in names if name in UPPER_BODY and name not in salient]
-    # Of MediaPipe's set only the upper body is kept; names of other sets may all be arms.
-    known = frozenset(POSE_LANDMARKS) if upper else frozenset()
-    others = [name for name in names if name not in salient and name not in known]
-    kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
-    return tuple(name for name in names if name in kept)
+    def _with_shown(self, shown: Sequence[Demonstration]) -> Gesture:
+        """Return the gesture with other demonstrations."""
+        first, *further = shown
+        return replace(
+            self,
+            salient=first.salient,
+            image=first.image,
+            trajectory=first.trajectory,
+            descriptors=first.descriptors,
+            diver=first.diver,
+            further=tuple(further),
+        )
 
 
 def check_label(label: Any) -> str:
@@ -381,14 +393,3 @@ def check_command(command: Any) -> str | dict[str, Any] | None:
     except (TypeError, ValueError, RecursionError) as error:
         raise GestureError(f"a gesture's command must be plain JSON: {error}") from error
     return read
-
-
-def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
-    moved = measure_displacements(trajectory)
-    most = max(salient or moved, key=lambda name: moved[name])
-    unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"
-    return (
-        f"nothing moves in the demonstration of {label!r}: {most} has the largest displacement, "
-        f"{moved[most]:.2f} {unit}, and a hand or the head needs {MIN_DISPLACEMENT:g}: show the "
-        f"gesture larger, choose another range of the clip, or name the salient landmarks"
-    )

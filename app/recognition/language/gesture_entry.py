@@ -1,9 +1,10 @@
-"""Gesture entries: conversion of gestures to and from their entries in the language file."""
+"""Gesture entries: gestures and their demonstrations to and from the language file."""
 
 from __future__ import annotations
 
 import base64
 import binascii
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -12,9 +13,16 @@ from app.recognition.errors import GestureError, LanguageError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
+from app.recognition.gestures.demonstration import Demonstration, check_diver
 from app.recognition.gestures.gesture import Gesture, Rates, check_command, check_label
 from app.recognition.gestures.switches import Switches
-from app.recognition.language.schema import GestureEntry, PathEntry, RatesEntry, TrajectoryEntry
+from app.recognition.language.schema import (
+    DemonstrationEntry,
+    GestureEntry,
+    PathEntry,
+    RatesEntry,
+    TrajectoryEntry,
+)
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.strict_json import build_pointer
@@ -30,13 +38,15 @@ def gesture_to_entry(gesture: Gesture) -> GestureEntry:
         command=gesture.command,
         salient=list(gesture.salient),
         trajectory=None if trajectory is None else _trajectory_entry(trajectory),
-        image=base64.b64encode(encode_png(gesture.image)).decode("ascii"),
-        descriptors={name: values.tolist() for name, values in gesture.descriptors.items()},
+        image=_image_entry(gesture.image),
+        descriptors=_descriptors_entry(gesture.descriptors),
         thresholds=dict(gesture.thresholds),
         rates=None if rates is None else RatesEntry(miss=rates.miss, false_alarm=rates.false_alarm),
         direction=gesture.switches.direction,
         tempo=gesture.switches.tempo,
         mirror=gesture.switches.mirror,
+        diver=gesture.diver,
+        demonstrations=[_demonstration_entry(each) for each in gesture.further],
     )
 
 
@@ -60,9 +70,7 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
     trajectory = None
     if entry.trajectory is not None:
         trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
-        _check_salient(entry.salient, trajectory, pointer)
-    if len(set(entry.salient)) < len(entry.salient):
-        raise LanguageError("a landmark occurs twice", pointer + "/salient")
+    _check_salient(entry.salient, trajectory, pointer)
     _check_words(entry, pointer)
     rates = entry.rates
     return Gesture(
@@ -70,12 +78,40 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
         salient=tuple(entry.salient),
         image=image,
         trajectory=trajectory,
-        descriptors=_descriptors(entry, image, pointer + "/descriptors"),
+        descriptors=_descriptors(entry, image, pointer),
         thresholds=entry.thresholds,
         rates=None if rates is None else Rates(miss=rates.miss, false_alarm=rates.false_alarm),
         description=entry.description,
         command=entry.command,
         switches=Switches(direction=entry.direction, tempo=entry.tempo, mirror=entry.mirror),
+        diver=_diver(entry.diver, pointer),
+        further=tuple(
+            _demonstration(each, pointer + build_pointer("demonstrations", index))
+            for index, each in enumerate(entry.demonstrations)
+        ),
+    )
+
+
+def _demonstration_entry(shown: Demonstration) -> DemonstrationEntry:
+    return DemonstrationEntry(
+        salient=list(shown.salient),
+        trajectory=_trajectory_entry(shown.trajectory),
+        image=_image_entry(shown.image),
+        descriptors=_descriptors_entry(shown.descriptors),
+        diver=shown.diver,
+    )
+
+
+def _demonstration(entry: DemonstrationEntry, pointer: str) -> Demonstration:
+    image = _image(entry.image, pointer + "/image")
+    trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
+    _check_salient(entry.salient, trajectory, pointer)
+    return Demonstration(
+        trajectory=trajectory,
+        salient=tuple(entry.salient),
+        image=image,
+        descriptors=_descriptors(entry, image, pointer),
+        diver=_diver(entry.diver, pointer),
     )
 
 
@@ -135,13 +171,26 @@ def _check_words(entry: GestureEntry, pointer: str) -> None:
             raise LanguageError(str(error), pointer + build_pointer(key)) from error
 
 
-def _check_salient(salient: list[str], trajectory: Trajectory, pointer: str) -> None:
+def _diver(name: str, pointer: str) -> str:
+    try:
+        return check_diver(name)
+    except GestureError as error:
+        raise LanguageError(str(error), pointer + "/diver") from error
+
+
+def _check_salient(salient: list[str], trajectory: Trajectory | None, pointer: str) -> None:
     for index, name in enumerate(salient):
-        if name not in trajectory.landmarks:
+        if trajectory is not None and name not in trajectory.landmarks:
             raise LanguageError(
                 f"salient landmark {name!r} has no path in the trajectory",
                 pointer + build_pointer("salient", index),
             )
+    if len(set(salient)) < len(salient):
+        raise LanguageError("a landmark occurs twice", pointer + "/salient")
+
+
+def _image_entry(image: BinaryImage) -> str:
+    return base64.b64encode(encode_png(image)).decode("ascii")
 
 
 def _image(text: str, pointer: str) -> BinaryImage:
@@ -151,13 +200,20 @@ def _image(text: str, pointer: str) -> BinaryImage:
         raise LanguageError(f"not a PNG in base64: {error}", pointer) from error
 
 
-def _descriptors(entry: GestureEntry, image: BinaryImage, pointer: str) -> dict[str, FloatArray]:
+def _descriptors_entry(descriptors: Mapping[str, FloatArray]) -> dict[str, list[float]]:
+    return {name: values.tolist() for name, values in descriptors.items()}
+
+
+def _descriptors(
+    entry: GestureEntry | DemonstrationEntry, image: BinaryImage, pointer: str
+) -> dict[str, FloatArray]:
     """Check the lengths of known voters' descriptors; others are kept unchanged."""
     lengths = {voter.name: voter.length(len(entry.salient)) for voter in PAPER_VOTERS}
     for name, values in entry.descriptors.items():
         if len(values) != lengths.get(name, len(values)):
             raise LanguageError(
-                f"{len(values)} values, expected {lengths[name]}", pointer + build_pointer(name)
+                f"{len(values)} values, expected {lengths[name]}",
+                pointer + build_pointer("descriptors", name),
             )
     if not image.any():
         return {}

@@ -97,6 +97,11 @@ class Language:
             raise LanguageError(
                 f"{len(self.gestures)} gestures, the limit is {MAX_GESTURES}", "/gestures"
             )
+        shown = sum(1 + len(gesture.further) for gesture in self.gestures)
+        if shown > MAX_GESTURES:
+            raise LanguageError(
+                f"{shown} demonstrations of all gestures, the limit is {MAX_GESTURES}", "/gestures"
+            )
         labels: set[str] = set()
         for index, gesture in enumerate(self.gestures):
             if gesture.label in labels:
@@ -134,12 +139,14 @@ class Language:
         """CRC-32 of everything that the thresholds depend on, in eight hexadecimal digits."""
         checksum = crc32(RULE.encode())
         for gesture in self.gestures:
-            relevant = (gesture.salient, gesture.switches, gesture.image.any())
-            checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
-            if gesture.trajectory is not None:
-                shown = gesture.trajectory
-                checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
-                checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+            for each in gesture.single_demonstrations():
+                relevant = (each.salient, each.switches, each.image.any())
+                checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
+                if (shown := each.trajectory) is not None:
+                    checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
+                    checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+            if gesture.further:
+                checksum = crc32(repr(len(gesture.further)).encode(), checksum)
         return f"{checksum:08x}"
 
     def calibrated(self) -> Language:
@@ -166,6 +173,19 @@ class Language:
 
         """
         return replace(self, gestures=(*self.gestures, gesture), revision=self.revision + 1)
+
+    def with_changed(self, gesture: Gesture) -> Language:
+        """Return the next revision, with a gesture in the place of the one of the same label.
+
+        Raises
+        ------
+        LanguageError
+            When there is none.
+
+        """
+        former = self.gesture(gesture.label)
+        gestures = [gesture if each is former else each for each in self.gestures]
+        return replace(self, gestures=gestures, revision=self.revision + 1)
 
     def without(self, label: str) -> Language:
         """Return the next revision, without the gesture of that label.

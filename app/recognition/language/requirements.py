@@ -40,12 +40,10 @@ class Requirements:
 
 def find_requirements(language: Language) -> Requirements:
     """Return the requirements of a language."""
-    salient = find_followed_landmarks([gesture.salient for gesture in language.gestures])
+    shown = [each for gesture in language.gestures for each in gesture.single_demonstrations()]
+    salient = find_followed_landmarks([each.salient for each in shown])
     known = {
-        name
-        for gesture in language.gestures
-        if gesture.trajectory is not None
-        for name in gesture.trajectory.landmarks
+        name for each in shown if each.trajectory is not None for name in each.trajectory.landmarks
     }
     torso = (*SHOULDERS, *HIPS)
     ends = {end for limb in list_limbs(salient) for end in limb}
@@ -54,7 +52,7 @@ def find_requirements(language: Language) -> Requirements:
 
 
 def require_landmarks(language: Language, landmarks: Collection[str], source: str) -> None:
-    """Check that a source of poses has the salient landmarks of a language.
+    """Check that a source of poses has the salient landmarks of a demonstration of every gesture.
 
     Parameters
     ----------
@@ -72,6 +70,9 @@ def require_landmarks(language: Language, landmarks: Collection[str], source: st
 
     """
     for gesture in language.gestures:
+        shown = gesture.single_demonstrations()
+        if any(set(each.salient) <= set(landmarks) for each in shown):
+            continue
         for name in gesture.salient:
             if name not in landmarks:
                 raise LandmarkError(

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
 from app.recognition.gestures.switches import Switch
@@ -24,14 +25,16 @@ SCHEMA_ID = f"urn:osg-studio:gesture-language:{VERSION}"
 SCHEMA_FILE = f"gesture-language-{VERSION}.schema.json"
 
 MAX_GESTURES = 1000
-"""Most gestures, which bounds the work; published languages have at most 20 signs."""
+"""Most gestures, and most demonstrations of all gestures together, which bounds the work; published
+languages have at most 20 signs."""
 
 MAX_FILE_BYTES = 64_000_000
-"""1000 gestures of 40 kB, and half as much again for descriptions and commands."""
+"""1000 demonstrations of 40 kB, and half as much again for descriptions and commands."""
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Landmark = Annotated[str, Field(min_length=1)]
 Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
+Diver = Annotated[str, Field(max_length=MAX_DIVER_LENGTH)]
 FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -88,6 +91,33 @@ class RatesEntry(_Model):
         FiniteFloat,
         Field(ge=0, le=1, description="Share of out-of-vocabulary movements that are accepted."),
     ]
+
+
+class DemonstrationEntry(_Model):
+    """A further demonstration of a gesture, with the same keys as the first."""
+
+    salient: Annotated[
+        list[Landmark],
+        Field(
+            min_length=1,
+            description="Landmarks whose motion is the gesture in this demonstration.",
+        ),
+    ]
+    trajectory: TrajectoryEntry
+    image: Annotated[
+        str,
+        Field(
+            max_length=100_000,
+            description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
+        ),
+    ]
+    descriptors: Annotated[
+        dict[str, list[FiniteFloat]],
+        Field(description="Per voter its description of the image."),
+    ]
+    diver: Annotated[
+        Diver, Field(description="Name of the diver who shows it. Left out when not known.")
+    ] = ""
 
 
 class GestureEntry(_Model):
@@ -150,6 +180,17 @@ class GestureEntry(_Model):
             "off: it is not. Left out when auto."
         ),
     ] = "auto"
+    diver: Annotated[
+        Diver,
+        Field(description="Name of the diver of the first demonstration. Left out when not known."),
+    ] = ""
+    demonstrations: Annotated[
+        list[DemonstrationEntry],
+        Field(
+            max_length=MAX_DEMONSTRATIONS - 1,
+            description="The demonstrations beside the first. Left out when there are none.",
+        ),
+    ] = []
 
 
 class TuningEntry(_Model):

@@ -12,7 +12,7 @@ from typing import Final, Protocol
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
 from app.robot.events import SourceLost, SourceRestored
-from app.robot.sources.source import Frame, Notice, Quiet
+from app.robot.sources.source import Frame, NoFrame, Notice
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
 """Seconds before a lost camera is opened again, doubled with every attempt that fails: a loose plug
@@ -29,7 +29,7 @@ SHORTEST_STEP: Final = 1e-6
 """Seconds between two frames, at least: steady clocks of some systems tick only every 16 ms."""
 
 QUIET_SECONDS: Final = 0.5
-"""Without a frame for so long a `Quiet` is given, so that the caller can handle a signal."""
+"""Without a frame for so long a `NoFrame` is given, so that the caller can handle a signal."""
 
 MOST_NOTICES: Final = 64
 """That wait to be taken; the oldest are forgotten first. A camera that flaps must not fill memory
@@ -129,7 +129,7 @@ class LiveSource:
             if self._notices:
                 return self._notices.popleft()
             if self._newest is None:
-                return Quiet(self._now())
+                return NoFrame(self._now())
             frame, self._newest, self._dropped = self._newest, None, 0
             return frame
 

@@ -23,7 +23,7 @@ class Frame:
     image
         ``(height, width, 3)`` RGB, upright, y down.
     dropped
-        Frames that came since the one before and were left out because newer ones had come;
+        Number of frames skipped since the previous one because newer ones had arrived;
         always 0 for a recording.
 
     """
@@ -34,8 +34,8 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class Quiet:
-    """No frame came for a moment; lets the caller do other work.
+class NoFrame:
+    """A pause without frames, given so that the caller can do other work.
 
     Attributes
     ----------
@@ -47,24 +47,24 @@ class Quiet:
     time: float
 
 
-Notice = SourceLost | SourceRestored | SourceWarned | Quiet
-"""What a source may give between two frames; the runtime emits all but `Quiet`."""
+Notice = SourceLost | SourceRestored | SourceWarned | NoFrame
+"""What a source yields besides frames; the runtime emits all of them but `NoFrame`."""
 
 
 class Source(Protocol):
-    """Frames in order, with what happened between them.
+    """A stream of frames in order, with notices between them.
 
-    A recording gives every frame as fast as it is asked for, then ends. A live source gives the
-    newest frame, waits for one where there is none, and never ends by itself.
+    A recording yields every frame as fast as they are requested, then ends. A live source yields
+    the newest frame, waits if there is none, and never ends by itself.
 
     Attributes
     ----------
     name
-        For people, without passwords.
+        Display name, without passwords.
     live
-        Whether frames that nobody asks for in time are dropped.
+        Whether it is a camera or stream; frames not requested in time are then dropped.
     began
-        When the source's clock was 0, in UTC; None for a recording, whose past nobody knows.
+        Time in UTC at which the source's clock was 0; None for a recording.
     frame_size
         Width and height in pixels of the first frame; after a `SourceRestored` another may come.
 
@@ -72,7 +72,7 @@ class Source(Protocol):
 
     @property
     def name(self) -> str:
-        """What it is called towards people."""
+        """Display name, without passwords."""
         ...
 
     @property
@@ -82,7 +82,7 @@ class Source(Protocol):
 
     @property
     def began(self) -> datetime | None:
-        """When its clock was 0, in UTC; None: nobody knows."""
+        """Time in UTC at which its clock was 0; None: unknown."""
         ...
 
     @property
@@ -95,5 +95,5 @@ class Source(Protocol):
         ...
 
     def close(self) -> None:
-        """Release the camera or file; nothing more is given. May be called twice."""
+        """Release the camera or file; iteration ends. May be called twice."""
         ...

@@ -136,6 +136,70 @@ export interface components {
             } | null;
         };
         /**
+         * DemonstrationDraft
+         * @description A further demonstration of a gesture.
+         */
+        DemonstrationDraft: {
+            /** Clip Id */
+            clip_id: string;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+            /**
+             * Keep Transit
+             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @default false
+             */
+            keep_transit: boolean;
+            /**
+             * Diver
+             * @description Name of the diver who shows it; empty: unknown
+             * @default
+             */
+            diver: string;
+            /**
+             * Label
+             * @description The gesture's
+             */
+            label: string;
+            /**
+             * Salient
+             * @description Null: those of the first demonstration, if one of them moves
+             */
+            salient?: string[] | null;
+        };
+        /**
+         * DemonstrationView
+         * @description A demonstration of a gesture.
+         */
+        DemonstrationView: {
+            /**
+             * Index
+             * @description Its place among the gesture's demonstrations, from 0
+             */
+            index: number;
+            /**
+             * Diver
+             * @description Name of the diver who shows it; empty: unknown
+             */
+            diver: string;
+            /** Salient */
+            salient: string[];
+            /**
+             * Seconds
+             * @description How long it lasts; null: only its image is known
+             */
+            seconds: number | null;
+            /**
+             * Thumbnail
+             * @description Path of its trajectory image, a PNG
+             */
+            thumbnail: string;
+            /** @description Its clip; null: not known, or deleted */
+            source?: components["schemas"]["SourceView"] | null;
+        };
+        /**
          * DescriptorView
          * @description How one voter describes the trajectory image.
          */
@@ -280,8 +344,13 @@ export interface components {
         GestureChange: {
             /** Label */
             label?: string | null;
-            /** @description Takes the place of the one that made the gesture */
+            /** @description Takes the place of the first demonstration */
             demonstration?: components["schemas"]["NewDemonstration"] | null;
+            /**
+             * Diver
+             * @description Name of the first demonstration's diver
+             */
+            diver?: string | null;
             /** Direction */
             direction?: ("auto" | "on" | "off") | null;
             /** Tempo */
@@ -334,6 +403,12 @@ export interface components {
              * @default false
              */
             keep_transit: boolean;
+            /**
+             * Diver
+             * @description Name of the diver who shows it; empty: unknown
+             * @default
+             */
+            diver: string;
             /** Label */
             label: string;
             /** Salient */
@@ -408,6 +483,11 @@ export interface components {
             has_trajectory: boolean;
             /** @description The clip of its demonstration; null: not known, or deleted */
             source?: components["schemas"]["SourceView"] | null;
+            /**
+             * Demonstrations
+             * @description All of them; what is said of the gesture itself is the first one's
+             */
+            demonstrations: components["schemas"]["DemonstrationView"][];
         };
         /**
          * GesturesEntry
@@ -766,6 +846,12 @@ export interface components {
              * @default false
              */
             keep_transit: boolean;
+            /**
+             * Diver
+             * @description Name of the diver who shows it; empty: unknown
+             * @default
+             */
+            diver: string;
         };
         /**
          * OpenedWorkspace

@@ -51,6 +51,23 @@ def test_every_edit_of_a_gesture_has_its_words(circle: Gesture, line: Gesture) -
     )
 
 
+def test_demonstrations_that_come_and_go_are_counted(circle: Gesture, line: Gesture) -> None:
+    takes = [recording_of(shape).poses for shape in ("line", "circle backwards")]
+    one = circle.with_demonstration(takes[0], "Ben")
+    both = one.with_demonstration(takes[1], "Ben")
+    assert words(circle, one) == ("1 demonstration added, by “Ben”",)
+    assert words(circle, both) == ("2 demonstrations added, by “Ben”",)
+    assert words(both, one) == ("1 demonstration removed, by “Ben”",)
+    assert words(both, both) == ()
+    assert words(one, one.without_demonstration(0)) == (
+        "diver was empty, is “Ben”",
+        "1 demonstration removed",
+    )
+    assert words(both, both.redraw(simplification=0.2)) == (
+        "drawn anew from the same demonstration",
+    )
+
+
 def test_a_long_text_is_quoted_in_short(circle: Gesture) -> None:
     (told,) = words(circle, replace(circle, description="wide " * 100))
     assert len(told) < 120

@@ -19,7 +19,9 @@ Change = Callable[[Content], object]
 def text() -> str:
     gestures = [
         Gesture.from_demonstration("circle", recording(circle), command="come here"),
-        Gesture.from_demonstration("line", recording(line)),
+        Gesture.from_demonstration("line", recording(line))
+        .with_demonstration(recording(line, jitter=0.01), "Ben")
+        .with_demonstration(recording(line, hand="left_wrist")),
     ]
     return Language("pool", gestures).to_json()
 
@@ -103,6 +105,14 @@ def put_in_trajectory(key: str, value: object) -> Change:
     return lambda content: first(content)["trajectory"].update({key: value})
 
 
+def put_in_demonstration(key: str, value: object) -> Change:
+    return lambda content: content["gestures"][1]["demonstrations"][1].update({key: value})
+
+
+def repeat_demonstrations(content: Content) -> None:
+    content["gestures"][1]["demonstrations"] *= 3
+
+
 def put_in_path(key: str, value: object) -> Change:
     return lambda content: first(content)["trajectory"]["paths"][1].update({key: value})
 
@@ -169,6 +179,47 @@ def put_in_path(key: str, value: object) -> Change:
             "a second path of 'nose'",
         ),
         (put_in_path("y", [1.0]), "/gestures/0/trajectory/paths/1/y", "1 values, but time has 60"),
+        (put_in_gesture("diver", 7), "/gestures/0/diver", "valid string"),
+        (put_in_gesture("diver", "a\nb"), "/gestures/0/diver", "printable"),
+        (put_in_gesture("diver", "x" * 81), "/gestures/0/diver", "at most 80 characters"),
+        (put_in_gesture("demonstrations", {}), "/gestures/0/demonstrations", "valid list"),
+        (repeat_demonstrations, "/gestures/1/demonstrations", "at most 4 items"),
+        (
+            put_in_demonstration("trajectory", None),
+            "/gestures/1/demonstrations/1/trajectory",
+            "valid dictionary",
+        ),
+        (
+            put_in_demonstration("salient", []),
+            "/gestures/1/demonstrations/1/salient",
+            "at least 1 item",
+        ),
+        (
+            put_in_demonstration("salient", ["left_wrist", "tail"]),
+            "/gestures/1/demonstrations/1/salient/1",
+            "has no path",
+        ),
+        (
+            put_in_demonstration("salient", ["nose", "nose"]),
+            "/gestures/1/demonstrations/1/salient",
+            "a landmark occurs twice",
+        ),
+        (put_in_demonstration("image", "!"), "/gestures/1/demonstrations/1/image", "not a PNG"),
+        (
+            put_in_demonstration("descriptors", {"hu": [1.0]}),
+            "/gestures/1/demonstrations/1/descriptors/hu",
+            "1 values, expected 7",
+        ),
+        (
+            put_in_demonstration("diver", "a\nb"),
+            "/gestures/1/demonstrations/1/diver",
+            "printable",
+        ),
+        (
+            put_in_demonstration("label", "line"),
+            "/gestures/1/demonstrations/1/label",
+            "Extra inputs",
+        ),
         (put_in_path("x", [True] * 60), "/gestures/0/trajectory/paths/1/x/0", "valid number"),
     ],
 )

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
 from app.recognition.gestures.gesture import MAX_LANDMARKS
@@ -15,6 +16,7 @@ from app.recognition.language.schema import MAX_GESTURES
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "language.json"
+GOLDEN_OF_DIVERS = GOLDEN.with_name("language-of-two-divers.json")
 KILOBYTES_A_GESTURE = 40
 
 
@@ -53,6 +55,17 @@ def test_every_edit_is_the_next_revision_and_leaves_the_old_one() -> None:
     assert third.created == first.created
     with pytest.raises(LanguageError, match="no gesture 'circle'"):
         third.without("circle")
+
+
+def test_a_changed_gesture_takes_the_place_of_the_old_one() -> None:
+    first = Language("pool", [gesture("circle"), gesture("line")])
+    changed = gesture("circle").with_demonstration(recording(wedge), "Ben")
+    second = first.with_changed(changed)
+    assert second.labels == first.labels
+    assert second.revision == 2
+    assert second.gesture("circle") is changed
+    with pytest.raises(LanguageError, match="no gesture 'square'"):
+        first.with_changed(gesture("square"))
 
 
 def test_a_label_cannot_occur_twice() -> None:
@@ -119,6 +132,57 @@ def test_any_gesture_comes_back_from_the_file_as_it_was(poses: PoseSequence) -> 
         np.testing.assert_array_equal(after.descriptors[name], before.descriptors[name])
 
 
+divers = st.text(st.characters(codec="utf-8", categories=("L", "N")), max_size=8)
+
+
+@given(st.lists(st.tuples(recordings(), divers), min_size=1, max_size=5))
+@settings(max_examples=25, deadline=None)
+def test_all_demonstrations_come_back_from_the_file(takes: list[tuple[PoseSequence, str]]) -> None:
+    (poses, diver), *others = takes
+    before = Gesture.from_demonstration("stroke", poses, diver=diver)
+    for poses, diver in others:
+        before = before.with_demonstration(poses, diver)
+    language = Language("pool", [before])
+    text = language.to_json()
+    again = Language.from_json(text)
+    assert again.to_json() == text
+    assert again.fingerprint == language.fingerprint
+    after = again.gesture("stroke").single_demonstrations()
+    for one, other in zip(after, before.single_demonstrations(), strict=True):
+        assert (one.diver, one.salient) == (other.diver, other.salient)
+        np.testing.assert_array_equal(one.image, other.image)
+        assert one.trajectory is not None
+        assert other.trajectory is not None
+        np.testing.assert_array_equal(one.trajectory.xy, other.trajectory.xy)
+
+
+def test_a_file_without_further_demonstrations_does_not_mention_them() -> None:
+    one = gesture("circle")
+    plain = Language("pool", [one])
+    (entry,) = json.loads(plain.to_json())["gestures"]
+    assert not {"diver", "demonstrations"} & set(entry)
+    two = one.with_demonstration(recording(circle, jitter=0.02)).without_demonstration(1)
+    assert replace(plain, gestures=[two]).to_json() == plain.to_json()
+
+
+def test_five_demonstrations_take_40_kilobytes_each_at_most() -> None:
+    several = gesture("wedge")
+    for seed in range(4):
+        poses = recording(wedge, frames=3000, jitter=0.02, torso=33.3, seed=seed)
+        several = several.with_demonstration(poses, "x" * 80)
+    text = Language("pool", [several]).to_json()
+    assert len(text.encode()) < 5 * KILOBYTES_A_GESTURE * 1000
+
+
+def test_a_language_beyond_its_limit_of_demonstrations_is_refused() -> None:
+    several = gesture("circle")
+    for _ in range(4):
+        several = several.with_demonstration(recording(circle))
+    many = [replace(several, label=f"gesture {number}") for number in range(MAX_GESTURES // 5 + 1)]
+    with pytest.raises(LanguageError, match="1005 demonstrations of all gestures, the limit is"):
+        Language("many", many)
+
+
 def test_landmarks_not_seen_come_back_as_not_seen() -> None:
     poses = recording(circle)
     xy = poses.xy.copy()
@@ -180,6 +244,19 @@ def test_the_golden_file_is_read_and_written_as_it_stands() -> None:
     assert language.labels == ("circle", "sweep")
     assert language.gesture("sweep").salient == ("left_wrist", "right_wrist")
     assert language.gesture("circle").command == {"action": "hold", "seconds": 10}
+
+
+def test_the_golden_file_of_two_divers_is_read_and_written_as_it_stands() -> None:
+    text = GOLDEN_OF_DIVERS.read_text("utf-8")
+    language = Language.load(GOLDEN_OF_DIVERS)
+    assert language.to_json() == text
+    several = language.gesture("circle").single_demonstrations()
+    assert [(each.diver, each.salient) for each in several] == [
+        ("Ana", ("right_wrist",)),
+        ("Ben", ("left_wrist",)),
+        ("", ("right_wrist",)),
+    ]
+    assert language.gesture("line").further == ()
 
 
 def test_the_golden_file_still_recognises() -> None:

@@ -36,6 +36,15 @@ def test_a_source_that_has_what_is_followed_will_do() -> None:
         require_landmarks(language, landmarks, "the source")
 
 
+def test_one_demonstration_that_the_source_can_show_is_enough() -> None:
+    pointed = Gesture.from_demonstration(
+        "pointed", recording(circle, hand="right_index"), salient=["right_index"]
+    )
+    language = Language("pool", [pointed.with_demonstration(recording(circle, hand="left_wrist"))])
+    assert find_requirements(language).salient == ("left_wrist", "right_index")
+    require_landmarks(language, COCO_17, "yolo-pose")
+
+
 def test_a_source_that_lacks_a_landmark_is_refused_with_its_name() -> None:
     pointed = Gesture.from_demonstration(
         "pointed", recording(circle, hand="right_index"), salient=["right_index"]

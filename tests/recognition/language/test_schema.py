@@ -7,7 +7,7 @@ import pytest
 
 from app.recognition import Gesture, Language
 from app.recognition.language.schema import SCHEMA_FILE, generate_schema, load_schema
-from tests.recognition.language.test_language import GOLDEN
+from tests.recognition.language.test_language import GOLDEN, GOLDEN_OF_DIVERS
 from tests.recognition.strategies import circle, recording
 
 SCHEMA = json.loads(load_schema())
@@ -27,7 +27,7 @@ def test_the_schema_is_a_valid_one_of_2020_12() -> None:
 
 def test_files_obey_the_schema() -> None:
     made = Language("pool", [Gesture.from_demonstration("circle", recording(circle))]).to_json()
-    for text in (made, GOLDEN.read_text("utf-8")):
+    for text in (made, GOLDEN.read_text("utf-8"), GOLDEN_OF_DIVERS.read_text("utf-8")):
         jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text))
 
 

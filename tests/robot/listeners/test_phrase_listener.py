@@ -19,7 +19,7 @@ from app.robot import (
     TakeRejected,
 )
 from tests.api.recordings import recording_of
-from tests.robot.languages import heard, language_of, moments_of, spoken
+from tests.robot.languages import language_of, moments_of, run_listener, spoken
 from tests.robot.listeners.test_salute_listener import cut, moved
 
 PHOTO = Phrase(
@@ -39,8 +39,8 @@ def language(grammar: Grammar) -> ActiveLanguage:
 
 
 def phrases(events: list[Event]) -> list[tuple[str, str | None]]:
-    told = [event.phrase for event in events if isinstance(event, PhraseHeard)]
-    return [(each.kind, None if each.mission is None else each.mission.spoken) for each in told]
+    emitted = [event.phrase for event in events if isinstance(event, PhraseHeard)]
+    return [(each.kind, None if each.mission is None else each.mission.spoken) for each in emitted]
 
 
 def quiet(listener: PhraseListener, since: float, until: float) -> list[Event]:
@@ -53,86 +53,88 @@ def quiet(listener: PhraseListener, since: float, until: float) -> list[Event]:
     ]
 
 
-def test_a_message_is_heard_right_after_the_gesture_that_closes_it() -> None:
-    told = heard(PhraseListener(Listener(language(CLOSED))), recording_of("circle", "line"))
-    assert phrases(told) == [("continues", None), ("complete", "mission: photo")]
-    takes = [event for event in told if isinstance(event, TakeRecognized)]
-    last = next(event for event in reversed(told) if isinstance(event, PhraseHeard))
+def test_a_message_is_emitted_right_after_the_gesture_that_closes_it() -> None:
+    emitted = run_listener(
+        PhraseListener(Listener(language(CLOSED))), recording_of("circle", "line")
+    )
+    assert phrases(emitted) == [("continues", None), ("complete", "mission: photo")]
+    takes = [event for event in emitted if isinstance(event, TakeRecognized)]
+    last = next(event for event in reversed(emitted) if isinstance(event, PhraseHeard))
     assert (last.phrase.start, last.phrase.end) == (takes[0].start, takes[1].end)
     assert last.time == takes[1].time
     assert last.confidence == min(take.confidence for take in takes)
-    assert told.index(last) == told.index(takes[1]) + 1
+    assert emitted.index(last) == emitted.index(takes[1]) + 1
 
 
-def test_a_language_without_phrases_is_heard_as_before() -> None:
+def test_a_language_without_phrases_gives_the_same_events() -> None:
     recording = recording_of("circle")
-    told = heard(PhraseListener(Listener(spoken("circle", "line"))), recording)
-    assert [type(event) for event in told] == [
-        type(event) for event in heard(Listener(spoken("circle", "line")), recording)
+    emitted = run_listener(PhraseListener(Listener(spoken("circle", "line"))), recording)
+    assert [type(event) for event in emitted] == [
+        type(event) for event in run_listener(Listener(spoken("circle", "line")), recording)
     ]
-    assert phrases(told) == []
+    assert phrases(emitted) == []
 
 
 def test_a_rejected_take_is_asked_for_again_and_gives_no_command() -> None:
     grammar = replace(CLOSED, end="circle")
     made = ActiveLanguage.from_json(replace(language_of("circle"), grammar=grammar).to_json())
-    told = heard(PhraseListener(Listener(made)), recording_of("circle", "line"))
-    assert any(isinstance(event, TakeRejected) for event in told)
-    assert phrases(told) == [("continues", None), ("repeat", None)]
+    emitted = run_listener(PhraseListener(Listener(made)), recording_of("circle", "line"))
+    assert any(isinstance(event, TakeRejected) for event in emitted)
+    assert phrases(emitted) == [("continues", None), ("repeat", None)]
 
 
 def test_a_pause_ends_a_message_that_needs_no_end() -> None:
     listener = PhraseListener(Listener(language(OPEN)))
     recording = recording_of("circle")
-    assert phrases(heard(listener, recording)) == [("continues", None)]
-    told = quiet(listener, recording.poses.duration + 1, recording.poses.duration + 12)
-    assert phrases(told) == [("complete", "mission: photo")]
+    assert phrases(run_listener(listener, recording)) == [("continues", None)]
+    emitted = quiet(listener, recording.poses.duration + 1, recording.poses.duration + 12)
+    assert phrases(emitted) == [("complete", "mission: photo")]
 
 
 def test_a_pause_is_not_too_long_while_a_take_goes_on() -> None:
     listener = PhraseListener(Listener(language(replace(CLOSED, timeout=3))))
     recording = recording_of("circle", "line")
-    assert phrases(heard(listener, recording)) == [
+    assert phrases(run_listener(listener, recording)) == [
         ("continues", None),
         ("complete", "mission: photo"),
     ]
 
 
-def test_a_gesture_told_late_still_belongs_to_the_message() -> None:
+def test_a_gesture_emitted_late_still_belongs_to_the_message() -> None:
     prompt, late = (PhraseListener(Listener(language(OPEN)), lag) for lag in (0.0, 20.0))
     recording = recording_of("circle")
     for listener, kinds in ((prompt, ["complete"]), (late, [])):
-        heard(listener, recording)
-        told = quiet(listener, recording.poses.duration + 1, recording.poses.duration + 12)
-        assert [kind for kind, _ in phrases(told)] == kinds
+        run_listener(listener, recording)
+        emitted = quiet(listener, recording.poses.duration + 1, recording.poses.duration + 12)
+        assert [kind for kind, _ in phrases(emitted)] == kinds
 
 
 @pytest.mark.parametrize("how", ["abandon", "finish", "speak"])
 def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> None:
     listener = PhraseListener(Listener(language(OPEN)))
     recording = recording_of("circle")
-    heard(listener, recording)
+    run_listener(listener, recording)
     now = recording.poses.duration + 0.5
-    told: list[Event] = []
+    emitted: list[Event] = []
     if how == "abandon":
-        told += listener.abandon(now, "the source was lost")
+        emitted += listener.abandon(now, "the source was lost")
     elif how == "finish":
-        told += listener.finish()
+        emitted += listener.finish()
     else:
         listener.set_language(language(CLOSED))
-    told += quiet(listener, now + 1, now + 12)
-    assert phrases(told) == [("cancelled", None)]
+    emitted += quiet(listener, now + 1, now + 12)
+    assert phrases(emitted) == [("cancelled", None)]
 
 
 def test_a_stream_that_begins_anew_cancels_a_message() -> None:
     listener = PhraseListener(Listener(language(CLOSED)))
-    heard(listener, recording_of("circle"))
-    told = heard(listener, recording_of("line"))
-    assert phrases(told) == [("cancelled", None), ("outside", None)]
+    run_listener(listener, recording_of("circle"))
+    emitted = run_listener(listener, recording_of("line"))
+    assert phrases(emitted) == [("cancelled", None), ("outside", None)]
 
 
 def test_the_state_and_the_language_are_those_of_the_listener_inside() -> None:
     listener = PhraseListener(Listener(language(OPEN)))
-    heard(listener, cut(recording_of("circle"), 1.5))
+    run_listener(listener, cut(recording_of("circle"), 1.5))
     assert listener.state is TakeState.recording
     assert listener.language.name == "pool"

@@ -1,4 +1,4 @@
-"""Without salutes, what is heard frame by frame is what the spotter finds in the recording."""
+"""Spotting listener: frame by frame it emits what the spotter finds in the recording."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from app.recognition.spotting import Spotter
 from app.robot import Event, LanguageChanged, SpottingListener, StateChanged, TakeRecognized
 from tests.api.recordings import recording_of
-from tests.robot.languages import heard, moments_of, spoken
+from tests.robot.languages import moments_of, run_listener, spoken
 
 
-def said_in(events: Sequence[Event]) -> list[tuple[str, float, float, int]]:
+def recognitions_in(events: Sequence[Event]) -> list[tuple[str, float, float, int]]:
     return [
         (event.label, event.start, event.end, event.revision)
         for event in events
@@ -22,14 +22,14 @@ def test_gestures_are_told_as_the_spotter_finds_them() -> None:
     language = spoken("circle", "line")
     recording = recording_of("circle", "line")
     listener = SpottingListener(language)
-    told = [*heard(listener, recording), *listener.finish()]
+    emitted = [*run_listener(listener, recording), *listener.finish()]
     found = Spotter(language.recognizer).listen(recording.poses)
     assert found
-    assert said_in(told) == [
+    assert recognitions_in(emitted) == [
         (each.recognition.label, each.start, each.end, language.revision) for each in found
     ]
-    assert isinstance(told[0], StateChanged)
-    assert not any(isinstance(event, LanguageChanged) for event in told)
+    assert isinstance(emitted[0], StateChanged)
+    assert not any(isinstance(event, LanguageChanged) for event in emitted)
 
 
 def test_a_gesture_that_goes_on_is_heard_in_the_next_language() -> None:
@@ -37,21 +37,26 @@ def test_a_gesture_that_goes_on_is_heard_in_the_next_language() -> None:
     (circle, *_) = Spotter(spoken("circle", "line").recognizer).listen(recording.poses)
     assert circle.recognition.label == "circle"
     listener = SpottingListener(spoken("line"))
-    told: list[Event] = []
+    emitted: list[Event] = []
     halfway = (circle.start + circle.end) / 2
     for moment, salute in moments_of(recording):
         if moment.time[0] > halfway and listener.language.revision == 1:
             listener.set_language(spoken("circle", "line", revision=2))
-        told += listener.feed(moment, salute)
-    assert said_in([*told, *listener.finish()])[0] == ("circle", circle.start, circle.end, 2)
+        emitted += listener.feed(moment, salute)
+    assert recognitions_in([*emitted, *listener.finish()])[0] == (
+        "circle",
+        circle.start,
+        circle.end,
+        2,
+    )
 
 
 def test_a_gesture_of_the_past_does_not_come_out_in_the_next_language() -> None:
     recording = recording_of("circle")
     listener = SpottingListener(spoken("line"))
-    heard(listener, recording)
+    run_listener(listener, recording)
     listener.set_language(spoken("circle", "line", revision=2))
-    assert said_in(list(listener.finish())) == []
+    assert recognitions_in(list(listener.finish())) == []
 
 
 def test_what_is_abandoned_is_forgotten() -> None:

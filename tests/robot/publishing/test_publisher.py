@@ -1,4 +1,4 @@
-"""Publishing: the fields are those of ROS 2's definitions, and bad settings are told in a line."""
+"""Publishing: the fields are those of ROS 2's definitions, and bad settings are one-line errors."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ import pytest
 
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
-from app.robot import Frame, Notice, Quiet, SourceLost, SourceRestored
+from app.robot import Frame, NoFrame, Notice, SourceLost, SourceRestored
 from app.robot.sources.cameras import SILENT_SECONDS, NetworkStream
 from app.robot.sources.live import LiveSource
 from app.robot.sources.registry import open_source
@@ -125,8 +125,8 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
         lost = next(each for each in given if isinstance(each, SourceLost))
         meanwhile = list(islice(given, 2))  # several attempts fail in this time
         with MjpegServer(server.port, brightness=200):
-            restored, frame = islice((each for each in given if not isinstance(each, Quiet)), 2)
-    assert all(isinstance(each, Quiet) for each in meanwhile)
+            restored, frame = islice((each for each in given if not isinstance(each, NoFrame)), 2)
+    assert all(isinstance(each, NoFrame) for each in meanwhile)
     assert isinstance(restored, SourceRestored)
     assert isinstance(frame, Frame)
     assert before.time < lost.time < restored.time <= frame.time
@@ -138,8 +138,8 @@ def test_a_stream_that_breaks_is_told_once_and_opened_again() -> None:
 @pytest.mark.slow
 def test_a_stream_that_falls_silent_counts_as_lost_and_is_opened_again() -> None:
     with MjpegServer(pictures=20) as server, closing(quick_to_return(server.address)) as source:
-        told = (each for each in source if isinstance(each, SourceLost | SourceRestored))
-        lost, restored = islice(told, 2)
+        notices = (each for each in source if isinstance(each, SourceLost | SourceRestored))
+        lost, restored = islice(notices, 2)
     assert isinstance(lost, SourceLost)
     assert f"no frame for {SILENT_SECONDS:g} s" in lost.reason
     assert isinstance(restored, SourceRestored)

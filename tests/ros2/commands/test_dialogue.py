@@ -137,7 +137,7 @@ def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "error"),
     [
         ({"confirm_seconds": 0.0}, "confirm_seconds is 0.0"),
         ({"stale_seconds": math.nan}, "stale_seconds is nan"),
@@ -145,8 +145,8 @@ def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
         ({"cancel": frozenset({"line"}), "emergency": frozenset({"line"})}, "'line'"),
     ],
 )
-def test_rules_that_contradict_themselves_are_refused(wrong: dict[str, object], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_rules_that_contradict_themselves_are_refused(wrong: dict[str, object], error: str) -> None:
+    with pytest.raises(ValueError, match=error):
         Rules(**wrong)  # type: ignore[arg-type]
 
 
@@ -157,19 +157,21 @@ gestures = st.builds(
     stamp=st.integers(0, 60).map(float),
     language_id=st.sampled_from(["language", "language", "language", "older"]),
 )
-heard = st.lists(st.tuples(gestures, st.sampled_from([-2.0, 0.0, 0.5, 2.0])), max_size=30)
+arrivals = st.lists(st.tuples(gestures, st.sampled_from([-2.0, 0.0, 0.5, 2.0])), max_size=30)
 
 
-def told(made: CommandDialogue, heard: list[tuple[RecognizedGesture, float]]) -> list[Decision]:
-    """Return what a dialogue decides about gestures heard some seconds after their stamp."""
-    return [made.decide(gesture, gesture.stamp + late) for gesture, late in heard]
+def decide_all(
+    made: CommandDialogue, arrivals: list[tuple[RecognizedGesture, float]]
+) -> list[Decision]:
+    """Return the decisions on gestures that arrive some seconds after their stamp."""
+    return [made.decide(gesture, gesture.stamp + late) for gesture, late in arrivals]
 
 
-@given(heard)
+@given(arrivals)
 def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
-    heard: list[tuple[RecognizedGesture, float]],
+    arrivals: list[tuple[RecognizedGesture, float]],
 ) -> None:
-    for (gesture, late), decision in zip(heard, told(dialogue(), heard), strict=True):
+    for (gesture, late), decision in zip(arrivals, decide_all(dialogue(), arrivals), strict=True):
         if decision.command is not None:
             assert gesture.label is not None
             assert gesture.confidence >= RULES.least_confidence
@@ -178,12 +180,12 @@ def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
             assert decision.command == TABLE.commands[gesture.label]
 
 
-@given(heard)
+@given(arrivals)
 def test_every_command_but_an_emergency_was_shown_twice_in_time(
-    heard: list[tuple[RecognizedGesture, float]],
+    arrivals: list[tuple[RecognizedGesture, float]],
 ) -> None:
     made, asked = dialogue(), {}
-    for gesture, late in heard:
+    for gesture, late in arrivals:
         before = made.pending
         decision = made.decide(gesture, gesture.stamp + late)
         if made.pending is not None and made.pending is not before:
@@ -195,16 +197,18 @@ def test_every_command_but_an_emergency_was_shown_twice_in_time(
             assert made.pending is None
 
 
-@given(heard)
+@given(arrivals)
 def test_a_pair_of_showings_gives_one_command_at_most(
-    heard: list[tuple[RecognizedGesture, float]],
+    arrivals: list[tuple[RecognizedGesture, float]],
 ) -> None:
-    decisions = told(dialogue(), heard)
+    decisions = decide_all(dialogue(), arrivals)
     confirmed = [each for each in decisions if each.command and not each.emergency]
-    assert 2 * len(confirmed) <= sum(gesture.label is not None for gesture, _ in heard)
+    assert 2 * len(confirmed) <= sum(gesture.label is not None for gesture, _ in arrivals)
 
 
-@given(heard)
-def test_only_emergencies_are_told_as_such(heard: list[tuple[RecognizedGesture, float]]) -> None:
-    for decision in told(dialogue(), heard):
+@given(arrivals)
+def test_only_emergencies_are_marked_as_such(
+    arrivals: list[tuple[RecognizedGesture, float]],
+) -> None:
+    for decision in decide_all(dialogue(), arrivals):
         assert decision.emergency == (decision.command is not None and decision.label == "line")

@@ -68,7 +68,7 @@ class Bench:
         assert node.trigger_activate() == TransitionCallbackReturn.SUCCESS
         return node
 
-    def heard(self, kind: Any, topic: str, profile: QoSProfile = RELIABLE) -> list[Any]:
+    def subscribe(self, kind: Any, topic: str, profile: QoSProfile = RELIABLE) -> list[Any]:
         """Return the list that the messages of a topic go to from now on."""
         messages: list[Any] = []
         self.probe.create_subscription(kind, topic, messages.append, profile)

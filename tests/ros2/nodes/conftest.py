@@ -25,7 +25,7 @@ else:
 LANGUAGE = Path(__file__).resolve().parents[3] / "languages" / "osg-table-1.json"
 
 LAST_DOMAIN = 101
-"""Domains whose ports lie below those that Linux gives to whoever asks (ROS 2's documentation)."""
+"""Domains whose ports lie below those that Linux gives to any program (ROS 2's documentation)."""
 
 
 @pytest.fixture

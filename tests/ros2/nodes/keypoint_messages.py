@@ -22,7 +22,7 @@ def stamped(seconds: float) -> int:
 
 
 def messages_of(recording: Recording) -> Iterator[tuple[BodyKeypoints, Hands]]:
-    """Yield what is said about every picture; a hand that is not there salutes."""
+    """Yield the messages of every picture; a hand that is not there salutes."""
     poses = recording.poses
     assert poses.confidence is not None
     frames = zip(

@@ -27,8 +27,8 @@ class Robot:
 
     def __init__(self, bench: Bench, **rules: Any) -> None:
         self.bench = bench
-        self.commands = bench.heard(Command, "command")
-        self.states = bench.heard(CommandState, "command_state", LATCHED)
+        self.commands = bench.subscribe(Command, "command")
+        self.states = bench.subscribe(CommandState, "command_state", LATCHED)
         self._languages = bench.probe.create_publisher(LanguageMessage, "language", LATCHED)
         self._languages.publish(
             LanguageMessage(
@@ -102,7 +102,7 @@ def test_nothing_comes_of_what_is_rejected_stale_foreign_or_unsure(
 ) -> None:
     robot = Robot(bench, emergency=["line"], least_confidence=0.5)
     robot.show("line", **other)
-    # Whatever was said about the first would come before what is said about the second.
+    # A report on the first would come before the report on the second.
     robot.show("circle")
     robot.show("circle")
     bench.wait(lambda: bool(robot.commands), "command")
@@ -120,8 +120,8 @@ def test_a_gesture_can_take_it_back(bench: Bench) -> None:
 def test_what_is_not_repeated_is_given_up_aloud(bench: Bench) -> None:
     robot = Robot(bench, confirm_seconds=1.0, stale_seconds=4.0)
     robot.show("circle")
-    told = len(robot.states)
-    bench.wait(lambda: len(robot.states) > told, "end of the wait")
+    count = len(robot.states)
+    bench.wait(lambda: len(robot.states) > count, "end of the wait")
     assert robot.states[-1].state == CommandState.WAITING
     assert robot.states[-1].reason == "'circle' was not repeated in time; show it twice"
 

@@ -67,7 +67,7 @@ def test_a_lifecycle_manager_does_it_by_service_in_the_nodes_namespace(
 
 
 @pytest.mark.parametrize(
-    ("kind", "wrong", "said"),
+    ("kind", "wrong", "expected"),
     [
         (RecognitionNode, {}, "parameter language is empty"),
         (RecognitionNode, {"language": "nowhere.json"}, "nowhere.json"),
@@ -79,21 +79,21 @@ def test_a_lifecycle_manager_does_it_by_service_in_the_nodes_namespace(
     ],
 )
 def test_a_node_that_cannot_be_configured_stays_so_and_says_why(
-    bench: Bench, kind: type[ManagedNode], wrong: dict[str, Any], said: str
+    bench: Bench, kind: type[ManagedNode], wrong: dict[str, Any], expected: str
 ) -> None:
-    reports = bench.heard(DiagnosticArray, "/diagnostics")
+    reports = bench.subscribe(DiagnosticArray, "/diagnostics")
     node = bench.add(kind, diagnostic_period=0.1, **wrong)
     bench.wait(lambda: bool(reports), "diagnostics")
     assert node.trigger_configure() == FAILURE
     assert state_of(node) == State.PRIMARY_STATE_UNCONFIGURED
     bench.wait(lambda: reports[-1].status[0].level == DiagnosticStatus.ERROR, "an error")
-    told = next(
+    message = next(
         report.status[0].message
         for report in reports
         if report.status[0].level == DiagnosticStatus.ERROR
     )
-    assert said in told
-    assert "\n" not in told
+    assert expected in message
+    assert "\n" not in message
 
 
 def test_what_was_refused_can_be_corrected(bench: Bench, language_file: Path) -> None:
@@ -106,7 +106,7 @@ def test_what_was_refused_can_be_corrected(bench: Bench, language_file: Path) ->
 
 
 def test_a_node_that_is_stopped_is_told_to_be_inactive(bench: Bench, language_file: Path) -> None:
-    states = bench.heard(RecognizerState, "state", LATCHED)
+    states = bench.subscribe(RecognizerState, "state", LATCHED)
     node = bench.active(RecognitionNode, language=str(language_file))
     bench.wait(lambda: len(states) == 1, "state")
     assert node.trigger_deactivate() == SUCCESS

@@ -57,8 +57,8 @@ def test_a_gesture_without_salutes_is_heard_by_yolo_pose(
         "qos_overrides./image.subscription.reliability": "reliable",
     }
     node = bench.active(GestureNode, language=two_signs, **parameters)
-    said = bench.heard(GestureRecognition, "recognition")
-    seen = bench.heard(Hands, "hands", BEST_EFFORT)
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
+    seen = bench.subscribe(Hands, "hands", BEST_EFFORT)
     pictures = bench.speaker(Image, "image")
     with read_frames(marker_clip(tmp_path / "line.mkv", line)) as frames:
         for count, frame in enumerate(frames, 1):
@@ -68,10 +68,10 @@ def test_a_gesture_without_salutes_is_heard_by_yolo_pose(
             bench.wait(lambda count=count: node.health.inputs == count, "picture")  # type: ignore[misc]
             last = frame.time
     bench.wait(lambda: bool(seen), "hands")
-    # What is awaited when the pictures end is told then.
+    # Results that are pending when the pictures end are published then.
     assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
-    bench.wait(lambda: bool(said), "recognition")
-    (take,) = said
+    bench.wait(lambda: bool(recognitions), "recognition")
+    (take,) = recognitions
     assert (take.label, take.rejected) == ("line", False)
     assert stamped(0) <= to_nanoseconds(take.start) < to_nanoseconds(take.end) <= stamped(last)
     assert not any(hands.hands for hands in seen)

@@ -43,9 +43,9 @@ class Robot:
         path = folder / "phrases.json"
         replace(language_of("circle", "line"), grammar=grammar).save(path)
         self._bench = bench
-        self.phrases = bench.heard(Phrase, "phrase")
-        self.commands = bench.heard(Command, "command")
-        self.states = bench.heard(CommandState, "command_state", LATCHED)
+        self.phrases = bench.subscribe(Phrase, "phrase")
+        self.commands = bench.subscribe(Command, "command")
+        self.states = bench.subscribe(CommandState, "command_state", LATCHED)
         # Played faster than it was shown: the recording's clock says what is late.
         self._node = bench.active(CommandNode, use_sim_time=True, stale_seconds=60.0, **rules)
         self._recogniser = bench.active(RecognitionNode, language=str(path))
@@ -63,13 +63,13 @@ class Robot:
     def see(self, pictures: Iterable[tuple[BodyKeypoints, Hands]]) -> None:
         """See bodies and hands one by one, as they are stamped."""
         for body, hands in pictures:
-            now, heard = to_nanoseconds(body.header.stamp), self._recogniser.health.inputs
+            now, inputs = to_nanoseconds(body.header.stamp), self._recogniser.health.inputs
             self._clock.publish(Clock(clock=to_stamp(now)))
             self._bench.wait(lambda now=now: self._now() == now, "time")  # type: ignore[misc]
             self._bodies.publish(body)
             self._hands.publish(hands)
             self._bench.wait(
-                lambda heard=heard: self._recogniser.health.inputs > heard,  # type: ignore[misc]
+                lambda inputs=inputs: self._recogniser.health.inputs > inputs,  # type: ignore[misc]
                 "picture seen",
             )
 
@@ -84,10 +84,10 @@ class Robot:
 
 def test_a_message_that_is_shown_twice_gives_one_command(bench: Bench, tmp_path: Path) -> None:
     robot = Robot(bench, tmp_path, CLOSED, confirm_seconds=60.0)
-    said = bench.heard(GestureRecognition, "recognition")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     recording = recording_of("circle", "line", "circle", "line")
     robot.show(recording)
-    bench.wait(lambda: len(said) == len(robot.phrases) == 4, "phrases")
+    bench.wait(lambda: len(recognitions) == len(robot.phrases) == 4, "phrases")
     bench.wait(lambda: bool(robot.commands), "command")
     assert [phrase.kind for phrase in robot.phrases] == [Phrase.CONTINUES, Phrase.COMPLETE] * 2
     first, last = robot.phrases[:2]
@@ -100,7 +100,7 @@ def test_a_message_that_is_shown_twice_gives_one_command(bench: Bench, tmp_path:
     assert to_nanoseconds(last.start) == stamped(takes[0].start)
     assert to_nanoseconds(last.end) == stamped(takes[1].end)
     assert (last.body_id, last.header.frame_id, last.text) == ("diver", "camera", SPOKEN)
-    assert last.confidence == min(each.confidence for each in said[:2])
+    assert last.confidence == min(each.confidence for each in recognitions[:2])
     (asked,) = {each.label: each for each in robot.states if each.state == each.CONFIRMING}.values()
     assert asked.label == SPOKEN
     # The gestures alone have commands in this language, and gave none.

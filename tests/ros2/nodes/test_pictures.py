@@ -59,7 +59,7 @@ def test_compressed_pictures_are_decoded_one_after_the_other(ending: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("message", "said"),
+    ("message", "error"),
     [
         (Image(height=2, width=2, encoding="32FC1", step=8, data=bytes(16)), "'32FC1'"),
         (Image(height=600, width=800, encoding="rgb8", step=2400, data=bytes(10)), "10 bytes"),
@@ -69,7 +69,7 @@ def test_compressed_pictures_are_decoded_one_after_the_other(ending: str) -> Non
     ],
 )
 def test_what_is_no_picture_is_refused_in_words(
-    message: Image | CompressedImage, said: str
+    message: Image | CompressedImage, error: str
 ) -> None:
-    with pytest.raises(OsgError, match=said):
+    with pytest.raises(OsgError, match=error):
         PictureDecoder().decode(message)

@@ -75,11 +75,11 @@ def clip(sample_clips: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def recognised(clip: Path, language_file: Path) -> list[dict[str, Any]]:
-    """Return the takes that `osg-studio recognize --json` tells of the clip."""
+    """Return the takes that `osg-studio recognize --json` prints for the clip."""
     asked = ["recognize", str(clip), "--language", str(language_file), "--json"]
     command = [sys.executable, "-m", "app", *asked]
-    said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=workspace.ROOT)
-    takes: list[dict[str, Any]] = json.loads(said.stdout)["takes"]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True, cwd=workspace.ROOT)
+    takes: list[dict[str, Any]] = json.loads(ran.stdout)["takes"]
     return takes
 
 
@@ -114,17 +114,17 @@ def test_label_by_label_and_stamp_by_stamp(
 ) -> None:
     parameters = tmp_path / "parameters.yaml"
     parameters.write_text(PARAMETERS.format(language=language_file), encoding="utf-8")
-    seen = bench.heard(Hands, "hands")
-    said = bench.heard(GestureRecognition, "recognition")
+    seen = bench.subscribe(Hands, "hands")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     pictures = bench.probe.create_publisher(Image, "image", RELIABLE)
     with ExitStack() as running:
         for executable in executables:
             running.enter_context(process(executable, workspace.environment(domain), parameters))
         warm_up(bench, pictures)
         play(bench, clip, pictures, seen)
-        bench.wait(lambda: bool(said), "recognition")
-    assert len(said) == len(recognised) == 1
-    for message, take in zip(said, recognised, strict=True):
+        bench.wait(lambda: bool(recognitions), "recognition")
+    assert len(recognitions) == len(recognised) == 1
+    for message, take in zip(recognitions, recognised, strict=True):
         assert message.label == take["label"] == "circle"
         assert message.nearest == take["nearest"]
         assert message.confidence == pytest.approx(take["confidence"], abs=1e-6)
@@ -136,8 +136,8 @@ def test_label_by_label_and_stamp_by_stamp(
 def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
     bench: Bench, domain: int, clip: Path, language_file: Path, recognised: list[dict[str, Any]]
 ) -> None:
-    said = bench.heard(GestureRecognition, "/auv/gestures")
-    seen = bench.heard(Hands, "/auv/hands", BEST_EFFORT)
+    recognitions = bench.subscribe(GestureRecognition, "/auv/gestures")
+    seen = bench.subscribe(Hands, "/auv/hands", BEST_EFFORT)
     (command,) = documented("robot", "--ros2", page="robots/ros2-nodes.md")
     given = {"pool.json": str(language_file), "0": str(clip)}
     asked = [given.get(argument, argument) for argument in command]
@@ -149,12 +149,12 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
             text=True,
         )
         bench.wait(lambda: running.poll() is not None, "end of the robot")  # noqa: B023
-        if bench.comes(lambda: bool(said), ARRIVAL):
+        if bench.comes(lambda: bool(recognitions), ARRIVAL):
             break
     written = [json.loads(line) for line in running.communicate()[0].splitlines()]
     assert running.returncode == 0
     (line,) = [line for line in written if line["event"] == "take_recognized"]
-    (message,), (take,) = said, recognised
+    (message,), (take,) = recognitions, recognised
     assert message.label == line["label"] == take["label"]
     assert message.confidence == pytest.approx(take["confidence"], abs=1e-9)
     duration = to_nanoseconds(message.end) - to_nanoseconds(message.start)
@@ -163,11 +163,11 @@ def test_the_robot_command_tells_ros_what_it_writes_under_the_names_asked_for(
 
 
 def warm_up(bench: Bench, pictures: Any) -> None:
-    """Send black pictures of an hour ago until the last of the nodes has heard of one.
+    """Send black pictures of an hour ago until the last of the nodes has received one.
 
     Processes find each other one by one, and what is sent before is lost.
     """
-    reports = bench.heard(DiagnosticArray, "/diagnostics")
+    reports = bench.subscribe(DiagnosticArray, "/diagnostics")
     black = np.zeros((240, 320, 3), dtype=np.uint8)
     for number in itertools.count():
         message = to_image_message(black)

@@ -54,31 +54,31 @@ def recogniser(bench: Bench, two_signs: Path) -> RecognitionNode:
 
 
 def play(bench: Bench, recording: Recording) -> None:
-    """Send a recording, each picture's body and hands, and wait until all was heard."""
+    """Send a recording, each picture's body and hands, and wait until all was received."""
     bodies = bench.speaker(BodyKeypoints, "body_keypoints")
     hands = bench.speaker(Hands, "hands")
     before = bench.nodes[-1].health.inputs
     for sent, (body, seen) in enumerate(messages_of(recording), 1):
         bodies.publish(body)
         hands.publish(seen)
-        heard(bench, bench.nodes[-1], before + sent)
+        wait_for_inputs(bench, bench.nodes[-1], before + sent)
 
 
-def heard(bench: Bench, node: ManagedNode, messages: int) -> None:
+def wait_for_inputs(bench: Bench, node: ManagedNode, messages: int) -> None:
     """Wait until a node has worked on so many messages."""
-    bench.wait(lambda: node.health.inputs == messages, f"{messages} messages heard")
+    bench.wait(lambda: node.health.inputs == messages, f"{messages} messages received")
 
 
 def test_takes_are_those_of_the_recording_label_by_label_and_stamp_by_stamp(
     bench: Bench, recogniser: RecognitionNode, two_signs: Path
 ) -> None:
     recording = recording_of("circle", "line", "circle")
-    said = bench.heard(GestureRecognition, "recognition")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     play(bench, recording)
-    bench.wait(lambda: len(said) == 3, "three recognitions")
+    bench.wait(lambda: len(recognitions) == 3, "three recognitions")
     language = Language.load(two_signs)
     recognizer = Recognizer(language)
-    for message, take in zip(said, takes_in(recording), strict=True):
+    for message, take in zip(recognitions, takes_in(recording), strict=True):
         answer = recognizer.recognize(take.poses)
         assert (message.label, message.nearest) == (answer.label, answer.nearest)
         assert message.confidence == pytest.approx(answer.confidence, abs=1e-9)
@@ -90,14 +90,14 @@ def test_takes_are_those_of_the_recording_label_by_label_and_stamp_by_stamp(
         assert json.loads(message.report)["votes"] == answer.votes
         assert message.language_revision == language.revision
         assert len(message.language_id) == 64
-    assert [message.label for message in said] == ["circle", "line", "circle"]
+    assert [message.label for message in recognitions] == ["circle", "line", "circle"]
 
 
 def test_labels_are_sent_as_the_published_port_and_vision_msgs_have_them(
     bench: Bench, recogniser: RecognitionNode
 ) -> None:
-    labels = bench.heard(String, "recognized_gesture")
-    classes = bench.heard(Classification, "classification")
+    labels = bench.subscribe(String, "recognized_gesture")
+    classes = bench.subscribe(Classification, "classification")
     play(bench, recording_of("line"))
     bench.wait(lambda: bool(labels and classes), "label and class")
     assert [label.data for label in labels] == ["line"]
@@ -111,20 +111,20 @@ def test_a_rejected_take_says_why_and_reaches_nobody_who_reads_labels(
     path = tmp_path / "one-sign.json"
     language_of("line").save(path)
     bench.active(RecognitionNode, language=str(path))
-    said = bench.heard(GestureRecognition, "recognition")
-    labels = bench.heard(String, "recognized_gesture")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
+    labels = bench.subscribe(String, "recognized_gesture")
     play(bench, recording_of("circle", "line"))
-    bench.wait(lambda: len(said) == 2 and bool(labels), "both takes")
-    assert said[0].rejected
-    assert (said[0].label, said[0].nearest) == ("", "line")
-    assert "no gesture of 'two signs'" in said[0].reason
+    bench.wait(lambda: len(recognitions) == 2 and bool(labels), "both takes")
+    assert recognitions[0].rejected
+    assert (recognitions[0].label, recognitions[0].nearest) == ("", "line")
+    assert "no gesture of 'two signs'" in recognitions[0].reason
     assert [label.data for label in labels] == ["line"]
 
 
 def test_states_are_told_with_the_stamp_of_the_picture_that_changed_them(
     bench: Bench, recogniser: RecognitionNode
 ) -> None:
-    states = bench.heard(RecognizerState, "state", LATCHED)
+    states = bench.subscribe(RecognizerState, "state", LATCHED)
     bench.wait(lambda: bool(states), "state of before")
     recording = recording_of("circle")
     play(bench, recording)
@@ -141,14 +141,14 @@ def test_states_are_told_with_the_stamp_of_the_picture_that_changed_them(
 def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
     bench: Bench, recogniser: RecognitionNode
 ) -> None:
-    said = bench.heard(GestureRecognition, "recognition")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     whole = recording_of("circle")
     play(bench, cut(whole, 40))
     play(bench, whole)
-    bench.wait(lambda: len(said) == 2, "both takes")
-    assert said[0].rejected
-    assert "time went back" in said[0].reason
-    assert said[1].label == "circle"
+    bench.wait(lambda: len(recognitions) == 2, "both takes")
+    assert recognitions[0].rejected
+    assert "time went back" in recognitions[0].reason
+    assert recognitions[1].label == "circle"
 
 
 def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> None:
@@ -166,7 +166,7 @@ def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> No
     clock = bench.speaker(Clock, "/clock")
     bodies = bench.speaker(PoseKeypointsArray, "pose_keypoints")
     salutes = bench.speaker(Bool, "vulcan_salute_detected")
-    said = bench.heard(GestureRecognition, "recognition")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     frames = zip(recording.poses.time.tolist(), recording.poses.xy, recording.salute, strict=True)
     for sent, (seconds, xy, salute) in enumerate(frames):
         now = stamped(seconds)
@@ -174,12 +174,12 @@ def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> No
         bench.wait(lambda now=now: node.get_clock().now().nanoseconds == now, "time")  # type: ignore[misc]
         body = Body(xy, np.ones(len(xy)), 1.0)
         bodies.publish(to_published_keypoints(PoseKeypointsArray, PoseKeypoints, size, body))
-        heard(bench, node, 2 * sent + 1)
+        wait_for_inputs(bench, node, 2 * sent + 1)
         salutes.publish(Bool(data=bool(salute > 0.5)))
-        heard(bench, node, 2 * sent + 2)
-    bench.wait(lambda: bool(said), "recognition")
-    assert said[0].label == "line"
-    assert to_nanoseconds(said[0].start) == stamped(takes_in(recording)[0].start)
+        wait_for_inputs(bench, node, 2 * sent + 2)
+    bench.wait(lambda: bool(recognitions), "recognition")
+    assert recognitions[0].label == "line"
+    assert to_nanoseconds(recognitions[0].start) == stamped(takes_in(recording)[0].start)
 
 
 def test_another_language_is_spoken_without_missing_a_picture(
@@ -187,7 +187,7 @@ def test_another_language_is_spoken_without_missing_a_picture(
 ) -> None:
     path = tmp_path / "one-sign.json"
     Language("one sign", language_of("line").gestures).save(path)
-    languages = bench.heard(ActiveLanguage, "language", LATCHED)
+    languages = bench.subscribe(ActiveLanguage, "language", LATCHED)
     bench.wait(lambda: bool(languages), "language")
     response = bench.ask(ReloadLanguage, "reload_language", ReloadLanguage.Request(path=str(path)))
     assert response.success
@@ -195,10 +195,10 @@ def test_another_language_is_spoken_without_missing_a_picture(
     bench.wait(lambda: len(languages) == 2, "second language")
     assert languages[1].language_id == response.language_id != languages[0].language_id
     assert list(languages[1].labels) == list(languages[1].commands) == ["line"]
-    said = bench.heard(GestureRecognition, "recognition")
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
     play(bench, recording_of("line"))
-    bench.wait(lambda: bool(said), "recognition")
-    assert said[0].language_name == "one sign"
+    bench.wait(lambda: bool(recognitions), "recognition")
+    assert recognitions[0].language_name == "one sign"
 
 
 def test_a_language_that_is_refused_leaves_the_old_one(

@@ -1,4 +1,4 @@
-"""What a robot without ROS 2 publishes is heard by the real rclpy in another process."""
+"""Subscribers with the real rclpy receive what a robot without ROS 2 publishes."""
 
 from __future__ import annotations
 
@@ -16,22 +16,24 @@ from std_msgs.msg import String
 from app.robot import PhraseHeard, TakeRecognized, TakeRejected
 from app.robot.messages import MESSAGES, format_line
 from osg_ros.topics.stamps import to_nanoseconds
-from tests.robot.publishing_robot import told
+from tests.robot.publishing_robot import list_round_events
 from tests.ros2 import workspace
 from tests.ros2.nodes.bench import PATIENCE, RELIABLE, Bench
 
 pytest.importorskip("cyclonedds", reason="needs the extra dds")
 
 ROUNDS = 2
-"""Heard of every topic: whoever joins amid the first has heard all by the end of the second."""
+"""Rounds to receive: a subscriber that joins amid the first has all by the end of the second."""
 
 
 @pytest.mark.slow
-def test_ros_hears_every_take_and_phrase_as_the_robot_heard_it(bench: Bench, domain: int) -> None:
-    events = told()
-    said_takes = [each for each in events if isinstance(each, TakeRecognized | TakeRejected)]
-    said_labels = [each.label for each in said_takes if isinstance(each, TakeRecognized)]
-    said_phrases = [each for each in events if isinstance(each, PhraseHeard)]
+def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
+    bench: Bench, domain: int
+) -> None:
+    events = list_round_events()
+    emitted_takes = [each for each in events if isinstance(each, TakeRecognized | TakeRejected)]
+    emitted_labels = [each.label for each in emitted_takes if isinstance(each, TakeRecognized)]
+    emitted_phrases = [each for each in events if isinstance(each, PhraseHeard)]
     takes: list[GestureRecognition] = []
     labels: list[String] = []
     phrases: list[Phrase] = []
@@ -46,9 +48,9 @@ def test_ros_hears_every_take_and_phrase_as_the_robot_heard_it(bench: Bench, dom
 
     def all_heard() -> bool:
         return (
-            len(takes) >= ROUNDS * len(said_takes)
-            and len(labels) >= ROUNDS * len(said_labels)
-            and len(phrases) >= ROUNDS * len(said_phrases)
+            len(takes) >= ROUNDS * len(emitted_takes)
+            and len(labels) >= ROUNDS * len(emitted_labels)
+            and len(phrases) >= ROUNDS * len(emitted_phrases)
             and len(lines) >= ROUNDS * len(events)
         )
 
@@ -61,9 +63,9 @@ def test_ros_hears_every_take_and_phrase_as_the_robot_heard_it(bench: Bench, dom
         finally:
             process.kill()
     assert all_heard()
-    compare_takes(takes, said_takes)
-    compare_phrases(phrases, said_phrases)
-    assert {label.data for label in labels} == set(said_labels)
+    compare_takes(takes, emitted_takes)
+    compare_phrases(phrases, emitted_phrases)
+    assert {label.data for label in labels} == set(emitted_labels)
     assert {line.data for line in lines} == {format_line(event) for event in events}
     assert {MESSAGES.validate_json(line.data).event for line in lines} == {
         "language_changed",
@@ -80,12 +82,12 @@ def nanoseconds(moment: float) -> int:
 
 
 def compare_takes(
-    takes: Iterable[GestureRecognition], said: Iterable[TakeRecognized | TakeRejected]
+    takes: Iterable[GestureRecognition], events: Iterable[TakeRecognized | TakeRejected]
 ) -> None:
-    expected = {(nanoseconds(event.start), nanoseconds(event.end)): event for event in said}
-    heard = {(to_nanoseconds(take.start), to_nanoseconds(take.end)): take for take in takes}
-    assert heard.keys() == expected.keys()
-    for span, take in heard.items():
+    expected = {(nanoseconds(event.start), nanoseconds(event.end)): event for event in events}
+    received = {(to_nanoseconds(take.start), to_nanoseconds(take.end)): take for take in takes}
+    assert received.keys() == expected.keys()
+    for span, take in received.items():
         event = expected[span]
         assert take.rejected is isinstance(event, TakeRejected)
         assert take.label == ("" if isinstance(event, TakeRejected) else event.label)
@@ -95,11 +97,11 @@ def compare_takes(
         assert json.loads(take.report)["nearest"] == event.nearest
 
 
-def compare_phrases(phrases: Iterable[Phrase], said: Iterable[PhraseHeard]) -> None:
-    expected = {event.phrase.kind: event for event in said}
-    heard = {phrase.kind: phrase for phrase in phrases}
-    assert heard.keys() == expected.keys() == {Phrase.COMPLETE, Phrase.OUTSIDE}
-    for kind, message in heard.items():
+def compare_phrases(phrases: Iterable[Phrase], events: Iterable[PhraseHeard]) -> None:
+    expected = {event.phrase.kind: event for event in events}
+    received = {phrase.kind: phrase for phrase in phrases}
+    assert received.keys() == expected.keys() == {Phrase.COMPLETE, Phrase.OUTSIDE}
+    for kind, message in received.items():
         event = expected[kind]
         phrase = event.phrase
         assert to_nanoseconds(message.header.stamp) == nanoseconds(event.time)
@@ -112,4 +114,4 @@ def compare_phrases(phrases: Iterable[Phrase], said: Iterable[PhraseHeard]) -> N
         assert (message.confidence, message.text) == (event.confidence, phrase.text)
         mission = phrase.mission.to_list() if phrase.mission else None
         assert (json.loads(message.mission) if message.mission else None) == mission
-    assert json.loads(heard[Phrase.COMPLETE].mission)[0]["command"] == {"do": "photo"}
+    assert json.loads(received[Phrase.COMPLETE].mission)[0]["command"] == {"do": "photo"}

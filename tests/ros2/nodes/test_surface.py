@@ -132,8 +132,8 @@ def test_who_comes_later_hears_the_state_and_the_language_before_any_picture(
     bench: Bench, kind: type[GestureNode | RecognitionNode], language_file: Path
 ) -> None:
     bench.active(kind, language=str(language_file))
-    states = bench.heard(RecognizerState, "state", LATCHED)
-    languages = bench.heard(ActiveLanguage, "language", LATCHED)
+    states = bench.subscribe(RecognizerState, "state", LATCHED)
+    languages = bench.subscribe(ActiveLanguage, "language", LATCHED)
     bench.wait(lambda: bool(states and languages), "state and language")
     assert states[0].state == RecognizerState.IDLE
     assert list(languages[0].labels) == ["circle", "wedge", "three"]
@@ -169,7 +169,7 @@ def test_a_number_out_of_its_range_is_refused(
 def test_diagnostics_tell_the_language_and_warn_when_nothing_comes(
     bench: Bench, language_file: Path
 ) -> None:
-    reports = bench.heard(DiagnosticArray, "/diagnostics")
+    reports = bench.subscribe(DiagnosticArray, "/diagnostics")
     node = bench.active(RecognitionNode, language=str(language_file), diagnostic_period=0.1)
     bench.wait(
         lambda: any(each.status[0].level != DiagnosticStatus.OK for each in reports), "warning"
@@ -182,8 +182,8 @@ def test_diagnostics_tell_the_language_and_warn_when_nothing_comes(
     assert values["language"] == "Table 1: three signs"
     assert values["messages"] == "0"
     assert node.trigger_deactivate()
-    told = len(reports)
-    bench.wait(lambda: len(reports) > told + 1, "further reports")
+    count = len(reports)
+    bench.wait(lambda: len(reports) > count + 1, "further reports")
     assert reports[-1].status[0].message == "not active"
 
 

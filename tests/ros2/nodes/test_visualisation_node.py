@@ -24,7 +24,7 @@ RELIABLY = {
 
 
 def test_bones_are_drawn_where_the_landmarks_are(bench: Bench) -> None:
-    drawn = bench.heard(Image, "processed_frames", BEST_EFFORT)
+    drawn = bench.subscribe(Image, "processed_frames", BEST_EFFORT)
     node = bench.active(VisualisationNode, **RELIABLY)
     pictures = bench.speaker(Image, "image")
     bodies = bench.speaker(BodyKeypoints, "body_keypoints")

@@ -6,7 +6,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
-from app.api.http.schemas.values import Body, Command, Identifier, Label, Landmarks, Seconds
+from app.api.http.schemas.values import (
+    Body,
+    Command,
+    Diver,
+    Identifier,
+    Label,
+    Landmarks,
+    Seconds,
+)
 from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
 
 SwitchPosition = Literal["auto", "on", "off"]
@@ -22,6 +30,7 @@ class NewDemonstration(Body):
         default=False,
         description="Keep the hand's way from and to the salute, where the range is a take's own",
     )
+    diver: Diver = Field(default="", description="Name of the diver who shows it; empty: unknown")
 
 
 class GestureDraft(NewDemonstration):
@@ -36,13 +45,23 @@ class GestureDraft(NewDemonstration):
     command: Command = None
 
 
+class DemonstrationDraft(NewDemonstration):
+    """A further demonstration of a gesture."""
+
+    label: Label = Field(description="The gesture's")
+    salient: Landmarks | None = Field(
+        default=None, description="Null: those of the first demonstration, if one of them moves"
+    )
+
+
 class GestureChange(Body):
     """What to change about a gesture; what is left out stays."""
 
     label: Label | None = None
     demonstration: NewDemonstration | None = Field(
-        default=None, description="Takes the place of the one that made the gesture"
+        default=None, description="Takes the place of the first demonstration"
     )
+    diver: Diver | None = Field(default=None, description="Name of the first demonstration's diver")
     direction: SwitchPosition | None = None
     tempo: SwitchPosition | None = None
     mirror: SwitchPosition | None = None
@@ -60,6 +79,19 @@ class SourceView(BaseModel):
     keep_transit: bool
 
 
+class DemonstrationView(BaseModel):
+    """A demonstration of a gesture."""
+
+    index: int = Field(description="Its place among the gesture's demonstrations, from 0")
+    diver: str = Field(description="Name of the diver who shows it; empty: unknown")
+    salient: list[str]
+    seconds: float | None = Field(description="How long it lasts; null: only its image is known")
+    thumbnail: str = Field(description="Path of its trajectory image, a PNG")
+    source: SourceView | None = Field(
+        default=None, description="Its clip; null: not known, or deleted"
+    )
+
+
 class GestureView(BaseModel):
     """A gesture of a language."""
 
@@ -74,4 +106,7 @@ class GestureView(BaseModel):
     has_trajectory: bool = Field(description="False when imported from a file that has none")
     source: SourceView | None = Field(
         default=None, description="The clip of its demonstration; null: not known, or deleted"
+    )
+    demonstrations: list[DemonstrationView] = Field(
+        description="All of them; what is said of the gesture itself is the first one's"
     )

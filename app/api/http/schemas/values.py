@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
 
@@ -15,6 +16,7 @@ MOST_SECONDS = 24 * 60 * 60
 Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_LENGTH, pattern=r"\S")]
 Author = Annotated[str, Field(max_length=MAX_AUTHOR_LENGTH)]
 Label = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH, pattern=r"\S")]
+Diver = Annotated[str, Field(max_length=MAX_DIVER_LENGTH)]
 Seconds = Annotated[float, Field(ge=0, le=MOST_SECONDS, allow_inf_nan=False)]
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]

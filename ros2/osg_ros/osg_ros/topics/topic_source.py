@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from app.recognition.errors import OsgError
-from app.robot import Frame, Notice, Quiet
+from app.robot import Frame, NoFrame, Notice
 from osg_ros.topics.image_messages import PictureDecoder
 from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
 
@@ -76,7 +76,7 @@ class TopicSource:
         while not self._closed:
             first, self._first = self._first, None
             frame = first or self._take_frame(QUIET_SECONDS)
-            yield Quiet(self._time) if frame is None else frame
+            yield NoFrame(self._time) if frame is None else frame
 
     def close(self) -> None:
         """Stop the iteration."""

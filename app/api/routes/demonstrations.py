@@ -1,0 +1,97 @@
+"""Routes of a gesture's demonstrations: list, add, remove, image.
+
+A gesture is addressed by ``?label=``, because a label can be any text.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+
+from app.api.http.problems import problem_responses
+from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
+from app.api.http.schemas.languages import LanguageView
+from app.api.services.demonstration_sources import keep_source, sources_in
+from app.api.services.gesture_edits import (
+    add_demonstration_to,
+    demonstration_at,
+    gesture_in,
+    remove_demonstration_from,
+    require_demonstration,
+)
+from app.api.services.language_documents import edit_document
+from app.api.services.language_views import announce, view_demonstrations
+from app.api.services.studio import CurrentStudio
+from app.recognition.features.png import encode_png
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+
+router = APIRouter(prefix="/languages/{language_id}/demonstrations", tags=["gestures"])
+
+Index = Annotated[
+    int, Path(ge=0, lt=MAX_DEMONSTRATIONS, description="Place of the demonstration, from 0")
+]
+
+
+@router.get("", responses=problem_responses(404))
+def list_demonstrations(
+    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
+) -> list[DemonstrationView]:
+    """List the demonstrations of a gesture."""
+    state = studio.languages.get(language_id, revision)
+    language = studio.language(state)
+    gesture = gesture_in(language, label)
+    return view_demonstrations(state, gesture, sources_in(studio, language)[label])
+
+
+@router.post("", status_code=201, responses=problem_responses(404, 409, 412))
+def add_demonstration(
+    language_id: str,
+    draft: DemonstrationDraft,
+    studio: CurrentStudio,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Add a take to a gesture as one more demonstration, by the same diver or another."""
+    demonstration = demonstration_at(studio, draft)
+    changed = partial(add_demonstration_to, draft=draft, demonstration=demonstration)
+    edit = edit_document(f"Add a demonstration of {draft.label}", changed)
+    state = studio.languages.edit(language_id, edit, expected)
+    keep_source(studio, state, draft.label, draft, demonstration, index=-1)
+    return announce(studio, state, response)
+
+
+@router.delete("/{index}", responses=problem_responses(404, 409, 412))
+def remove_demonstration(
+    language_id: str,
+    index: Index,
+    label: str,
+    studio: CurrentStudio,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Remove a demonstration of a gesture that has others; without the first, the next is first."""
+    changed = partial(remove_demonstration_from, label=label, index=index)
+    edit = edit_document(f"Remove a demonstration of {label}", changed)
+    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+
+
+@router.get(
+    "/{index}/image",
+    response_class=Response,
+    responses={
+        **problem_responses(404),
+        200: {"description": "The trajectory image", "content": {"image/png": {}}},
+    },
+)
+def get_demonstration_image(
+    language_id: str, index: Index, label: str, studio: CurrentStudio, revision: Revision = None
+) -> Response:
+    """Send the trajectory image of a demonstration."""
+    language = studio.language(studio.languages.get(language_id, revision))
+    shown = require_demonstration(gesture_in(language, label), index)
+    # A revision never changes, so its pictures can be kept.
+    headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
+    return Response(encode_png(shown.image), media_type="image/png", headers=headers)

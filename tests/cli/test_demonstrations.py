@@ -1,0 +1,123 @@
+"""Several demonstrations on the command line: defined at once, listed, added and removed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.recognition import Language
+from tests.command_line import OsgStudio
+from tests.keypoint_files.files import write_openpose
+from tests.recognition.strategies import BODY, Shape, circle, line, recording, rest, square
+
+ARMS = tuple(BODY)
+RATE = ("--frame-rate", "30")
+
+
+def folder(path: Path, shape: Shape, *, hand: str = "right_wrist", seed: int = 0) -> Path:
+    poses = recording(shape, landmarks=ARMS, hand=hand, jitter=0.004, seed=seed)
+    return write_openpose(path, poses)
+
+
+@pytest.fixture
+def clips(tmp_path: Path) -> dict[str, Path]:
+    return {
+        "ana": folder(tmp_path / "ana", circle),
+        "ben": folder(tmp_path / "ben", circle, hand="left_wrist", seed=1),
+        "line": folder(tmp_path / "line", line),
+        "still": folder(tmp_path / "still", rest),
+        "square": folder(tmp_path / "square", square),
+    }
+
+
+@pytest.fixture
+def pool(osg_studio: OsgStudio, tmp_path: Path, clips: dict[str, Path]) -> Path:
+    """Return the file of a language of a circle by two divers, and a line."""
+    file = tmp_path / "pool.json"
+    given = [f"circle={clips['ana']},{clips['ben']}", f"line={clips['line']}"]
+    ended = osg_studio(
+        "define", *given, "--name", "pool", "--output", file, "--diver", "Ana", *RATE
+    )
+    assert ended.code == 0, ended.error
+    assert ended.error.count("circle: 60 poses") == 2
+    return file
+
+
+def listed(osg_studio: OsgStudio, file: Path) -> list[list[str]]:
+    ended = osg_studio("demonstrations", "list", file)
+    assert ended.code == 0, ended.error
+    return [line.split("\t") for line in ended.out.splitlines()]
+
+
+def test_a_gesture_is_defined_by_several_clips(osg_studio: OsgStudio, pool: Path) -> None:
+    circled = Language.load(pool).gesture("circle").single_demonstrations()
+    assert [each.salient for each in circled] == [("right_wrist",), ("left_wrist",)]
+    assert listed(osg_studio, pool) == [
+        ["circle", "1", "Ana", "right_wrist", "1.97"],
+        ["circle", "2", "Ana", "left_wrist", "1.97"],
+        ["line", "1", "Ana", "right_wrist", "1.97"],
+    ]
+
+
+def test_a_demonstration_of_another_diver_is_added_and_removed(
+    osg_studio: OsgStudio, pool: Path, clips: dict[str, Path], tmp_path: Path
+) -> None:
+    before = Language.load(pool)
+    given = ("demonstrations", "add", pool, f"line={clips['square']}", "--diver", "Ben", *RATE)
+    ended = osg_studio(*given)
+    assert ended.code == 0, ended.error
+    after = Language.load(pool)
+    assert after.revision == before.revision + 1
+    assert after.thresholds_for == after.fingerprint
+    assert [each.diver for each in after.gesture("line").single_demonstrations()] == ["Ana", "Ben"]
+
+    copy = tmp_path / "copy.json"
+    ended = osg_studio("demonstrations", "remove", pool, "line", "1", "--output", copy)
+    assert ended.code == 0, ended.error
+    assert Language.load(pool).to_json() == after.to_json()
+    assert Language.load(copy).gesture("line").diver == "Ben"
+    assert [row[:2] for row in listed(osg_studio, copy)] == [
+        ["circle", "1"],
+        ["circle", "2"],
+        ["line", "1"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["add", "{pool}", "wave={clip}"], "no gesture 'wave' in 'pool'"),
+        (["add", "{pool}", "line"], "LABEL=CLIP"),
+        (["add", "{pool}", "line={still}"], "nothing moves in the demonstration of 'line'"),
+        (["add", "{pool}", "line={clip},{clip},{clip},{clip},{clip}"], "the limit is 5"),
+        (["remove", "{pool}", "circle", "0"], "no demonstration 0: it has 2, counted from 1"),
+        (["remove", "{pool}", "circle", "3"], "no demonstration 3: it has 2, counted from 1"),
+        (["remove", "{pool}", "line", "1"], "the only demonstration of 'line' cannot be removed"),
+        (["list", "{clip}"], "cannot read"),
+    ],
+)
+def test_bad_input_is_one_line_and_changes_nothing(
+    osg_studio: OsgStudio,
+    pool: Path,
+    clips: dict[str, Path],
+    arguments: list[str],
+    complaint: str,
+) -> None:
+    before = pool.read_bytes()
+    places = {"pool": pool, "clip": clips["line"], "still": clips["still"]}
+    options = RATE if arguments[0] == "add" else ()
+    ended = osg_studio("demonstrations", *(each.format(**places) for each in arguments), *options)
+    assert ended.code == 2
+    assert complaint in ended.error
+    assert pool.read_bytes() == before
+
+
+def test_both_hands_are_recognised_after_two_demonstrations(
+    osg_studio: OsgStudio, pool: Path, tmp_path: Path
+) -> None:
+    for hand in ("left_wrist", "right_wrist"):
+        clip = folder(tmp_path / hand, circle, hand=hand, seed=7)
+        ended = osg_studio("recognize", clip, "--language", pool, "--profile", "paper", *RATE)
+        assert ended.code == 0, ended.error
+        assert ended.out.split("\t")[2] == "circle"
