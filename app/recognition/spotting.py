@@ -34,10 +34,6 @@ FAMILIAR = 0.97
 Confidence is calibrated for takes of which half are gestures; few stretches of a stream are.
 Pointing into the distance is a *line* with 0.96."""
 
-SEPARATING_GROUPS = ("figure", "posture", "length")
-"""Cue groups that separate gestures from other movements. The wrist's is left out: people bend
-their wrists at will where the bend has no meaning."""
-
 FASTER, SLOWER = 0.4, 2.2
 """Shortest and longest duration of a gesture relative to its demonstration: two people's takes
 differ by half a doubling, rarely by more than one."""
@@ -329,5 +325,4 @@ def strokes_in(motion: Motion) -> list[Span]:
 def _familiarity(result: Recognition) -> float:
     """Return the confidence that the nearest gesture was shown rather than none."""
     at = result.gestures.index(result.nearest)
-    novelty = np.fmax.reduce([result.novelty_by_view[group][at] for group in SEPARATING_GROUPS])
-    return estimate_confidence(float(novelty), float(result.scores[at]), np.inf)
+    return estimate_confidence(float(result.novelty[at]), float(result.scores[at]), np.inf)

@@ -1,16 +1,15 @@
 """Calibration: computes each gesture's rejection thresholds from its demonstration alone.
 
 The threshold of a voter is a multiple (`REACH`) of the geometric mean of its distances to simulated
-takes (`variation`), since the logarithms of distances spread alike for all gestures. Other people's
-takes are twice as far as the demonstrator's own, and about one in twenty is rejected. Simulated
+takes (`variation`) and of its within-class distance, since the logarithms of distances spread alike
+for all gestures. Other people's takes are about twice as far as the demonstrator's own. Simulated
 out-of-vocabulary movements (`negatives`) that would be accepted lower the thresholds a little.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -33,20 +32,18 @@ from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 TAKES = 12
 """Simulated takes of each gesture; their mean is accurate to a quarter of its value."""
 
-OWN = 0.75
+OWN = 0.5
 """Weight of the gesture's own mean distance against that of all gestures (`Voter.within`), in the
-geometric mean of both. From 0.7 to 1 the result is the same."""
+geometric mean of both."""
 
-REACH: Final[Mapping[str, float]] = MappingProxyType(
-    {
-        voter.name: voter.cue.reach
-        for voter in sorted(VOTERS, key=lambda voter: -voter.cue.reach if voter.cue else 0.0)
-        if voter.cue is not None
-    }
-)
-"""The `Cue.reach` of each voter that has a cue, in the order of thresholds in language files.
+REACH = 4.0
+"""A threshold in typical distances of the demonstrator's own further takes.
 
-One in twenty of the demonstrator's takes of five recorded sets is beyond."""
+The median over seven recorded sets of what one in twenty of other people's takes exceeds
+(`benchmarks/studies/people.md`)."""
+
+CUES: Final = tuple(voter.name for voter in VOTERS if voter.cue is not None)
+"""Names of the voters with thresholds, in the order of language files."""
 
 LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: with only one bone seen, attitudes
@@ -67,7 +64,7 @@ PLAUSIBLE = 0.2
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
 
-RULE = repr((*REACH.items(), OWN, LEAST_SHARE, SPREADS["same"]))
+RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"]))
 """What thresholds depend on beside the gestures; those of another rule are computed again."""
 
 
@@ -131,7 +128,7 @@ def _set_thresholds(
     near = negatives[negatives > PLAUSIBLE].min(initial=1.0)
     limit = max(LEAST_SHARE, float(near))
     thresholds = {
-        voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in REACH
+        voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in CUES
     }
     if not np.isfinite(takes).all() or np.isnan(negatives).any():
         return replace(gesture, thresholds=thresholds, rates=None)
@@ -146,10 +143,7 @@ def _set_thresholds(
 def _measure_reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     """Simulate takes of every gesture and measure their distances."""
     typical = np.array([voter.within for voter in VOTERS])
-    cues = [voter.cue for voter in VOTERS]
-    multiples = np.array([cue.reach if cue else np.inf for cue in cues])
-    own = np.array([0.0 if cue and not cue.varies_by_gesture else OWN for cue in cues])
-    farther = np.array([OTHERS**0.5 if cue and not cue.squared else OTHERS for cue in cues])
+    multiples = np.array([np.inf if voter.cue is None else REACH for voter in VOTERS])
     weights = build_novelty_weights(VOTER_NAMES)
     thresholds = np.repeat((multiples * typical)[:, None], len(gestures), axis=1)
     takes = np.full((len(gestures), TAKES), np.nan)
@@ -158,14 +152,13 @@ def _measure_reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
     for row in vote.references.as_shown:
         index = int(vote.references.gestures[row])
         if index >= len(gestures):
-            continue  # a mirror image varies as much as its gesture
+            continue  # a further demonstration, or a mirror image: varies as much as its gesture
         distances = _distances_to_takes(gestures[index], vote, int(row))
         known = np.isfinite(distances).all(axis=1)
         least = LEAST_DISTANCE * typical[known, None]
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
-        thresholds[known, index] *= (mean / typical[known]) ** own[known]
-        others = farther[:, None] * distances
-        takes[index] = measure_novelty(others, thresholds[:, [index]], weights)
+        thresholds[known, index] *= (mean / typical[known]) ** OWN
+        takes[index] = measure_novelty(OTHERS * distances, thresholds[:, [index]], weights)
     return _Reach(thresholds, takes)
 
 

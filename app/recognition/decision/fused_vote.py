@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
+from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
@@ -47,23 +48,50 @@ CLOSE_SCORES = 0.05
 usually nearer by about as much."""
 
 
-def add_mirror_images(
-    gestures: Sequence[Gesture],
-) -> tuple[tuple[Gesture, ...], npt.NDArray[np.intp]]:
-    """Add the mirror images of gestures whose switch `mirror` is on.
+@dataclass(frozen=True, eq=False)
+class References:
+    """All that a query is compared with: every demonstration, and mirror images of some.
 
-    Returns
-    -------
-    The G gestures followed by the images; and for each of them the index of its gesture.
+    Attributes
+    ----------
+    gestures
+        S gestures of one demonstration each: first those of the language, then their further
+        demonstrations, then mirror images.
+    owners
+        ``(S,)``: index of each one's gesture in the language.
+    demonstrations
+        ``(S,)``: index of each one's demonstration in its gesture.
+    mirrored
+        ``(S,)``: whether it is a mirror image.
 
     """
-    mirrored = [
-        index
-        for index, gesture in enumerate(gestures)
-        if gesture.switches.mirror == "on" and gesture.trajectory is not None
-    ]
-    images = [gestures[index].mirror() for index in mirrored]
-    return (*gestures, *images), np.array([*range(len(gestures)), *mirrored], dtype=np.intp)
+
+    gestures: tuple[Gesture, ...]
+    owners: npt.NDArray[np.intp]
+    demonstrations: npt.NDArray[np.intp]
+    mirrored: npt.NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, gestures: Sequence[Gesture]) -> References:
+        """List the references of a language's gestures; mirror images where their switch is on."""
+        shown = [
+            (number, owner, each)
+            for owner, gesture in enumerate(gestures)
+            for number, each in enumerate(gesture.single_demonstrations())
+        ]
+        shown.sort(key=lambda each: each[0] > 0)
+        images = [
+            (number, owner, each.mirror())
+            for number, owner, each in shown
+            if each.switches.mirror == "on" and each.trajectory is not None
+        ]
+        numbers, owners, every = zip(*shown, *images, strict=True)
+        return cls(
+            gestures=tuple(every),
+            owners=np.array(owners, dtype=np.intp),
+            demonstrations=np.array(numbers, dtype=np.intp),
+            mirrored=np.arange(len(every)) >= len(shown),
+        )
 
 
 class FusedVote:
@@ -85,7 +113,8 @@ class FusedVote:
 
     def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
-        sides, self._owners = add_mirror_images(gestures)
+        self._shown = References.of(gestures)
+        sides, self._owners = self._shown.gestures, self._shown.owners
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
@@ -100,7 +129,9 @@ class FusedVote:
         first_rows = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
         own = self._motions.own_distances
         one, other = np.triu_indices(len(first_rows), 1)
-        pairs = own[:, :, first_rows][:, one, other]
+        owners = self._owners[self._motions.gestures[first_rows]]
+        apart = owners[one] != owners[other]
+        pairs = own[:, :, first_rows][:, one[apart], other[apart]]
         shapes = self._shapes.own_distances(MAX_GESTURES_TRAVERSED)
         self._weights, self._between = weigh_voters(
             VOTERS,
@@ -109,9 +140,17 @@ class FusedVote:
         )
         if len(first_rows) < len(self._motions.as_shown):
             return
-        self._tempo = find_tempo_dependent(self._motions, own, *self._of_motion, sides)
-        free = [i for i, gesture in enumerate(sides) if gesture.switches.direction == "off"]
-        self._motions = drop_ambiguous_traversals(self._motions, own, *self._of_motion, free)
+        self._tempo = find_tempo_dependent(
+            self._motions, own, *self._of_motion, sides, self._owners
+        )
+        free = [
+            owner
+            for owner, gesture in zip(self._owners, sides, strict=True)
+            if gesture.switches.direction == "off"
+        ]
+        self._motions = drop_ambiguous_traversals(
+            self._motions, own, *self._of_motion, self._owners, free
+        )
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return whether a gesture's direction, tempo and sides count; None without movement."""
@@ -171,7 +210,9 @@ class FusedVote:
         return other
 
     def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
-        """Compare a condensed query with every gesture or its mirror image, whichever is nearer.
+        """Compare a condensed query with the nearest demonstration of every gesture.
+
+        Mirror images count as demonstrations.
 
         Without `drawn` the shape voters are left out; they take most of the time and rarely decide.
         """
@@ -196,7 +237,8 @@ class FusedVote:
             traversals=tuple(
                 self._motions.traversals[row] if row >= 0 else None for row in rows[chosen].tolist()
             ),
-            mirrored=chosen >= len(self._labels),
+            mirrored=self._shown.mirrored[chosen],
+            demonstrations=self._shown.demonstrations[chosen],
             novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
         )
 
@@ -269,7 +311,7 @@ class FusedVote:
         return distances, rows
 
     def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
-        """Return for each gesture the nearer of itself and its mirror image: ``(G,)`` indices."""
+        """Return for each gesture its nearest reference: ``(G,)`` indices."""
         if len(self._owners) == len(self._labels):
             return np.arange(len(self._labels))
         chosen = np.empty(len(self._labels), dtype=np.intp)

@@ -72,6 +72,7 @@ class MajorityVote:
             turned=np.zeros(count),
             traversals=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
+            demonstrations=np.zeros(count, dtype=np.intp),
             novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
         )
 

@@ -16,10 +16,9 @@ from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import BAND, DtwBatch, DtwReferences
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
-from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.motion_voter import DtwVoter, UnorderedVoter
+from app.recognition.voters.motion.motion_voter import DtwVoter
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.registry import MOTION_VOTERS
@@ -62,14 +61,8 @@ _DTW = {
 }
 """Indices of the voters that align movements by DTW."""
 
-_UNORDERED = {
-    place: voter for place, voter in enumerate(MOTION_VOTERS) if isinstance(voter, UnorderedVoter)
-}
-
 _OTHERS = {
-    place: voter
-    for place, voter in enumerate(MOTION_VOTERS)
-    if not isinstance(voter, DtwVoter | UnorderedVoter)
+    place: voter for place, voter in enumerate(MOTION_VOTERS) if not isinstance(voter, DtwVoter)
 }
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
@@ -233,24 +226,6 @@ class MotionReferences:
         return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _DTW))
 
     @cached_property
-    def _unordered(self) -> dict[str, StepReferences]:
-        """The references of the unordered voters: the distinct rows."""
-        distinct, _ = self._distinct
-        return {
-            voter.name: StepReferences(self.descriptors[voter.name][distinct])
-            for voter in _UNORDERED.values()
-        }
-
-    @cached_property
-    def _distinct(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        """Rows that differ in more than the order of steps; and each row's index among them."""
-        exchanged = np.array([traversal.exchanged for traversal in self.traversals], dtype=np.intp)
-        _, rows, which = np.unique(
-            2 * self.gestures + exchanged, return_index=True, return_inverse=True
-        )
-        return rows, which
-
-    @cached_property
     def penalties(self) -> FloatArray:
         """``(R,)``: the factor on each row's distances."""
         return np.array([traversal.penalty for traversal in self.traversals])
@@ -278,10 +253,6 @@ class MotionReferences:
         costs = self._dtw_batch.step_costs([query[name] for name in _DTW], rows)
         found = np.empty((len(MOTION_VOTERS), len(chosen)))
         found[[*_DTW.values()]] = compute_alignment_costs(costs, len(query[Path.name]), BAND)
-        which = self._distinct[1].take(chosen)
-        for place, voter in _UNORDERED.items():
-            references = self._unordered[voter.name]
-            found[place] = voter.distances_to(query[voter.name], references).take(which)
         for place, other in _OTHERS.items():
             described = self.descriptors[other.name].take(chosen, axis=0)
             found[place] = other.distances(query[other.name], described)
@@ -328,16 +299,18 @@ def find_tempo_dependent(
     weights: FloatArray,
     between: FloatArray,
     gestures: Sequence[Gesture],
+    owners: npt.NDArray[np.intp],
 ) -> npt.NDArray[np.bool_]:
-    """Return ``(G,)``: the gestures whose tempo counts, by their switch or automatically.
+    """Return ``(S,)``: the references whose tempo counts, by their switch or automatically.
 
     Automatically for two gestures that differ in duration only. Parameters as for
-    `drop_ambiguous_traversals`.
+    `drop_ambiguous_traversals`; `gestures` are those of the references, S in number.
     """
     shown = references.as_shown
     scores = fuse(own, weights, between)[:, shown]
     doublings = own[_TEMPO][:, shown]
-    twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER)
+    owner = owners[references.gestures[shown]]
+    twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER) & (owner[:, None] != owner)
     needed = np.zeros(len(gestures), dtype=bool)
     needed[references.gestures[shown]] = twins.any(axis=0)
     for index, gesture in enumerate(gestures):
@@ -361,6 +334,7 @@ def drop_ambiguous_traversals(
     own: FloatArray,
     weights: FloatArray,
     between: FloatArray,
+    owners: npt.NDArray[np.intp],
     free: Collection[int] = (),
 ) -> MotionReferences:
     """Drop the traversals by which a gesture would be confused with another one of the language.
@@ -378,11 +352,13 @@ def drop_ambiguous_traversals(
         `own_distances` of the references.
     weights, between
         Of the voters, see `fusion.weigh_voters`.
+    owners
+        ``(S,)``: index in the language of each reference's gesture.
     free
-        Indices of gestures whose direction never counts.
+        Those whose direction never counts.
 
     """
-    labels = references.gestures
+    labels = owners[references.gestures]
     shown = references.as_shown
     same = labels[shown][:, None] == labels[None]
     scores = np.where(same, np.inf, fuse(own, weights, between))

@@ -31,6 +31,8 @@ class ScoreTable:
         The nearest traversal of each gesture; None where only its image is compared.
     mirrored
         ``(G,)``: whether the gesture's mirror image is nearest.
+    demonstrations
+        ``(G,)``: index of each gesture's nearest demonstration.
     novelty_by_view
         ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
         group has no thresholds or cannot compare, all of profile ``paper``.
@@ -44,6 +46,7 @@ class ScoreTable:
     traversals: tuple[Traversal | None, ...]
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
+    demonstrations: npt.NDArray[np.intp]
 
     @property
     def scores(self) -> FloatArray:

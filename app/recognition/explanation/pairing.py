@@ -17,7 +17,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.path import Path
 
-ALIKE = Path.within
+ALIKE = 0.08
 """Mean path distance between two people's takes of one figure."""
 
 

@@ -246,7 +246,7 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
     return Movement(
         paths=paths,
         limbs=limbs,
-        reached=reached - reached[0],
+        reached=reached - trajectory.time[0],
         places=places,
         relative_to_body=trajectory.unit == "torso_length",
     )

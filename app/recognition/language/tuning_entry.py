@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.schema import TuningEntry
+from app.recognition.voters.registry import FORMER_VOTERS
 
 
 def tuning_to_entry(tuning: Tuning) -> TuningEntry | None:
@@ -23,7 +24,9 @@ def entry_to_tuning(entry: TuningEntry | None) -> Tuning:
     if entry is None:
         return AS_THE_PROFILE
     return Tuning(
-        weights=entry.weights,
+        weights={
+            voter: factor for voter, factor in entry.weights.items() if voter not in FORMER_VOTERS
+        },
         simplification=SIMPLIFICATION if entry.simplification is None else entry.simplification,
         keypoints_repaired=entry.keypoints_repaired,
     )

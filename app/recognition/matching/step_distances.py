@@ -6,8 +6,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -52,35 +50,6 @@ def squared_distances(
         _compute_partial(query, references, squares)
     squares[squares < ROUNDING] = 0.0
     return out
-
-
-@dataclass(frozen=True, eq=False)
-class StepReferences:
-    """Step references: sequences prepared once for comparison with the steps of many queries.
-
-    Attributes
-    ----------
-    sequences
-        ``(M, N, D)``, with NaN as for `squared_distances`.
-
-    """
-
-    sequences: FloatArray
-
-    def squared_distances(self, query: FloatArray) -> FloatArray:
-        """Return `squared_distances` of ``(N, D)``, without setting rounding errors to 0."""
-        if self._complete and np.isfinite(query).all():
-            squares = for_query(query) @ self._side
-            return squares.reshape(len(query), *self.sequences.shape[1::-1])
-        return np.asarray(squared_distances(query, self.sequences), dtype=np.float64)
-
-    @cached_property
-    def _complete(self) -> bool:
-        return bool(self.sequences.shape[-1] and np.isfinite(self.sequences).all())
-
-    @cached_property
-    def _side(self) -> FloatArray:
-        return _flatten(for_references(self.sequences))
 
 
 def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:

@@ -5,18 +5,14 @@ from __future__ import annotations
 from typing import Final
 
 from app.recognition.voters.motion.arm_path import ArmPath
-from app.recognition.voters.motion.cloud import Cloud
 from app.recognition.voters.motion.direction import Direction
 from app.recognition.voters.motion.hand_attitude import HandAttitude
 from app.recognition.voters.motion.motion_voter import MotionVoter
 from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.path_length import PathLength
 from app.recognition.voters.motion.place import Place
 from app.recognition.voters.motion.posture import Posture
-from app.recognition.voters.motion.stroke_direction import StrokeDirection
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.motion.velocity import Velocity
-from app.recognition.voters.motion.which_hand import WhichHand
 from app.recognition.voters.motion.wrist_bend import WristBend
 from app.recognition.voters.shape.aspect_ratio import AspectRatio
 from app.recognition.voters.shape.circularity import Circularity
@@ -48,15 +44,15 @@ MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
     Posture(),
     HandAttitude(),
     WristBend(),
-    Cloud(),
-    StrokeDirection(),
-    WhichHand(),
-    PathLength(),
     Tempo(),
 )
 """The additional voters of profile ``full``."""
 
 VOTERS: Final[tuple[Voter, ...]] = (*PAPER_VOTERS, *MOTION_VOTERS)
 """All voters of profile ``full``."""
+
+FORMER_VOTERS: Final = frozenset({"cloud", "stroke_direction", "which_hand", "path_length"})
+"""Voters of earlier versions: leaving them out changed no accuracy. Weight factors for them in
+language files are ignored."""
 
 VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in VOTERS)

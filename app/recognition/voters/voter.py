@@ -3,49 +3,22 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
 
-CueGroup = Literal["figure", "posture", "wrist", "length"]
+CueGroup = Literal["movement", "place"]
 """Cue groups: voters that measure the same property (`app.recognition.decision.rejection`)."""
-
-
-@dataclass(frozen=True)
-class Cue:
-    """The use of a voter's distance in rejection.
-
-    Attributes
-    ----------
-    group
-        The cue group it is averaged in, which evens out the voters' noise.
-    weight
-        Its weight in the mean of its group.
-    reach
-        The threshold of a gesture, in typical distances of the demonstrator's own further takes.
-    squared
-        Whether distances are squares, which grow faster from one person to another.
-    varies_by_gesture
-        Whether the typical distance is measured on each gesture; else it is `Voter.within`.
-
-    """
-
-    group: CueGroup
-    weight: float
-    reach: float
-    squared: bool = True
-    varies_by_gesture: bool = True
 
 
 class Voter(ABC):
     """One voter: a distance between a query and each reference, with measured constants.
 
-    The constants were measured on air-drawn digits, letters and commands, two-handed figures and
-    aircraft marshalling by other people: the geometric mean over the sets
-    (``benchmarks/studies/voters.md``).
+    The constants were measured on drawn digits, letters and commands, two-handed figures, aircraft
+    marshalling and whole bodies, by other people: the geometric mean over the sets
+    (``benchmarks/studies/people.md``).
 
     Attributes
     ----------
@@ -60,7 +33,7 @@ class Voter(ABC):
     between
         Between-class distance: median between two gestures; stands in where a language has one.
     cue
-        Its use in rejection; None: not used.
+        The cue group that it belongs to in rejection; None: not used.
 
     """
 
@@ -69,7 +42,7 @@ class Voter(ABC):
     prior: ClassVar[float]
     within: ClassVar[float]
     between: ClassVar[float]
-    cue: ClassVar[Cue | None] = None
+    cue: ClassVar[CueGroup | None] = None
 
     def prior_for(self, landmarks: int) -> float:
         """Return the prior in a language that follows `landmarks` landmarks."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.decision.calibration import REACH, calibrate
+from app.recognition.decision.calibration import CUES, calibrate
 from app.recognition.gestures.gesture import condense
 from app.recognition.gestures.switches import Switches
 from app.recognition.simulation.variation import draw_variants
@@ -23,7 +23,7 @@ def language() -> Language:
 
 def test_every_gesture_has_thresholds_and_expected_rates(language: Language) -> None:
     for gesture in language.gestures:
-        assert set(gesture.thresholds) == set(REACH)
+        assert set(gesture.thresholds) == set(CUES)
         assert all(value > 0 for value in gesture.thresholds.values())
         assert gesture.rates is not None
         assert 0 < gesture.rates.miss < 0.3

@@ -123,8 +123,8 @@ def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
 
 def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(wedge, jitter=0.01))
-    assert {"path", "direction", "cloud"} <= set(result.counted)
-    assert not {"tempo", "which_hand"} & set(result.counted)  # one hand in all, none by its tempo
+    assert {"velocity", "arm_path", "direction"} <= set(result.counted)
+    assert "tempo" not in result.counted  # no gesture differs by its tempo alone
     assert sum(result.weights.values()) == pytest.approx(1.0)
     for voter, label in result.votes.items():
         row = result.distances[VOTER_NAMES.index(voter)]

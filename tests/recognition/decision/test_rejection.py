@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.decision.calibration import REACH
+from app.recognition.decision.calibration import CUES
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
     build_novelty_weights,
@@ -63,13 +63,13 @@ def test_novelty_is_the_largest_of_what_each_view_tells(recognizer: Recognizer) 
 
 
 def test_a_view_whose_voters_are_off_tells_nothing(recognizer: Recognizer) -> None:
-    off = Tuning(weights=dict.fromkeys(CUE_GROUPS["length"], 0.0))
+    off = Tuning(weights=dict.fromkeys(CUE_GROUPS["place"], 0.0))
     query = recording(circle, frames=95, jitter=0.01)
     before = recognizer.recognize(query).novelty_by_view
     after = Recognizer(recognizer.language, tuning=off).recognize(query).novelty_by_view
-    assert np.isfinite(before["length"]).all()
-    assert np.isnan(after["length"]).all()
-    np.testing.assert_array_equal(after["figure"], before["figure"])
+    assert np.isfinite(before["place"]).all()
+    assert np.isnan(after["place"]).all()
+    np.testing.assert_array_equal(after["movement"], before["movement"])
 
 
 def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_thresholds() -> None:
@@ -95,7 +95,7 @@ def test_a_voter_of_a_view_has_a_threshold_in_every_gesture(recognizer: Recogniz
     asked = (build_novelty_weights(VOTER_NAMES) > 0).any(axis=0)
     assert np.isfinite(thresholds[asked]).all()
     assert not np.isfinite(thresholds[~asked]).any()
-    assert {voter for view in CUE_GROUPS.values() for voter in view} == set(REACH)
+    assert {voter for view in CUE_GROUPS.values() for voter in view} == set(CUES)
 
 
 def test_an_imported_gesture_is_not_rejected() -> None:

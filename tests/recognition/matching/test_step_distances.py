@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.matching.step_distances import StepReferences, squared_distances
+from app.recognition.matching.step_distances import squared_distances
 
 
 @given(
@@ -35,12 +35,3 @@ def test_equal_steps_are_at_distance_zero_in_memory_that_is_given() -> None:
 
 def test_without_any_component_nothing_can_be_compared() -> None:
     assert np.isinf(squared_distances(np.empty((3, 0)), np.empty((2, 3, 0)))).all()
-
-
-@given(seed=st.integers(0, 2**32 - 1), hidden=st.sampled_from([0.0, 0.3]))
-def test_prepared_references_answer_the_same(seed: int, hidden: float) -> None:
-    generator = np.random.default_rng(seed)
-    query, references = generator.normal(size=(5, 2)), generator.normal(size=(3, 5, 2))
-    references[generator.random(references.shape) < hidden] = np.nan
-    found = StepReferences(references).squared_distances(query)
-    np.testing.assert_allclose(found, squared_distances(query, references), atol=1e-9)

@@ -18,9 +18,10 @@ class ArmPath(DtwVoter):
 
     name = "arm_path"
     unit = "mean squared distance along the alignment, in squared sizes of the movement"
-    prior = 1.0
+    prior = 2.0
     within = 0.2
     between = 1.0
+    cue = "movement"
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` coordinates in sizes, NaN where not seen."""

@@ -7,7 +7,6 @@ import numpy as np
 from app.recognition.features.motion import Movement
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
-from app.recognition.voters.voter import Cue
 
 
 class Direction(DtwVoter):
@@ -22,7 +21,7 @@ class Direction(DtwVoter):
     prior = 1.0
     within = 0.21
     between = 1.3
-    cue = Cue("figure", weight=0.5, reach=7.0)
+    cue = "movement"
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` joint unit vectors."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from app.recognition.features.motion import LIMBS, Movement, normalize_size
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
-from app.recognition.voters.voter import Cue
 
 HAND_BONES = [index for index, (inner, _) in enumerate(LIMBS) if inner == "wrist"]
 """Indices of an arm's bones beyond the wrist."""
@@ -23,7 +22,6 @@ class HandAttitude(DtwVoter):
     prior = 0.0
     within = 0.2
     between = 0.56
-    cue = Cue("posture", weight=2.0, reach=4.0)
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 B')`` vectors in sizes, NaN where not seen."""

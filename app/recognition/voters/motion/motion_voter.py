@@ -1,4 +1,4 @@
-"""Base classes of motion voters: aligned by DTW, unordered, or with one descriptor."""
+"""Base classes of motion voters: aligned by DTW, or with one descriptor."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from abc import abstractmethod
 
 from app.recognition.features.motion import Movement
 from app.recognition.matching.dtw import BAND, DtwReferences
-from app.recognition.matching.step_distances import StepReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
@@ -28,15 +27,3 @@ class DtwVoter(MotionVoter):
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the DTW distances, ``(M,)``; infinite where nothing can be compared."""
         return DtwReferences(references, BAND).distances(query)
-
-
-class UnorderedVoter(MotionVoter):
-    """Base of voters whose distance does not depend on the order of the steps."""
-
-    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
-        """Return the distances, ``(M,)``."""
-        return self.distances_to(query, StepReferences(references))
-
-    @abstractmethod
-    def distances_to(self, query: FloatArray, references: StepReferences) -> FloatArray:
-        """Return the distances to prepared references, ``(M,)``."""

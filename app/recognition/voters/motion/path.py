@@ -5,7 +5,6 @@ from __future__ import annotations
 from app.recognition.features.motion import Movement
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
-from app.recognition.voters.voter import Cue
 
 
 class Path(DtwVoter):
@@ -20,7 +19,7 @@ class Path(DtwVoter):
     prior = 0.0
     within = 0.13
     between = 1.1
-    cue = Cue("figure", weight=1.0, reach=7.0)
+    cue = "movement"
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` coordinates in sizes."""

@@ -21,6 +21,7 @@ class Place(DtwVoter):
     prior = 2.0
     within = 0.5
     between = 2.6
+    cue = "place"
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` places, NaN where not seen or where no torso is seen."""

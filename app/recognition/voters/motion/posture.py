@@ -5,7 +5,6 @@ from __future__ import annotations
 from app.recognition.features.motion import Movement, normalize_size
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
-from app.recognition.voters.voter import Cue
 
 RESTING_WEIGHT = 0.3
 """Weight of a posture where the movement starts; at the farthest step it is greater by 1.
@@ -26,7 +25,6 @@ class Posture(DtwVoter):
     prior = 0.0
     within = 0.25
     between = 1.1
-    cue = Cue("posture", weight=1.0, reach=4.0)
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 B)`` vectors in sizes, NaN where not seen; ``(N, 0)`` without limbs."""

@@ -19,9 +19,10 @@ class Velocity(DtwVoter):
 
     name = "velocity"
     unit = "mean squared difference along the alignment, in squared mean velocities"
-    prior = 2.0
+    prior = 1.0
     within = 0.25
     between = 1.1
+    cue = "movement"
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` velocities in sizes, NaN where not seen."""

@@ -8,7 +8,6 @@ import numpy.typing as npt
 from app.recognition.features.motion import LIMBS, Movement
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import MotionVoter
-from app.recognition.voters.voter import Cue
 
 FOREARM = LIMBS.index(("elbow", "wrist"))
 HAND = [
@@ -47,7 +46,6 @@ class WristBend(MotionVoter):
     prior = 0.5
     within = 0.45
     between = 0.58
-    cue = Cue("wrist", weight=1.0, reach=3.5, squared=False, varies_by_gesture=False)
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(3 A,)``: of each arm the mean bend, its standard deviation and its share.

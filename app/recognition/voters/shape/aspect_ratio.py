@@ -15,7 +15,7 @@ class AspectRatio(Proportion):
 
     name = "aspect_ratio"
     unit = "doublings of width over height"
-    prior = 0.0
+    prior = 0.05
     within = 0.3
     between = 0.46
 
