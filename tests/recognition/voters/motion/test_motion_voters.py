@@ -108,7 +108,9 @@ def rested(poses: PoseSequence, frames: int) -> PoseSequence:
     """Repeat the first and the last frame: the arms rest before and after the gesture."""
     index = np.r_[np.zeros(frames, int), np.arange(len(poses)), np.full(frames, len(poses) - 1)]
     step = float(np.median(np.diff(poses.time)))
-    return replace(poses, xy=poses.xy[index], time=np.arange(len(index)) * step, confidence=None)
+    return replace(
+        poses, xy=poses.xy[index], time=np.arange(float(len(index))) * step, confidence=None
+    )
 
 
 @pytest.mark.parametrize("voter", [ArmPath(), Velocity(), Place()], ids=lambda v: v.name)
