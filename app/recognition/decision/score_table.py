@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from app.recognition.decision.rejection import take_largest_novelty
 from app.recognition.features.traversals import Traversal
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 
 
@@ -34,6 +36,8 @@ class ScoreTable:
     novelty_by_view
         ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
         group has no thresholds or cannot compare, all of profile ``paper``.
+    demonstrations
+        Index of the nearest demonstration of each gesture; empty: the first of each.
 
     """
 
@@ -44,6 +48,12 @@ class ScoreTable:
     traversals: tuple[Traversal | None, ...]
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
+    demonstrations: tuple[int, ...] = ()
+
+    def find_nearest_demonstration(self, gestures: Sequence[Gesture], index: int) -> Gesture:
+        """Return a gesture with only the demonstration that the query was compared with."""
+        shown = gestures[index].single_demonstrations()
+        return shown[self.demonstrations[index] if self.demonstrations else 0]
 
     @property
     def scores(self) -> FloatArray:
