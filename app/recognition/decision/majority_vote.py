@@ -75,8 +75,8 @@ class MajorityVote:
             traversals=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
             novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
-            demonstrations=tuple(
-                int(part.argmin()) for part in np.split(relative, self._first[1:])
+            demonstrations=np.array(
+                [part.argmin() for part in np.split(relative, self._first[1:])]
             ),
         )
 

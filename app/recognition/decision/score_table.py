@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -37,7 +37,7 @@ class ScoreTable:
         ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
         group has no thresholds or cannot compare, all of profile ``paper``.
     demonstrations
-        Index of the nearest demonstration of each gesture; empty: the first of each.
+        ``(G,)``: index of each gesture's nearest demonstration; empty: the first of each.
 
     """
 
@@ -48,12 +48,15 @@ class ScoreTable:
     traversals: tuple[Traversal | None, ...]
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
-    demonstrations: tuple[int, ...] = ()
+    demonstrations: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def find_nearest_demonstration(self, gestures: Sequence[Gesture], index: int) -> Gesture:
+    def nearest_demonstration(self, gesture: int) -> int:
+        """Return the index of the demonstration that stands for a gesture, given its own index."""
+        return int(self.demonstrations[gesture]) if len(self.demonstrations) else 0
+
+    def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
         """Return a gesture with only the demonstration that the query was compared with."""
-        shown = gestures[index].single_demonstrations()
-        return shown[self.demonstrations[index] if self.demonstrations else 0]
+        return gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
 
     @property
     def scores(self) -> FloatArray:

@@ -158,11 +158,10 @@ class _Pairings:
         if example is None or len(self._query) < 2:
             return
         query = build_movement(self._query, self._landmarks)
-        shown = self._table.demonstrations
         for voter in (Path(), Posture()) if self._full else (Path(),):
             aligned = align(query, example, self._landmarks, start=self._start, voter=voter)
             if aligned is not None:
-                yield replace(aligned, demonstration=shown[index] if shown else 0)
+                yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
 
     def differences(self, index: int) -> tuple[Difference, ...]:
         """Return the differences between the query and a gesture."""
