@@ -64,7 +64,7 @@ def write_answers(data: Path | None) -> dict[str, Any]:
     for folder in sorted(RECORDINGS.iterdir()):
         if folder.is_dir() and any(folder.glob("*.npz")):
             answers["clips"][folder.name] = dict(_clip_answers(folder))
-    answers["languages"] = {file.name: _rebuilt(file) for file in sorted(LANGUAGES.glob("*.json"))}
+    answers["languages"] = {file.name: _rebuild(file) for file in sorted(LANGUAGES.glob("*.json"))}
     if data is not None:
         for recorded in recorded_sets(data / "trajectories", SETS):
             answers["sets"][recorded.name] = dict(_set_answers(recorded))
@@ -89,7 +89,7 @@ def _clip_answers(folder: Path) -> Iterator[tuple[str, Any]]:
         yield file.stem, takes
 
 
-def _rebuilt(file: Path) -> dict[str, Any]:
+def _rebuild(file: Path) -> dict[str, Any]:
     """Load, save and calibrate a shipped language."""
     language = Language.load(file)
     with tempfile.TemporaryDirectory() as folder:

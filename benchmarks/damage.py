@@ -66,7 +66,7 @@ def jitter(sigma: float, poses: PoseSequence, random: np.random.Generator) -> Po
     return replace(poses, xy=poses.xy + random.normal(0, sigma * unit(poses), poses.xy.shape))
 
 
-def exchanged(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
+def exchange(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
     """Take left for right in a share of the frames, in runs."""
     mistaken = in_runs(share, len(poses), random)
     return replace(poses, xy=swap_sides(poses.xy, poses.landmarks, mistaken))
@@ -90,7 +90,7 @@ DAMAGES: dict[str, Damage] = {
     "none": untouched,
     **{f"missing in {share:.0%}": partial(missing, share) for share in (0.1, 0.3, 0.6)},
     **{f"jitter of {sigma:g}": partial(jitter, sigma) for sigma in (0.02, 0.05, 0.1)},
-    **{f"exchanged in {share:.0%}": partial(exchanged, share) for share in (0.05, 0.2, 0.4)},
+    **{f"exchanged in {share:.0%}": partial(exchange, share) for share in (0.05, 0.2, 0.4)},
     **{f"jumps in {share:.0%}": partial(jumping, share) for share in (0.02, 0.05, 0.1)},
 }
 

@@ -114,7 +114,7 @@ class Study:
     seed: int
 
 
-def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
+def study_set(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
     """Compare estimates from one person's demonstrations with takes of that person or of others.
 
     Returns
@@ -139,7 +139,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
         for performer, label in enumerate(labels):
             mine = pool[recorded.labels[pool] == label]
             chosen = generator.choice(mine, min(study.takes, len(mine)), replace=False)
-            read = [*_compared(recognizer, recorded, chosen)]
+            read = [*_compare(recognizer, recorded, chosen)]
             nearest = np.array([compared.scores.argmin() for compared in read])
             refused = np.array([is_rejected(compared.novelty[performer]) for compared in read])
             others = np.delete(np.arange(len(labels)), performer)
@@ -160,7 +160,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
     return Forecasts.joined(confusions), Forecasts.joined(misses)
 
 
-def _compared(
+def _compare(
     recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
 ) -> Iterator[ScoreTable]:
     for query in queries:
@@ -210,7 +210,7 @@ def main() -> None:
     for recorded in recorded_sets(given.data / "trajectories", given.sets):
         people: tuple[Person, ...] = ("same", "another")
         for person in people if len(np.unique(recorded.people)) > 1 else people[1:]:
-            for kind, part in zip(bars, studied(recorded, person, study), strict=True):
+            for kind, part in zip(bars, study_set(recorded, person, study), strict=True):
                 found.setdefault((person, kind), []).append(part)
                 print(row(f"{recorded.name} {person}, {kind}", part, bars[kind]), flush=True)
     for (person, kind), parts in found.items():

@@ -29,14 +29,14 @@ class HiddenMarkov(TrainedOnVariants):
         """Fit the gestures' models, each to its own variants."""
         # It reports every round in which the likelihood does not grow any more.
         logging.getLogger("hmmlearn").setLevel(logging.ERROR)
-        self._models: list[Any] = [_fitted(each) for each in sequences]
+        self._models: list[Any] = [_fit(each) for each in sequences]
 
     def likeliest(self, sequence: FloatArray) -> int:
         """Compare the likelihoods of the whole sequence."""
         return int(np.argmax([model.score(sequence) for model in self._models]))
 
 
-def _fitted(sequences: FloatArray) -> Any:
+def _fit(sequences: FloatArray) -> Any:
     model = GaussianHMM(
         STATES,
         covariance_type="diag",

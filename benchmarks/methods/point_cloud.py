@@ -43,10 +43,10 @@ def greedy_cloud_distance(one: FloatArray, other: FloatArray) -> float:
     apart = np.linalg.norm(one[:, None] - other[None], axis=2)
     step = int(len(one) ** STARTS_EXPONENT)
     starts = range(0, len(one), step)
-    return min(_matched(costs, start) for costs in (apart, apart.T) for start in starts)
+    return min(_match(costs, start) for costs in (apart, apart.T) for start in starts)
 
 
-def _matched(costs: FloatArray, start: int) -> float:
+def _match(costs: FloatArray, start: int) -> float:
     """Match each point with the nearest one left; those matched first weigh most."""
     left = costs.copy()
     total = 0.0
