@@ -42,13 +42,13 @@ LANGUAGES = ROOT / "languages"
 PROFILES = ("paper", "full")
 
 QUERIES = 60
-"""Recordings of each set that are recognised."""
+"""Number of recordings recognised per set."""
 
 TOLERANCE = 1e-9
-"""Largest difference, relative or absolute, of two numbers that are the same."""
+"""Tolerance, relative or absolute, within which two numbers are equal."""
 
 TEXTS = ("sentence", "message", "title", "description", "summary", "why", "text", "findings")
-"""Keys of sentences for people, which may be worded otherwise."""
+"""Keys of texts, which may be reworded."""
 
 
 def write_answers(data: Path | None) -> dict[str, Any]:
@@ -149,7 +149,7 @@ def _http_schema() -> Any:
 
 
 def differences(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """Name every place at which two answers differ; sentences for people are passed over."""
+    """Yield every place at which two answers differ, texts excepted."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other}, key=str):
             if key in TEXTS:

@@ -56,13 +56,13 @@ class Question:
 
 
 def missing(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Lose all landmarks in a share of the frames, in runs."""
+    """Remove all landmarks in a share of the frames, in runs."""
     lost = in_runs(share, len(poses), random)
     return replace(poses, xy=np.where(lost[:, None, None], np.nan, poses.xy))
 
 
 def jitter(sigma: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Let every landmark tremble independently, by `sigma` torso lengths in x and y."""
+    """Add noise of standard deviation `sigma` torso lengths to x and y of every landmark."""
     return replace(poses, xy=poses.xy + random.normal(0, sigma * unit(poses), poses.xy.shape))
 
 
@@ -73,7 +73,7 @@ def exchange(share: float, poses: PoseSequence, random: np.random.Generator) -> 
 
 
 def jumping(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Throw each landmark off by half to two torso lengths, in a share of its frames."""
+    """Displace each landmark by half to two torso lengths in a share of its frames."""
     shape = poses.xy.shape[:2]
     angle = random.uniform(0, 2 * np.pi, shape)
     far = random.uniform(0.5, 2, shape) * unit(poses) * (random.uniform(size=shape) < share)
@@ -82,7 +82,7 @@ def jumping(share: float, poses: PoseSequence, random: np.random.Generator) -> P
 
 
 def untouched(poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Leave the query as it is."""
+    """Return the query unchanged."""
     return poses
 
 

@@ -20,7 +20,7 @@ from app.recognition.simulation.variation import draw_variants
 from app.resources import samples_dir
 
 TORSO_PIXELS = 120.0
-"""Any size: it is taken out again."""
+"""Torso length in pixels; normalisation removes it."""
 
 
 def main() -> None:

@@ -30,12 +30,12 @@ from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 
 BINS = (0.0, 0.02, 0.05, 0.1, 0.2, 1.001)
-"""Forecasts that are put together, with the two bars of the report among the ends."""
+"""Bins of estimates; the two thresholds of the report are among their ends."""
 
 
 @dataclass(frozen=True, eq=False)
 class Forecasts:
-    """N forecasts of one kind, several languages' one after the other.
+    """N estimates of one kind, of several languages.
 
     Attributes
     ----------
@@ -52,12 +52,12 @@ class Forecasts:
 
     @classmethod
     def joined(cls, parts: Sequence[Forecasts]) -> Forecasts:
-        """Put several languages together."""
+        """Concatenate the estimates of several languages."""
         columns = zip(*(vars(part).values() for part in parts), strict=True)
         return cls(*(np.concatenate(column) for column in columns))
 
     def within(self, low: float, high: float) -> Forecasts:
-        """Keep the forecasts from `low` to below `high`."""
+        """Return the estimates from `low` to below `high`."""
         kept = (self.predicted >= low) & (self.predicted < high)
         return Forecasts(self.predicted[kept], self.happened[kept], self.takes[kept])
 
@@ -68,12 +68,12 @@ class Forecasts:
 
     @property
     def observed(self) -> float:
-        """The share of takes of which it came true."""
+        """Observed rate over takes."""
         return float(self.happened.sum() / self.takes.sum())
 
     @property
     def slope(self) -> float:
-        """How much more came true for each that more was forecast: 1 where forecasts are right."""
+        """Slope of observed rates over estimates: 1 if the estimates are right."""
         weights = self.takes / self.takes.sum()
         apart = self.predicted - self.mean
         shares = self.happened / self.takes - self.observed

@@ -13,13 +13,13 @@ from benchmarks.methods.steps import STEPS
 from benchmarks.methods.trained import TrainedOnVariants
 
 STATES = 8
-"""Parts of a gesture that follow each other: four steps of 32 a state."""
+"""Number of states, each of four of the 32 steps."""
 
 LEAST_VARIANCE = 1e-3
-"""Of a coordinate within a state, in squared sizes: below the spread between two takes."""
+"""Least variance of a coordinate in a state, in squared sizes: below that of two takes."""
 
 ROUNDS = 10
-"""Of expectation maximisation."""
+"""Iterations of expectation maximisation."""
 
 
 class HiddenMarkov(TrainedOnVariants):

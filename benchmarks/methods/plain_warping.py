@@ -12,7 +12,7 @@ from benchmarks.methods.base import Method
 from benchmarks.methods.steps import directions, even_positions
 
 BAND = 8
-"""Steps of 32 that one movement may be ahead of the other."""
+"""Band of DTW, in steps of 32."""
 
 
 class PlainWarping(Method):

@@ -16,7 +16,7 @@ from benchmarks.methods.base import Method
 from benchmarks.methods.steps import STEPS, even_positions
 
 STARTS_EXPONENT = 0.5
-"""The published trade-off: about the square root of the number of points are tried as starts."""
+"""Exponent of the number of starting points that are tried: the published trade-off."""
 
 
 class PointCloud(Method):

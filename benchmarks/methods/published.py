@@ -37,7 +37,7 @@ from benchmarks.methods.base import Method
 
 SIZE = 224
 MIN_MOVEMENT = 0.1
-"""Least sum of the ranges of x and y, in shares of the frame, of a salient keypoint."""
+"""Least sum of the ranges of x and y of a salient keypoint, as fractions of the frame."""
 
 MAX_SALIENT = 3
 CORNER_TOLERANCE = 5.0
@@ -55,7 +55,7 @@ VOTERS = 7
 Image = npt.NDArray[np.uint8]
 
 Frames = list[dict[str, tuple[float, float]]]
-"""Of each frame the keypoints that were found in it: x and y in shares of the frame."""
+"""Per frame the keypoints found in it: x and y as fractions of the frame."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class PublishedCode(Method):
         return frames_of(query, {name for each in self._references for name in each.salient})
 
     def name(self, frames: Frames) -> str | None:
-        """As `answer`, of the frames of `gather`."""
+        """Return the label of the frames of `gather`."""
         rows = []
         for reference in self._references:
             described = features(picture(frames, reference.salient, QUERY_EDGES))
