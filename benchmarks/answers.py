@@ -42,13 +42,13 @@ LANGUAGES = ROOT / "languages"
 PROFILES = ("paper", "full")
 
 QUERIES = 60
-"""Recordings of each set that are recognised."""
+"""Number of recordings recognised per set."""
 
 TOLERANCE = 1e-9
-"""Largest difference, relative or absolute, of two numbers that are the same."""
+"""Tolerance, relative or absolute, within which two numbers are equal."""
 
 TEXTS = ("sentence", "message", "title", "description", "summary", "why", "text", "findings")
-"""Keys of sentences for people, which may be worded otherwise."""
+"""Keys of texts, which may be reworded."""
 
 
 def write_answers(data: Path | None) -> dict[str, Any]:
@@ -64,7 +64,7 @@ def write_answers(data: Path | None) -> dict[str, Any]:
     for folder in sorted(RECORDINGS.iterdir()):
         if folder.is_dir() and any(folder.glob("*.npz")):
             answers["clips"][folder.name] = dict(_clip_answers(folder))
-    answers["languages"] = {file.name: _rebuilt(file) for file in sorted(LANGUAGES.glob("*.json"))}
+    answers["languages"] = {file.name: _rebuild(file) for file in sorted(LANGUAGES.glob("*.json"))}
     if data is not None:
         for recorded in recorded_sets(data / "trajectories", SETS):
             answers["sets"][recorded.name] = dict(_set_answers(recorded))
@@ -89,7 +89,7 @@ def _clip_answers(folder: Path) -> Iterator[tuple[str, Any]]:
         yield file.stem, takes
 
 
-def _rebuilt(file: Path) -> dict[str, Any]:
+def _rebuild(file: Path) -> dict[str, Any]:
     """Load, save and calibrate a shipped language."""
     language = Language.load(file)
     with tempfile.TemporaryDirectory() as folder:
@@ -149,7 +149,7 @@ def _http_schema() -> Any:
 
 
 def differences(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """Name every place at which two answers differ; sentences for people are passed over."""
+    """Yield every place at which two answers differ, texts excepted."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other}, key=str):
             if key in TEXTS:

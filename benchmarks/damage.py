@@ -56,24 +56,24 @@ class Question:
 
 
 def missing(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Lose all landmarks in a share of the frames, in runs."""
+    """Remove all landmarks in a share of the frames, in runs."""
     lost = in_runs(share, len(poses), random)
     return replace(poses, xy=np.where(lost[:, None, None], np.nan, poses.xy))
 
 
 def jitter(sigma: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Let every landmark tremble independently, by `sigma` torso lengths in x and y."""
+    """Add noise of standard deviation `sigma` torso lengths to x and y of every landmark."""
     return replace(poses, xy=poses.xy + random.normal(0, sigma * unit(poses), poses.xy.shape))
 
 
-def exchanged(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
+def exchange(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
     """Take left for right in a share of the frames, in runs."""
     mistaken = in_runs(share, len(poses), random)
     return replace(poses, xy=swap_sides(poses.xy, poses.landmarks, mistaken))
 
 
 def jumping(share: float, poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Throw each landmark off by half to two torso lengths, in a share of its frames."""
+    """Displace each landmark by half to two torso lengths in a share of its frames."""
     shape = poses.xy.shape[:2]
     angle = random.uniform(0, 2 * np.pi, shape)
     far = random.uniform(0.5, 2, shape) * unit(poses) * (random.uniform(size=shape) < share)
@@ -82,7 +82,7 @@ def jumping(share: float, poses: PoseSequence, random: np.random.Generator) -> P
 
 
 def untouched(poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
-    """Leave the query as it is."""
+    """Return the query unchanged."""
     return poses
 
 
@@ -90,7 +90,7 @@ DAMAGES: dict[str, Damage] = {
     "none": untouched,
     **{f"missing in {share:.0%}": partial(missing, share) for share in (0.1, 0.3, 0.6)},
     **{f"jitter of {sigma:g}": partial(jitter, sigma) for sigma in (0.02, 0.05, 0.1)},
-    **{f"exchanged in {share:.0%}": partial(exchanged, share) for share in (0.05, 0.2, 0.4)},
+    **{f"exchanged in {share:.0%}": partial(exchange, share) for share in (0.05, 0.2, 0.4)},
     **{f"jumps in {share:.0%}": partial(jumping, share) for share in (0.02, 0.05, 0.1)},
 }
 

@@ -46,16 +46,16 @@ SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
 """Seconds that do not count for the slope: caches are filled by then."""
 
 SAME: Final = 0.02
-"""Seconds that the same stamp may differ by from loop to loop: half a frame."""
+"""Tolerance of a stamp between loops, in seconds: half a frame."""
 
 
 BEAT: Final = 1e-6
-"""Seconds by which sums of periods may be off."""
+"""Tolerance of sums of periods, in seconds."""
 
 OWN: Final = re.compile(r"^(?:RssAnon|VmSwap):\s+(\d+) kB$", re.MULTILINE)
 
 STOCK_EVERY: Final = 10
-"""Frames between two looks at the memory; the last one of a loop stands."""
+"""Frames between two measurements of the memory; the last of a loop counts."""
 
 
 class Looped(Source, Protocol):
@@ -72,7 +72,7 @@ class Looped(Source, Protocol):
 
 
 class LoopedClip:
-    """A clip over and over until the time is full; a `Source` of one steady clock.
+    """A `Source` that loops a clip for a given time on one steady clock.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ class FirstLoopEstimator:
         return self._found[(self._number - 1) % self._frames]
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Clear the stored results."""
         self._estimator.reset()
         self._found.clear()
         self._number = 0

@@ -20,7 +20,7 @@ from app.recognition.simulation.variation import draw_variants
 from app.resources import samples_dir
 
 TORSO_PIXELS = 120.0
-"""Any size: it is taken out again."""
+"""Torso length in pixels; normalisation removes it."""
 
 
 def main() -> None:
@@ -31,7 +31,7 @@ def main() -> None:
         without, whole, tried = [], [], []
         for index, gesture in enumerate(language.gestures):
             assert gesture.trajectory is not None
-            poses = _filmed(draw_variants(gesture.trajectory, 1, seed=index, person="another")[0])
+            poses = _film(draw_variants(gesture.trajectory, 1, seed=index, person="another")[0])
             meant = language.labels[(index + 1) % len(language.labels)]
             anew = partial(RecognitionContext, recognizer=recognizer, poses=poses, whole=poses)
             alone = min(_seconds(partial(recognizer.recognize, poses)) for _ in range(5))
@@ -48,7 +48,7 @@ def main() -> None:
         )
 
 
-def _filmed(trajectory: Trajectory) -> PoseSequence:
+def _film(trajectory: Trajectory) -> PoseSequence:
     return PoseSequence(
         landmarks=trajectory.landmarks,
         xy=trajectory.xy * TORSO_PIXELS + (320.0, 240.0),

@@ -36,7 +36,7 @@ class ModelCall:
 
 @contextmanager
 def recorded_calls() -> Iterator[list[ModelCall]]:
-    """Note every model run that happens inside."""
+    """Record every model run inside the context."""
     original = onnxruntime.InferenceSession.run
     calls: list[ModelCall] = []
 

@@ -30,12 +30,12 @@ from benchmarks.recorded_sets import RecordedSet, recorded_sets
 from benchmarks.shared_sets import demonstrated
 
 BINS = (0.0, 0.02, 0.05, 0.1, 0.2, 1.001)
-"""Forecasts that are put together, with the two bars of the report among the ends."""
+"""Bins of estimates; the two thresholds of the report are among their ends."""
 
 
 @dataclass(frozen=True, eq=False)
 class Forecasts:
-    """N forecasts of one kind, several languages' one after the other.
+    """N estimates of one kind, of several languages.
 
     Attributes
     ----------
@@ -52,12 +52,12 @@ class Forecasts:
 
     @classmethod
     def joined(cls, parts: Sequence[Forecasts]) -> Forecasts:
-        """Put several languages together."""
+        """Concatenate the estimates of several languages."""
         columns = zip(*(vars(part).values() for part in parts), strict=True)
         return cls(*(np.concatenate(column) for column in columns))
 
     def within(self, low: float, high: float) -> Forecasts:
-        """Keep the forecasts from `low` to below `high`."""
+        """Return the estimates from `low` to below `high`."""
         kept = (self.predicted >= low) & (self.predicted < high)
         return Forecasts(self.predicted[kept], self.happened[kept], self.takes[kept])
 
@@ -68,12 +68,12 @@ class Forecasts:
 
     @property
     def observed(self) -> float:
-        """The share of takes of which it came true."""
+        """Observed rate over takes."""
         return float(self.happened.sum() / self.takes.sum())
 
     @property
     def slope(self) -> float:
-        """How much more came true for each that more was forecast: 1 where forecasts are right."""
+        """Slope of observed rates over estimates: 1 if the estimates are right."""
         weights = self.takes / self.takes.sum()
         apart = self.predicted - self.mean
         shares = self.happened / self.takes - self.observed
@@ -114,7 +114,7 @@ class Study:
     seed: int
 
 
-def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
+def study_set(recorded: RecordedSet, person: Person, study: Study) -> tuple[Forecasts, Forecasts]:
     """Compare estimates from one person's demonstrations with takes of that person or of others.
 
     Returns
@@ -139,7 +139,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
         for performer, label in enumerate(labels):
             mine = pool[recorded.labels[pool] == label]
             chosen = generator.choice(mine, min(study.takes, len(mine)), replace=False)
-            read = [*_compared(recognizer, recorded, chosen)]
+            read = [*_compare(recognizer, recorded, chosen)]
             nearest = np.array([compared.scores.argmin() for compared in read])
             refused = np.array([is_rejected(compared.novelty[performer]) for compared in read])
             others = np.delete(np.arange(len(labels)), performer)
@@ -160,7 +160,7 @@ def studied(recorded: RecordedSet, person: Person, study: Study) -> tuple[Foreca
     return Forecasts.joined(confusions), Forecasts.joined(misses)
 
 
-def _compared(
+def _compare(
     recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
 ) -> Iterator[ScoreTable]:
     for query in queries:
@@ -210,7 +210,7 @@ def main() -> None:
     for recorded in recorded_sets(given.data / "trajectories", given.sets):
         people: tuple[Person, ...] = ("same", "another")
         for person in people if len(np.unique(recorded.people)) > 1 else people[1:]:
-            for kind, part in zip(bars, studied(recorded, person, study), strict=True):
+            for kind, part in zip(bars, study_set(recorded, person, study), strict=True):
                 found.setdefault((person, kind), []).append(part)
                 print(row(f"{recorded.name} {person}, {kind}", part, bars[kind]), flush=True)
     for (person, kind), parts in found.items():

@@ -37,7 +37,7 @@ APPROACH_SECONDS = 0.6
 """Seconds of the hand's way from beside the hip."""
 
 
-def turned_round(take: Trajectory) -> Trajectory:
+def turn_round(take: Trajectory) -> Trajectory:
     """Show it the other way round."""
     return replace(take, xy=take.xy[::-1].copy())
 
@@ -53,7 +53,7 @@ def first_missing(take: Trajectory) -> Trajectory:
     return replace(late, time=late.time - late.time[0])
 
 
-def approached(take: Trajectory) -> Trajectory:
+def approach(take: Trajectory) -> Trajectory:
     """Come from beside the hip first."""
     step = float(np.median(np.diff(take.time)))
     share = np.arange(0, APPROACH_SECONDS, step)[:, None, None] / APPROACH_SECONDS
@@ -65,7 +65,7 @@ def approached(take: Trajectory) -> Trajectory:
     return replace(take, xy=np.concatenate([come, take.xy]), time=time)
 
 
-def exchanged(take: Trajectory) -> Trajectory:
+def exchange(take: Trajectory) -> Trajectory:
     """Take left for right in two stretches, a fifth of the moments together."""
     names = take.landmarks
     others = [names.index(other_side(name)) for name in names]
@@ -99,12 +99,12 @@ def larger(take: Trajectory) -> Trajectory:
 
 FAULTS: dict[str, tuple[Fault, list[str]]] = {
     "none": (lambda take: take, []),
-    "the other way round": (turned_round, ["direction"]),
+    "the other way round": (turn_round, ["direction"]),
     "the other hand": (Trajectory.mirror, ["hand"]),
     "last third missing": (last_missing, ["missing"]),
     "first third missing": (first_missing, ["missing"]),
-    "too much before": (approached, ["extra"]),
-    "sides exchanged": (exchanged, ["exchanged_sides"]),
+    "too much before": (approach, ["extra"]),
+    "sides exchanged": (exchange, ["exchanged_sides"]),
     "three times slower": (slower, ["tempo"]),
     "higher": (higher, ["place"]),
     "three times larger": (larger, ["size"]),
@@ -122,7 +122,7 @@ def main() -> None:
     for fault, (spoil, kinds) in FAULTS.items():
         first, named, told = Share(0, 0), Share(0, 0), Counter[str]()
         for gesture in language.gestures:
-            for take in drawn(gesture, arguments.takes, arguments.seed):
+            for take in draw_takes(gesture, arguments.takes, arguments.seed):
                 found = list_difference_kinds(recognizer, gesture, condense(spoil(take)))
                 told[found[0] if found else "none"] += 1
                 first += Share(int(found[:1] == kinds), 1)
@@ -130,7 +130,7 @@ def main() -> None:
         print(f"{fault:20} first {first!s:20} named {named!s:20} {dict(told.most_common())}")
 
 
-def drawn(gesture: Gesture, count: int, seed: int) -> tuple[Trajectory, ...]:
+def draw_takes(gesture: Gesture, count: int, seed: int) -> tuple[Trajectory, ...]:
     """Draw takes of a gesture by another person."""
     assert gesture.trajectory is not None
     return draw_variants(gesture.trajectory, count, seed=seed, person="another")

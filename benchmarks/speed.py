@@ -74,7 +74,7 @@ class Took:
     again: float
 
 
-def timed(*works: Callable[[], object], rounds: int = ROUNDS) -> list[Took]:
+def measure_seconds(*works: Callable[[], object], rounds: int = ROUNDS) -> list[Took]:
     """Measure some works, each done once before it counts.
 
     They take turns: what slows down the machine for a while then slows down all of them.
@@ -123,8 +123,8 @@ def published_steps(
     method = PublishedCode()
     for number, demonstration in enumerate(demonstrations):
         method.add(f"figure {number}", demonstration)
-    frames = method.gathered(query)  # as they arrive there, one by one
-    return lambda: method.named(frames)
+    frames = method.gather(query)  # as they arrive there, one by one
+    return lambda: method.name(frames)
 
 
 def main() -> None:
@@ -140,7 +140,7 @@ def main() -> None:
     recognizer = Recognizer(language, "full")
     alone = [Recognizer(Language("one", [gesture]), "paper") for gesture in gestures]
     steps = published_steps(demonstrations, query)
-    recognition, once_each, published = timed(
+    recognition, once_each, published = measure_seconds(
         lambda: recognizer.recognize(query),
         lambda: [one.recognize(query) for one in alone],
         steps or (lambda: None),
@@ -151,7 +151,7 @@ def main() -> None:
         added = Gesture.from_demonstration("one more", query)
         return Recognizer(language.with_gesture(added), "full")
 
-    (adding,) = timed(add, rounds=3)
+    (adding,) = measure_seconds(add, rounds=3)
     head = f"profile full, {GESTURES} gestures, {len(POSE_LANDMARKS)} landmarks: "
     of_a_frame = recognition.at_first / frame
     print(f"{head}a recognition takes {of_a_frame:.2f} of one frame of pose estimation")

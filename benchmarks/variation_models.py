@@ -44,7 +44,7 @@ def stochastically_resampled(
 ) -> tuple[Trajectory, ...]:
     """Cut the way at random intervals and make them equally long (Taranta et al. 2016, GPSR)."""
     random = np.random.default_rng(seed)
-    flat, travelled = _flat(shown), _travelled(shown)
+    flat, travelled = _flat(shown), _measure_way(shown)
     found = []
     for _take in range(count):
         points = RESAMPLED_POINTS + REMOVED_POINTS
@@ -70,8 +70,8 @@ def salient_points(
     """Move ends and corners, and strokes between by minimum jerk (Cabrera and Wachs 2017)."""
     random = np.random.default_rng(seed)
     found = []
-    for take in _without_waver(shown, count, seed, person):
-        way = _travelled(take)
+    for take in _draw_steady(shown, count, seed, person):
+        way = _measure_way(take)
         places = _corners(take) * way[-1]
         size = np.sqrt(_flat(take).var(axis=0).sum())
         offsets = random.normal(0, POINT_SPREAD[person] * size, (len(places), *take.xy.shape[1:]))
@@ -96,8 +96,8 @@ def varied_strokes(
     strength = np.sqrt(1 + (numbers / RISING_WAVES) ** 2)
     strength *= STROKE_SPREAD[person] * np.sqrt(2 / (strength**2).sum())
     found = []
-    for take in _without_waver(shown, count, seed, person):
-        way = _travelled(take) / _travelled(take)[-1]
+    for take in _draw_steady(shown, count, seed, person):
+        way = _measure_way(take) / _measure_way(take)[-1]
         middle = (way[1:] + way[:-1]) / 2
         draws = random.standard_normal((STROKE_WAVES, 2)) @ (1, 1j)
         care = np.exp(SPREADS[person].care * random.standard_normal())
@@ -130,7 +130,7 @@ def scaled(factor: float) -> Model:
     return model
 
 
-def _without_waver(
+def _draw_steady(
     shown: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
     return vary(shown, count, replace(SPREADS[person], waver=0.0), seed=seed)
@@ -141,7 +141,7 @@ def _flat(shown: Trajectory) -> FloatArray:
     return np.nan_to_num(shown.fill_gaps().xy).reshape(len(shown), -1)
 
 
-def _travelled(shown: Trajectory) -> FloatArray:
+def _measure_way(shown: Trajectory) -> FloatArray:
     """Return ``(T,)``, strictly increasing: the joint way so far."""
     steps = np.linalg.norm(np.diff(_flat(shown), axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps + 1e-9)])

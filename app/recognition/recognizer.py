@@ -103,15 +103,16 @@ class Recognizer:
         table = self.compare(query)
         result = self.decide(table)
         if repair:
-            poor, findings = self._fault(repair, result.nearest), repair.findings
+            poor, findings = self._fault(repair, table, result.nearest), repair.findings
             if poor or findings:
                 label = None if poor else result.label
                 result = replace(result, label=label, findings=findings, fault=poor)
         return Trace(query=query, score_table=table, result=result)
 
-    def _fault(self, repair: Repair, nearest: str) -> str | None:
+    def _fault(self, repair: Repair, table: ScoreTable, nearest: str) -> str | None:
         """Return why poses are too poor to be the nearest gesture, with either hand; or None."""
-        gesture = self.language.gesture(nearest)
+        at = self.language.labels.index(nearest)
+        gesture = table.find_nearest_demonstration(self.language.gestures, at)
         poor = find_fault(repair.poses, gesture.salient, repair.trajectory)
         if poor and gesture.switches.mirror == "on":
             others = [other_side(name) for name in gesture.salient]

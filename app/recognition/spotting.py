@@ -16,6 +16,7 @@ from app.recognition.decision.rejection import estimate_confidence
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import OsgError, PoseError
 from app.recognition.features.motion import find_followed_landmarks
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence, join_sequences
@@ -123,7 +124,7 @@ class Spotter:
                 f"gesture; use profile full to recognise without salutes"
             )
         gestures = recognizer.language.gestures
-        lasts = [each.trajectory.time[-1] for each in gestures if each.trajectory is not None]
+        lasts = [last for each in gestures for last in _durations(each)]
         if not lasts:
             raise OsgError(
                 f"language {recognizer.language.name!r} has only images and no demonstrations, so "
@@ -131,12 +132,13 @@ class Spotter:
             )
         self._recognizer = recognizer
         self._confident = confident
+        single = [each for gesture in gestures for each in gesture.single_demonstrations()]
         mirrored = [
             [other_side(name) for name in gesture.salient]
-            for gesture in gestures
+            for gesture in single
             if gesture.switches.mirror == "on"
         ]
-        shown = [gesture.salient for gesture in gestures]
+        shown = [gesture.salient for gesture in single]
         self._landmarks = find_followed_landmarks([*shown, *mirrored])
         self._shortest = FASTER * float(min(lasts))
         self._longest = min(SLOWER * float(max(lasts)), LONGEST_MEMORY)
@@ -280,10 +282,10 @@ class Spotter:
         if result.label is None or result.confidence < self._confident:
             return False
         gesture = self._recognizer.language.gesture(result.label)
-        if gesture.trajectory is None or _familiarity(result) < FAMILIAR:
+        usual = _durations(gesture)
+        if not usual or _familiarity(result) < FAMILIAR:
             return False
-        usual = float(gesture.trajectory.time[-1])
-        if not FASTER * usual <= spotted.end - spotted.start <= SLOWER * usual:
+        if not FASTER * min(usual) <= spotted.end - spotted.start <= SLOWER * max(usual):
             return False
         trajectory = Trajectory.from_poses(join_sequences(self._seen))
         part = trajectory.between(
@@ -320,6 +322,12 @@ def strokes_in(motion: Motion) -> list[Span]:
         Span(float(max(first - SLOW_EDGE, before)), float(min(last + SLOW_EDGE, after)))
         for first, last, before, after in zip(firsts, lasts, halves, halves[1:], strict=False)
     ]
+
+
+def _durations(gesture: Gesture) -> list[float]:
+    """Return the seconds of a gesture's demonstrations; none of imported images."""
+    shown = (each.trajectory for each in gesture.single_demonstrations())
+    return [float(each.time[-1]) for each in shown if each is not None]
 
 
 def _familiarity(result: Recognition) -> float:

@@ -1,4 +1,4 @@
-"""Every method that one-shot recognition is compared with, on the same demonstrations."""
+"""Registry of the one-shot recognition methods that are compared."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from app.recognition import PoseSequence
 
 
 class Method(ABC):
-    """Learns one demonstration a gesture and names queries."""
+    """Base of methods: learns one demonstration per gesture and labels queries."""
 
     @abstractmethod
     def add(self, label: str, demonstration: PoseSequence) -> None:
@@ -26,4 +26,4 @@ class Method(ABC):
 
     @abstractmethod
     def answer(self, query: PoseSequence) -> str | None:
-        """Name the gesture of a query; None where the method sees nothing that it could name."""
+        """Return the label of a query; None if the method cannot compare it."""

@@ -18,7 +18,7 @@ from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 UNITS = 32
-"""Of each direction of each layer: a thousand training sequences carry no larger network."""
+"""Hidden units per direction and layer: a thousand training sequences support no larger network."""
 
 EPOCHS = 15
 BATCH = 64

@@ -13,13 +13,13 @@ from benchmarks.methods.steps import STEPS
 from benchmarks.methods.trained import TrainedOnVariants
 
 STATES = 8
-"""Parts of a gesture that follow each other: four steps of 32 a state."""
+"""Number of states, each of four of the 32 steps."""
 
 LEAST_VARIANCE = 1e-3
-"""Of a coordinate within a state, in squared sizes: below the spread between two takes."""
+"""Least variance of a coordinate in a state, in squared sizes: below that of two takes."""
 
 ROUNDS = 10
-"""Of expectation maximisation."""
+"""Iterations of expectation maximisation."""
 
 
 class HiddenMarkov(TrainedOnVariants):
@@ -29,14 +29,14 @@ class HiddenMarkov(TrainedOnVariants):
         """Fit the gestures' models, each to its own variants."""
         # It reports every round in which the likelihood does not grow any more.
         logging.getLogger("hmmlearn").setLevel(logging.ERROR)
-        self._models: list[Any] = [_fitted(each) for each in sequences]
+        self._models: list[Any] = [_fit(each) for each in sequences]
 
     def likeliest(self, sequence: FloatArray) -> int:
         """Compare the likelihoods of the whole sequence."""
         return int(np.argmax([model.score(sequence) for model in self._models]))
 
 
-def _fitted(sequences: FloatArray) -> Any:
+def _fit(sequences: FloatArray) -> Any:
     model = GaussianHMM(
         STATES,
         covariance_type="diag",

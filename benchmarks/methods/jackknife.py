@@ -31,13 +31,13 @@ class Jackknife(Method):
     def add(self, label: str, demonstration: PoseSequence) -> None:
         """Describe the demonstration."""
         self._labels.append(label)
-        directions, corrections = _described(demonstration)
+        directions, corrections = _describe(demonstration)
         self._directions.append(directions)
         self._corrections.append(corrections)
 
     def answer(self, query: PoseSequence) -> str:
         """Return the label of the nearest reference."""
-        directions, corrections = _described(query)
+        directions, corrections = _describe(query)
         # Of unit vectors, the squared distance is twice one less the inner product.
         warped = dtw_distances(directions, np.array(self._directions), BAND) / 2
         alike = np.einsum("gcd,cd->gc", np.array(self._corrections), corrections)
@@ -45,7 +45,7 @@ class Jackknife(Method):
         return self._labels[int((warped * factors.prod(axis=1)).argmin())]
 
 
-def _described(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:
+def _describe(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:
     """Return ``(15, D)`` unit directions, and ``(2, D)`` unit vectors: travelled, and reached."""
     points = even_positions(Trajectory.from_poses(poses), POINTS).reshape(POINTS, -1)
     steps = np.diff(points, axis=0)

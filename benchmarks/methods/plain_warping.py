@@ -12,7 +12,7 @@ from benchmarks.methods.base import Method
 from benchmarks.methods.steps import directions, even_positions
 
 BAND = 8
-"""Steps of 32 that one movement may be ahead of the other."""
+"""Band of DTW, in steps of 32."""
 
 
 class PlainWarping(Method):
@@ -26,7 +26,7 @@ class PlainWarping(Method):
     def add(self, label: str, demonstration: PoseSequence) -> None:
         """Describe the demonstration."""
         self._labels.append(label)
-        self._references.append(_described(demonstration))
+        self._references.append(_describe(demonstration))
 
     def prepare(self) -> None:
         """Find the median of each distance between the gestures."""
@@ -35,7 +35,7 @@ class PlainWarping(Method):
 
     def answer(self, query: PoseSequence) -> str:
         """Return the label of the nearest reference."""
-        distances = self._distances(_described(query)) / self._medians
+        distances = self._distances(_describe(query)) / self._medians
         return self._labels[int(distances.sum(axis=1).argmin())]
 
     def _distances(self, query: list[FloatArray]) -> FloatArray:
@@ -44,7 +44,7 @@ class PlainWarping(Method):
         return np.stack([dtw_distances(q, np.array(r), BAND) for q, r in views], axis=1)
 
 
-def _described(poses: PoseSequence) -> list[FloatArray]:
+def _describe(poses: PoseSequence) -> list[FloatArray]:
     positions = even_positions(Trajectory.from_poses(poses))
     steps = len(positions)
     return [positions.reshape(steps, -1), directions(positions).reshape(steps, -1)]

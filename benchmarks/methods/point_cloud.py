@@ -16,7 +16,7 @@ from benchmarks.methods.base import Method
 from benchmarks.methods.steps import STEPS, even_positions
 
 STARTS_EXPONENT = 0.5
-"""The published trade-off: about the square root of the number of points are tried as starts."""
+"""Exponent of the number of starting points that are tried: the published trade-off."""
 
 
 class PointCloud(Method):
@@ -43,10 +43,10 @@ def greedy_cloud_distance(one: FloatArray, other: FloatArray) -> float:
     apart = np.linalg.norm(one[:, None] - other[None], axis=2)
     step = int(len(one) ** STARTS_EXPONENT)
     starts = range(0, len(one), step)
-    return min(_matched(costs, start) for costs in (apart, apart.T) for start in starts)
+    return min(_match(costs, start) for costs in (apart, apart.T) for start in starts)
 
 
-def _matched(costs: FloatArray, start: int) -> float:
+def _match(costs: FloatArray, start: int) -> float:
     """Match each point with the nearest one left; those matched first weigh most."""
     left = costs.copy()
     total = 0.0

@@ -37,7 +37,7 @@ from benchmarks.methods.base import Method
 
 SIZE = 224
 MIN_MOVEMENT = 0.1
-"""Least sum of the ranges of x and y, in shares of the frame, of a salient keypoint."""
+"""Least sum of the ranges of x and y of a salient keypoint, as fractions of the frame."""
 
 MAX_SALIENT = 3
 CORNER_TOLERANCE = 5.0
@@ -55,7 +55,7 @@ VOTERS = 7
 Image = npt.NDArray[np.uint8]
 
 Frames = list[dict[str, tuple[float, float]]]
-"""Of each frame the keypoints that were found in it: x and y in shares of the frame."""
+"""Per frame the keypoints found in it: x and y as fractions of the frame."""
 
 
 @dataclass(frozen=True)
@@ -79,17 +79,17 @@ class PublishedCode(Method):
 
     def answer(self, query: PoseSequence) -> str | None:
         """Draw, describe and compare the query once for each gesture, and count the votes."""
-        return self.named(self.gathered(query))
+        return self.name(self.gather(query))
 
-    def gathered(self, query: PoseSequence) -> Frames:
+    def gather(self, query: PoseSequence) -> Frames:
         """Return a query as it arrives in the published implementation, frame by frame.
 
         Only what any gesture needs is converted.
         """
         return frames_of(query, {name for each in self._references for name in each.salient})
 
-    def named(self, frames: Frames) -> str | None:
-        """As `answer`, of a query that is `gathered`."""
+    def name(self, frames: Frames) -> str | None:
+        """Return the label of the frames of `gather`."""
         rows = []
         for reference in self._references:
             described = features(picture(frames, reference.salient, QUERY_EDGES))
@@ -127,13 +127,13 @@ def picture(frames: Frames, salient: Sequence[str], edges: tuple[float, float]) 
     """Draw a gesture, and of the drawing the simplified outer contours of its edges, thickened."""
     drawn = cv2.normalize(_paths(frames, salient), np.empty(0), 0, 255, cv2.NORM_MINMAX)
     grey = cv2.cvtColor(drawn.astype(np.uint8), cv2.COLOR_BGR2GRAY)
-    found = cv2.Canny(_blurred(np.asarray(grey, dtype=np.uint8), 5), *edges)
+    found = cv2.Canny(_blur(np.asarray(grey, dtype=np.uint8), 5), *edges)
     contours = cv2.findContours(found, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     outlines: Image = np.zeros_like(found, dtype=np.uint8)
     for contour in contours:
         corners = cv2.approxPolyDP(contour, CORNER_TOLERANCE, closed=True)
         cv2.drawContours(outlines, [corners], -1, 255, thickness=1)
-    thick = cv2.threshold(_blurred(outlines, 7), 0.1, 255, cv2.THRESH_BINARY)[1]
+    thick = cv2.threshold(_blur(outlines, 7), 0.1, 255, cv2.THRESH_BINARY)[1]
     return np.asarray(thick, dtype=np.uint8)
 
 
@@ -167,8 +167,8 @@ def features(image: Image) -> tuple[FloatArray, ...] | None:
     zernike = mahotas.features.zernike_moments(small, ZERNIKE_RADIUS, degree=ZERNIKE_DEGREE)
     proportions = (_circularity(image), _solidity(image), _aspect_ratio(image), _complexity(image))
     return (
-        _standardised(_hu_of_raw_moments(image)),
-        _standardised(np.asarray(zernike)),
+        _standardise(_hu_of_raw_moments(image)),
+        _standardise(np.asarray(zernike)),
         _fourier(complete[0][:, 0]),
         *(np.array([value]) for value in proportions),
     )
@@ -199,7 +199,7 @@ def _aspect_ratio(image: Image) -> float:
 
 def _complexity(image: Image) -> float:
     """Open length of the contour over the perimeter of its box, side by side as published."""
-    contour = _largest(_blurred(image, 5))
+    contour = _largest(_blur(image, 5))
     length = sum(float(np.linalg.norm(corner - before)) for before, corner in pairwise(contour))
     width, height = cv2.boundingRect(contour)[2:]
     return length / (2 * (width + height))
@@ -211,7 +211,7 @@ def _hu_of_raw_moments(image: Image) -> FloatArray:
     return np.asarray(moments_hu(raw), dtype=np.float64)  # type: ignore[no-untyped-call]
 
 
-def _standardised(values: FloatArray) -> FloatArray:
+def _standardise(values: FloatArray) -> FloatArray:
     return np.asarray((values - values.mean()) / (values.std() + 1e-7))
 
 
@@ -239,5 +239,5 @@ def _range(paths: FloatArray) -> FloatArray:
     return np.asarray(np.nanmax(paths, axis=0) - np.nanmin(paths, axis=0))
 
 
-def _blurred(image: Image, size: int) -> Image:
+def _blur(image: Image, size: int) -> Image:
     return np.asarray(cv2.GaussianBlur(image, (size, size), 0), dtype=np.uint8)

@@ -19,10 +19,10 @@ REACH = 2.0
 """Largest coordinate distinguished, in sizes."""
 
 PHASES = 8
-"""Parts of the way, each with weights of its own: what is far left at first is not so at last."""
+"""Phases of a gesture, each with its own weights, because positions change along the way."""
 
 ROUNDS = 40
-"""Of L-BFGS."""
+"""Iterations of L-BFGS."""
 
 
 class RandomField(TrainedOnVariants):
@@ -50,7 +50,7 @@ class RandomField(TrainedOnVariants):
 
 
 def _attributes(sequence: FloatArray) -> list[list[str]]:
-    """Name the level of each coordinate at each step."""
+    """Return the level of each coordinate at each step."""
     shares = (np.clip(sequence, -REACH, REACH) + REACH) / (2 * REACH)
     levels = np.rint(shares * (LEVELS - 1)).astype(int)
     return [

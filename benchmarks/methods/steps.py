@@ -13,7 +13,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
 STEPS = 32
-"""As many as profile ``full`` uses."""
+"""Number of steps, as in profile ``full``."""
 
 
 def even_positions(trajectory: Trajectory, count: int = STEPS) -> FloatArray:

@@ -11,7 +11,7 @@ from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 PENALTY = 10.0
-"""Of the margin's violation: variants of one demonstration hardly overlap with another's."""
+"""Penalty of margin violations: variants of two demonstrations hardly overlap."""
 
 
 class SupportVectors(TrainedOnVariants):
@@ -29,5 +29,5 @@ class SupportVectors(TrainedOnVariants):
         self._machine.fit(rows.reshape(len(rows), -1), owners)
 
     def likeliest(self, sequence: FloatArray) -> int:
-        """Let the pairs vote."""
+        """Return the label with most votes of the pairwise machines."""
         return int(self._machine.predict(sequence.reshape(1, -1))[0])

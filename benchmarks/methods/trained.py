@@ -33,7 +33,7 @@ class TrainedOnVariants(Method):
         self._sequences.append(np.array([features(each) for each in (shown, *drawn)]))
 
     def prepare(self) -> None:
-        """Train on everything."""
+        """Train on the variants of all gestures."""
         self.train(self._sequences)
 
     def answer(self, query: PoseSequence) -> str:

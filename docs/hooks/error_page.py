@@ -19,6 +19,7 @@ MEANINGS = {
     "expected_missing": "an explanation needs the gesture that was meant",
     "field_invalid": "a form field or `Upload-Metadata` key is not valid",
     "foreign_origin": "the request comes from a page of another server",
+    "demonstration_needed": "the only demonstration of a gesture cannot be removed",
     "gesture_needed": "a phrase uses the gesture that should be deleted",
     "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
     "internal": "unexpected error; the server's log has the details",

@@ -155,7 +155,7 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
 
     """
     random = np.random.default_rng(seed)
-    strokes = _drawn(drawing, manner, random)
+    strokes = _trace(drawing, manner, random)
     first, last = _target(strokes[0][0], drawing, manner), _target(strokes[-1][-1], drawing, manner)
     timeline = Timeline(rate)
     still = [REST] * timeline.frames(0.4)
@@ -171,7 +171,7 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
     timeline.hold("salute", manner.hold)
     timeline.move("lower", 0.75 / manner.tempo, REST, REST)
     timeline.hold("rest", 0.3)
-    return _with_life(timeline, manner, random)
+    return _animate(timeline, manner, random)
 
 
 def move_about(manner: Manner, rate: float, seed: int) -> Performance:
@@ -205,10 +205,10 @@ def move_about(manner: Manner, rate: float, seed: int) -> Performance:
         timeline.move(name, seconds / manner.tempo, target, REST)
         timeline.hold(name, 0.6 if name in ("mask", "point") else 0.08)
     timeline.hold("rest", 0.4)
-    return _with_life(timeline, manner, np.random.default_rng(seed))
+    return _animate(timeline, manner, np.random.default_rng(seed))
 
 
-def _with_life(timeline: Timeline, manner: Manner, random: np.random.Generator) -> Performance:
+def _animate(timeline: Timeline, manner: Manner, random: np.random.Generator) -> Performance:
     """Add what nobody does on purpose: tremor of the hands, drift and sway of the body."""
     time = np.arange(len(timeline.right)) / timeline.rate
     shake = [tremor(random, time, 0.004) for _ in range(2)]
@@ -231,7 +231,7 @@ def _with_life(timeline: Timeline, manner: Manner, random: np.random.Generator) 
     return Performance(timeline.rate, tuple(timeline.phases), arms[0], arms[1], body)
 
 
-def _drawn(drawing: Drawing, manner: Manner, random: np.random.Generator) -> list[Array]:
+def _trace(drawing: Drawing, manner: Manner, random: np.random.Generator) -> list[Array]:
     """Give the strokes as this take draws them, ``(N, 2)`` in half sizes."""
     angle = np.radians(manner.tilt)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

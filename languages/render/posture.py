@@ -162,7 +162,7 @@ def _pose_arm(
     twist = _twist(turn @ forearm.T, unit(wrist - elbow))
     rotations[f"lowerarm02.{side}"] = axis_rotation(unit(wrist - elbow), twist / 2) @ forearm
     rotations[hand] = turn
-    _pose_fingers(body, rotations, side, HandAxes(*_turned(axes, turn)), target.fingers)
+    _pose_fingers(body, rotations, side, HandAxes(*_turn(axes, turn)), target.fingers)
 
 
 def _two_bones(
@@ -199,7 +199,7 @@ def _pose_fingers(
             rotations[name] = _shortest(turn @ (end - bone.head), direction) @ turn
 
 
-def _turned(axes: HandAxes, turn: Array) -> tuple[Array, Array, Array]:
+def _turn(axes: HandAxes, turn: Array) -> tuple[Array, Array, Array]:
     return turn @ axes.pointing, turn @ axes.index_side, turn @ axes.palm
 
 

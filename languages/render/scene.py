@@ -101,7 +101,7 @@ class Scene:
         image = self._backdrop.at(time)
         image *= 1 - layer[..., 3:]
         image += layer[..., :3]
-        breath = self._carried(joints, "head", self._mouth[None])[0]
+        breath = self._carry(joints, "head", self._mouth[None])[0]
         draw_bubbles(image, self.camera, self.bubbles, breath, time)
         frame: npt.NDArray[np.uint8] = np.clip(image + 0.5, 0, 255).astype(np.uint8)
         return frame
@@ -110,12 +110,12 @@ class Scene:
         """Draw the diver alone: RGB and coverage, supersampled, nothing where no diver is."""
         points = np.concatenate(
             [self.body.skin(joints)]
-            + [self._carried(joints, part.bone, part.vertices) for part in self._parts]
+            + [self._carry(joints, part.bone, part.vertices) for part in self._parts]
         )
         fragments = rasterize(self._fine, points, self._triangles)
         layer = np.zeros((self._fine.height, self._fine.width, 4), np.float32)
         flat = layer.reshape(-1, 4)
-        flat[fragments.pixel, :3] = self._shaded(points, fragments, time)
+        flat[fragments.pixel, :3] = self._shade(points, fragments, time)
         flat[fragments.pixel, 3] = 1
         self._add_glass(flat, joints, fragments)
         return layer
@@ -124,13 +124,13 @@ class Scene:
         """Give where points ``(N, 3)`` appear in the clip, ``(N, 2)`` pixels."""
         return self.camera.project(points)[0]
 
-    def _carried(self, joints: Joints, bone: str, vertices: Array) -> Array:
+    def _carry(self, joints: Joints, bone: str, vertices: Array) -> Array:
         number = self.body.index[bone]
         offset = vertices - self.body.bones[number].head
         moved: Array = offset @ joints.rotation[number].T + joints.position[number]
         return moved
 
-    def _shaded(self, points: Array, fragments: Fragments, time: float) -> Array:
+    def _shade(self, points: Array, fragments: Fragments, time: float) -> Array:
         """Light the visible surface: two lamps, sky light, caustics, gloss and haze."""
         normals = vertex_normals(points, self._triangles)
         rest = np.zeros((len(points), len(SkinMap.COLUMNS)))
@@ -141,13 +141,13 @@ class Scene:
         albedo = np.where(np.isnan(given), painted, given)
         position = self.camera.position.astype(np.float32)
         sun, fill = SUN.astype(np.float32), FILL.astype(np.float32)
-        colour = _lit(surface[:, :3], surface[:, 3:6], albedo, position, sun, fill, time)
+        colour = _light(surface[:, :3], surface[:, 3:6], albedo, position, sun, fill, time)
         rise = (surface[:, 2] - position[2]) / fragments.depth
         return self.water.haze(colour, fragments.depth, rise)
 
     def _add_glass(self, flat: Array, joints: Joints, fragments: Fragments) -> None:
         """Lay the mask's window over the face, with a slanting reflection."""
-        points = self._carried(joints, self._glass.bone, self._glass.vertices)
+        points = self._carry(joints, self._glass.bone, self._glass.vertices)
         behind = np.full((self._fine.height, self._fine.width), np.inf, np.float32)
         behind.ravel()[fragments.pixel] = fragments.depth
         glass = rasterize(self._fine, points, self._glass.triangles, behind)
@@ -162,7 +162,7 @@ class Scene:
 
 
 @njit(cache=True)
-def _lit(places, normals, albedo, camera, sun, fill, time):  # type: ignore[no-untyped-def]
+def _light(places, normals, albedo, camera, sun, fill, time):  # type: ignore[no-untyped-def]
     """Light every pixel: two lamps and the sky, caustics on what faces up, gloss and rim light."""
     colour = np.empty_like(albedo)
     for pixel in range(len(places)):

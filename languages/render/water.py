@@ -65,7 +65,7 @@ class Backdrop:
         random = np.random.default_rng(seed)
         rays = camera.rays()
         image = water.colour(rays[..., 2])
-        image = _with_floor(image, water, camera, rays, random)
+        image = _add_floor(image, water, camera, rays, random)
         grain = random.normal(0, water.grain, (*image.shape[:2], 1))
         self._still = (image + grain).astype(np.float32)
         self._shafts = tuple(
@@ -80,7 +80,7 @@ class Backdrop:
         return painted
 
 
-def _with_floor(
+def _add_floor(
     image: Array, water: Water, camera: Camera, rays: Array, random: np.random.Generator
 ) -> Array:
     """Paint the sea bed: sand with ripples, fading into the distance."""

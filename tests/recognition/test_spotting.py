@@ -149,3 +149,20 @@ def test_time_must_go_on(recognizer: Recognizer) -> None:
 def test_profile_paper_cannot_listen(recognizer: Recognizer) -> None:
     with pytest.raises(OsgError, match="use profile full"):
         Spotter(Recognizer(recognizer.language, "paper"))
+
+
+def test_a_gesture_may_last_as_long_as_any_of_its_demonstrations() -> None:
+    def shown(seconds: float) -> PoseSequence:
+        moves = [Movement(TOP, 0.001), Movement(SHAPES["circle"], seconds)]
+        return perform(moves, noise=0.003).poses.between(0.04, seconds + 0.5)
+
+    quick = Gesture.from_demonstration("circle", shown(0.8))
+    moves = [
+        *(Movement(DOWN, 0.5), still(DOWN, 1.0), Movement(TOP, 0.7), still(TOP, 0.5)),
+        *(Movement(SHAPES["circle"], 3.0), still(TOP, 0.5), Movement(DOWN, 0.7), still(DOWN, 2.0)),
+    ]
+    poses = perform(moves, noise=0.003).poses
+    for gesture, found in ((quick, []), (quick.with_demonstration(shown(2.6)), ["circle"])):
+        recognizer = Recognizer(Language("one", [gesture, demonstration("zigzag")]))
+        labels = [each.recognition.label for _, each in spotted(recognizer, poses)]
+        assert labels == found

@@ -63,7 +63,9 @@ class MajorityVote:
 
         A gesture's distance is that of its nearest demonstration.
         """
-        distances = np.minimum.reduceat(self._shapes.distances(trajectory), self._first, axis=1)
+        of_all = self._shapes.distances(trajectory)
+        distances = np.minimum.reduceat(of_all, self._first, axis=1)
+        relative = weigh_relative_distances(of_all, self._factors).sum(axis=0)
         count = len(self._labels)
         return ScoreTable(
             voters=tuple(voter.name for voter in PAPER_VOTERS),
@@ -72,8 +74,10 @@ class MajorityVote:
             turned=np.zeros(count),
             traversals=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
-            demonstrations=np.zeros(count, dtype=np.intp),
             novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
+            demonstrations=np.array(
+                [part.argmin() for part in np.split(relative, self._first[1:])]
+            ),
         )
 
     def may_win(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from app.recognition.decision.rejection import take_largest_novelty
 from app.recognition.features.traversals import Traversal
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 
 
@@ -47,6 +49,14 @@ class ScoreTable:
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
     demonstrations: npt.NDArray[np.intp]
+
+    def nearest_demonstration(self, gesture: int) -> int:
+        """Return the index of the demonstration that stands for a gesture, given its own index."""
+        return int(self.demonstrations[gesture])
+
+    def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
+        """Return a gesture with only the demonstration that the query was compared with."""
+        return gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
 
     @property
     def scores(self) -> FloatArray:

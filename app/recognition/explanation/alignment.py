@@ -102,6 +102,8 @@ class Alignment:
         their sum.
     backward, mirrored
         Whether the gesture is traversed backwards, and whether it is its mirror image.
+    demonstration
+        Which of the gesture's demonstrations it is, from 0.
 
     """
 
@@ -116,6 +118,7 @@ class Alignment:
     costs: FloatArray
     backward: bool
     mirrored: bool
+    demonstration: int = 0
 
     @property
     def distance(self) -> float:
@@ -137,6 +140,7 @@ class Alignment:
             "distance": round(self.distance, DIGITS),
             "backward": self.backward,
             "mirrored": self.mirrored,
+            "demonstration": self.demonstration,
             "parts": list(self.parts),
             "pairs": self.pairs.tolist(),
             "time": np.round(self.time, DIGITS).tolist(),

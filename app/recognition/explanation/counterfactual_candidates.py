@@ -9,6 +9,7 @@ import numpy as np
 from app.recognition.decision.motion_references import CLEARLY_SLOWER
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_kinds import (
+    FurtherDemonstration,
     Intervention,
     KeypointRepair,
     NewDemonstration,
@@ -20,6 +21,7 @@ from app.recognition.explanation.counterfactual_kinds import (
     Trim,
     VoterWeight,
 )
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
@@ -136,6 +138,9 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
         yield _other_salient(gesture, {*moved} & {*gesture.trajectory.landmarks})
         if PROFILES[context.profile].compares_motion:
             yield from _switches(context, label, expected=label == expected)
+    shown = context.language.gesture(expected).single_demonstrations()
+    if len(shown) < MAX_DEMONSTRATIONS:
+        yield [FurtherDemonstration(size=1 / (len(shown) + 1), label=expected)]
     yield [NewDemonstration(size=1.0, label=expected)]
 
 

@@ -26,6 +26,10 @@ Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
 
+Preference = Literal["first", "usual", "last"]
+"""Rank of an intervention among those that help, before its size."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Intervention(ABC):
     """Base of interventions.
@@ -39,6 +43,7 @@ class Intervention(ABC):
 
     kind: ClassVar[str]
     reach: ClassVar[Reach]
+    preference: ClassVar[Preference] = "usual"
     size: float
 
     @property
@@ -203,17 +208,41 @@ class SwitchPosition(Intervention):
 
 
 @dataclass(frozen=True, kw_only=True)
-class NewDemonstration(Intervention):
-    """The take as the gesture's demonstration; its size is 1."""
+class FurtherDemonstration(Intervention):
+    """The take as one more demonstration of a gesture; its size is its share of them.
 
-    kind = "demonstration"
+    Preferred, because it is the only intervention that adds evidence and takes none away.
+    """
+
+    kind = "further_demonstration"
     reach = "gesture"
+    preference = "first"
     label: str
 
     @property
     def words(self) -> str:
         """See `Change`."""
-        return f"with this take as the demonstration of {self.label!r}"
+        return f"with this take as another demonstration of {self.label!r}"
+
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
+        """See `Change`."""
+        gesture = context.language.gesture(self.label)
+        return context.with_gesture(gesture.with_demonstration(context.poses))
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewDemonstration(Intervention):
+    """The take in place of the gesture's first demonstration; its size is 1. The last resort."""
+
+    kind = "demonstration"
+    reach = "gesture"
+    preference = "last"
+    label: str
+
+    @property
+    def words(self) -> str:
+        """See `Change`."""
+        return f"with this take in place of the demonstration of {self.label!r}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Change`."""
@@ -224,4 +253,4 @@ class NewDemonstration(Intervention):
             description=before.description,
             command=before.command,
         )
-        return context.with_gesture(replace(made, switches=before.switches))
+        return context.with_gesture(replace(made, switches=before.switches, further=before.further))

@@ -1,22 +1,22 @@
-"""Counterfactuals: the smallest interventions that would have corrected a recognition.
+"""Counterfactuals: the interventions that would have corrected a recognition.
 
 Each is verified by applying the intervention and running the recogniser again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_candidates import list_interventions
-from app.recognition.explanation.counterfactual_kinds import Intervention
+from app.recognition.explanation.counterfactual_kinds import Intervention, Preference
 from app.recognition.gestures.gesture import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants
@@ -93,7 +93,10 @@ class Counterfactual:
 
 @dataclass(frozen=True, kw_only=True)
 class Counterfactuals:
-    """The interventions that correct a recognition, the smallest first.
+    """The interventions that correct a recognition, in the order in which to try them.
+
+    A further demonstration comes first unless another gesture loses a take by it; then the
+    others, the smallest first; last those that lose the demonstration there is.
 
     Attributes
     ----------
@@ -143,8 +146,8 @@ def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterf
                 found.append(helps)
                 break
     rest = _Rest(context)
-    described = tuple(_describe(each, expected, rest) for each in _choose_smallest(found))
-    return Counterfactuals(found=described, tried=tried)
+    described = [_describe(each, expected, rest) for each in _choose_smallest(found)]
+    return Counterfactuals(found=tuple(sorted(described, key=_rank)), tried=tried)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +167,20 @@ def _choose_smallest(found: Iterable[_Found]) -> list[_Found]:
         for _, group in groupby(by_kind, key=lambda each: each.change.kind)
         for each in list(group)[:MOST_OF_A_KIND]
     ]
-    return sorted(chosen, key=lambda each: (each.change.size, -each.margin))[:MOST]
+    return sorted(chosen, key=lambda each: (_PLACES[each.change.preference], each.change.size))[
+        :MOST
+    ]
+
+
+_PLACES: Final[Mapping[Preference, int]] = {"first": 0, "usual": 1, "last": 2}
+
+
+def _rank(found: Counterfactual) -> tuple[int, float, float]:
+    """Return the sort key of a counterfactual: preference, size, margin."""
+    preference = found.change.preference
+    if preference == "first" and found.effect is not None and found.effect.lost:
+        preference = "last"
+    return _PLACES[preference], found.change.size, -found.margin
 
 
 def _verify(context: RecognitionContext, change: Intervention, expected: str) -> _Found | None:
@@ -210,7 +226,12 @@ class _Rest:
         return list(self._all())
 
     def _all(self) -> Iterator[tuple[str, Trajectory]]:
-        for gesture in self._situation.language.gestures:
+        shown = (
+            each
+            for gesture in self._situation.language.gestures
+            for each in gesture.single_demonstrations()
+        )
+        for gesture in shown:
             if gesture.trajectory is not None:
                 yield gesture.label, gesture.trajectory
                 for variant in draw_variants(gesture.trajectory, VARIANTS, person="another"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import write_sentence
 from app.recognition.explanation.vote_breakdown import break_down_votes
 from app.recognition.features.motion import build_movement
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.posture import Posture
@@ -160,7 +161,7 @@ class _Pairings:
         for voter in (Path(), Posture()) if self._full else (Path(),):
             aligned = align(query, example, self._landmarks, start=self._start, voter=voter)
             if aligned is not None:
-                yield aligned
+                yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
 
     def differences(self, index: int) -> tuple[Difference, ...]:
         """Return the differences between the query and a gesture."""
@@ -169,15 +170,18 @@ class _Pairings:
             return ()
         pairing = Pairing.of(
             self._query,
-            self._gestures[index],
+            self._gesture(index),
             example.traversal,
             mirrored=example.mirrored,
             start=self._start,
         )
         return () if pairing is None else find_differences(pairing, sees_direction=self._full)
 
+    def _gesture(self, index: int) -> Gesture:
+        return self._table.find_nearest_demonstration(self._gestures, index)
+
     def _example(self, index: int) -> Example | None:
-        gesture, traversal = self._gestures[index], self._table.traversals[index]
+        gesture, traversal = self._gesture(index), self._table.traversals[index]
         if traversal is None:
             return find_nearest_example(self._query, gesture, self._landmarks)
         mirrored = bool(self._table.mirrored[index])

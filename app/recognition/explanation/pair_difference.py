@@ -48,7 +48,7 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     None where the two cannot be compared.
 
     """
-    shown, against = (recognizer.language.gestures[index] for index in (one, other))
+    shown = recognizer.language.gestures[one]
     if shown.trajectory is None:
         return None
     query = condense(shown.trajectory)
@@ -56,6 +56,7 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     traversal = compared.traversals[other]
     if traversal is None:
         return None
+    against = compared.find_nearest_demonstration(recognizer.language.gestures, other)
     pairing = Pairing.of(query, against, traversal, mirrored=bool(compared.mirrored[other]))
     if pairing is None:
         return None

@@ -24,6 +24,7 @@ from app.recognition.health.report import (
     LandmarkHealth,
     PairHealth,
 )
+from app.recognition.health.second_divers import advise_second_divers
 from app.recognition.health.simulated_trials import SimulatedTrials
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
@@ -116,6 +117,8 @@ def check_health(
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
+    if person == "another":
+        findings += advise_second_divers(language, gestures)
     findings += _profile_findings(language)
     if language.grammar is not None:
         findings += [each.finding() for each in find_ambiguities(language.grammar)]

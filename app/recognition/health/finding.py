@@ -41,7 +41,7 @@ class Finding:
     code
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``unrejecting``, ``empty``, and of the grammar ``phrases_`` with one of
+        ``one_diver``, ``unrejecting``, ``empty``, and of the grammar ``phrases_`` with one of
         `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures concerned; none for phrases.

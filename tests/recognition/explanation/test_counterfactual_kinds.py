@@ -8,6 +8,7 @@ import pytest
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer, Take
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_kinds import (
+    FurtherDemonstration,
     Intervention,
     KeypointRepair,
     NewDemonstration,
@@ -18,6 +19,7 @@ from app.recognition.explanation.counterfactual_kinds import (
     Trim,
     VoterWeight,
 )
+from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
 
@@ -94,10 +96,30 @@ def test_a_new_demonstration_keeps_what_the_author_wrote() -> None:
     assert after.result.label == "circle"  # of two that are now the same, the first
 
 
+def test_a_new_demonstration_keeps_the_further_ones(context: RecognitionContext) -> None:
+    several = FurtherDemonstration(size=0.5, label="circle").apply(context)
+    after = NewDemonstration(size=1.0, label="circle").apply(several).language.gesture("circle")
+    assert after.further == several.language.gesture("circle").further
+    assert (after.image == after.further[0].image).all()
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_further_demonstration_leaves_the_others_as_they_are(profile: str) -> None:
+    query = recording(wedge)
+    context = RecognitionContext(recognizer=Recognizer(LANGUAGE, profile), poses=query, whole=query)
+    after = FurtherDemonstration(size=0.5, label="circle").apply(context)
+    first, second = after.language.gesture("circle").single_demonstrations()
+    assert (first.image == LANGUAGE.gesture("circle").image).all()
+    assert (second.image == LANGUAGE.gesture("wedge").image).all()
+    assert (after.profile, after.poses) == (context.profile, query)
+
+
 def test_nothing_can_be_demonstrated_by_a_hand_at_rest(context: RecognitionContext) -> None:
     still = recording(lambda share: circle(0 * share))
     with pytest.raises(GestureError, match="nothing moves"):
         NewDemonstration(size=1.0, label="circle").apply(replace(context, poses=still))
+    with pytest.raises(GestureError, match="nothing moves"):
+        FurtherDemonstration(size=0.5, label="circle").apply(replace(context, poses=still))
 
 
 @pytest.mark.parametrize(
@@ -122,7 +144,16 @@ def test_nothing_can_be_demonstrated_by_a_hand_at_rest(context: RecognitionConte
             {"switch": "tempo", "position": "off"},
             "switch tempo of 'a' off",
         ),
-        (NewDemonstration(size=1.0, label="a"), {"label": "a"}, "this take"),
+        (
+            FurtherDemonstration(size=0.5, label="a"),
+            {"label": "a", "reach": "gesture"},
+            "with this take as another demonstration of 'a'",
+        ),
+        (
+            NewDemonstration(size=1.0, label="a"),
+            {"label": "a"},
+            "with this take in place of the demonstration of 'a'",
+        ),
     ],
 )
 def test_a_change_is_plain_json_to_apply_and_words_to_read(

@@ -50,7 +50,8 @@ def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
 def test_the_smallest_come_first_and_not_too_many_of_a_kind(profile: str) -> None:
     told = found_for(recording(SHAPES["square"], jitter=0.03), "circle", RECOGNIZERS[profile])
     sizes = [each.change.size for each in told.found]
-    assert sizes == sorted(sizes)
+    usual = [each.change.size for each in told.found if each.change.preference == "usual"]
+    assert usual == sorted(usual)
     assert all(0.0 < size <= 1.0 for size in sizes)
     assert len(sizes) <= MOST
     kinds = Counter(each.change.kind for each in told.found)
@@ -113,12 +114,57 @@ def test_what_a_change_does_to_the_language_is_told() -> None:
     assert made.effect.right_after < made.effect.right_before
 
 
+def test_another_demonstration_is_offered_first_and_replacing_the_only_one_last() -> None:
+    language = Language(
+        "pool",
+        [
+            Gesture.from_demonstration(name, recording(SHAPES[name]))
+            for name in ("circle", "infinity", "line")
+        ],
+    )
+    query = recording(SHAPES["square"], jitter=0.005)
+    found = found_for(query, "line", Recognizer(language, "paper")).found
+    assert found[0].change.kind == "further_demonstration"
+    assert found[0].effect is not None
+    assert found[0].effect.lost == ()
+    assert found[0].effect.right_after == found[0].effect.right_before
+    assert found[-1].change.kind == "demonstration"
+    assert found[-1].effect is not None
+    assert found[-1].effect.lost == ("line",)
+
+
+def test_another_demonstration_that_another_gesture_loses_by_comes_after_the_others() -> None:
+    told = found_for(recording(SHAPES["line"], jitter=0.01), "circle", RECOGNIZERS["paper"])
+    kinds = [each.change.kind for each in told.found]
+    further = told.found[kinds.index("further_demonstration")]
+    assert further.effect is not None
+    assert "line" in further.effect.lost
+    assert kinds[-2:] == ["further_demonstration", "demonstration"]
+
+
+def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() -> None:
+    circled = LANGUAGE.gesture("circle")
+    for seed in range(4):
+        circled = circled.with_demonstration(recording(SHAPES["circle"], jitter=0.01, seed=seed))
+    full = Recognizer(LANGUAGE.with_changed(circled), "paper")
+    told = found_for(recording(SHAPES["line"], jitter=0.01), "circle", full)
+    assert told.found
+    assert "further_demonstration" not in {each.change.kind for each in told.found}
+    # Every demonstration is recognised again, with one simulated take.
+    effects = [each.effect for each in told.found if each.effect is not None]
+    assert {each.takes for each in effects} == {2 * (len(SHAPES) + 4)}
+
+
 def test_no_weight_helps_a_gesture_whose_keypoint_is_not_seen() -> None:
     left = Gesture.from_demonstration("left", recording(wedge, hand="left_wrist"))
     recognizer = Recognizer(Language("pool", [*LANGUAGE.gestures, left]), "paper")
     landmarks = tuple(name for name in POSE_LANDMARKS if name != "left_wrist")
     told = found_for(recording(SHAPES["circle"], landmarks=landmarks), "left", recognizer)
-    assert {each.change.kind for each in told.found} <= {"salient", "demonstration"}
+    assert {each.change.kind for each in told.found} <= {
+        "salient",
+        "further_demonstration",
+        "demonstration",
+    }
 
 
 @pytest.mark.parametrize(

@@ -211,3 +211,18 @@ def test_votes_without_weight_are_not_counted() -> None:
     assert sum(explanation.votes.values()) == 5
     assert "of five voters" in explanation.sentence
     assert not any(each.wrong for each in explanation.verdicts if each.voter in tuning.weights)
+
+
+def test_the_take_is_aligned_with_the_demonstration_that_is_nearest() -> None:
+    both = LANGUAGE.gesture("circle").with_demonstration(recording(wedge, hand="left_wrist"), "Ben")
+    recognizer = Recognizer(LANGUAGE.with_changed(both), "paper")
+    for query, nearest in (
+        (recording(circle, jitter=0.01), 0),
+        (recording(wedge, hand="left_wrist", jitter=0.01), 1),
+    ):
+        explanation = explain(context(query, recognizer), "circle")
+        (shown,) = [each for each in explanation.alignments if each.label == "circle"]
+        assert explanation.right
+        assert shown.demonstration == shown.to_dict()["demonstration"] == nearest
+        assert shown.distance < 0.05
+        assert explanation.differences == ()
