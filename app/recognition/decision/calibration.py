@@ -36,7 +36,7 @@ OWN = 0.5
 """Weight of the gesture's own mean distance against that of all gestures (`Voter.within`), in the
 geometric mean of both."""
 
-REACH = 4.0
+REACH = 5.0
 """A threshold in typical distances of the demonstrator's own further takes.
 
 The median over seven recorded sets of what one in twenty of other people's takes exceeds

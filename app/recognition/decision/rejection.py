@@ -43,9 +43,9 @@ SCORE_FLOOR = 0.02
 """Added to scores and novelties before the logarithm: the value of two takes by one careful person.
 """
 
-CONFIDENCE_AT_ONE = -2.3
-CONFIDENCE_PER_NOVELTY = -0.6
-CONFIDENCE_PER_SHARE = -2.5
+CONFIDENCE_AT_ONE = -2.0
+CONFIDENCE_PER_NOVELTY = -0.65
+CONFIDENCE_PER_SHARE = -2.3
 """Coefficients of `estimate_confidence`, fitted on seven recorded sets, in languages of half of the
 classes; fitted on six, they hold on five of the seven (`benchmarks/studies/people.md`)."""
 

@@ -19,7 +19,7 @@ class ArmPath(DtwVoter):
     name = "arm_path"
     unit = "mean squared distance along the alignment, in squared sizes of the movement"
     prior = 2.0
-    within = 0.2
+    within = 0.11
     between = 1.0
     cue = "movement"
 

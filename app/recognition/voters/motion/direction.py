@@ -19,7 +19,7 @@ class Direction(DtwVoter):
     name = "direction"
     unit = "mean squared difference of unit vectors along the alignment, at most 4 a step"
     prior = 1.0
-    within = 0.21
+    within = 0.14
     between = 1.3
     cue = "movement"
 

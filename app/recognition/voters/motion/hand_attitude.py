@@ -20,7 +20,7 @@ class HandAttitude(DtwVoter):
     name = "hand_attitude"
     unit = "mean squared difference of the hands' bones along the alignment, in squared sizes"
     prior = 0.0
-    within = 0.2
+    within = 0.18
     between = 0.56
 
     def describe(self, movement: Movement) -> FloatArray:

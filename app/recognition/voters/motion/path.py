@@ -17,7 +17,7 @@ class Path(DtwVoter):
     name = "path"
     unit = "mean squared distance along the alignment, in squared sizes of the gesture"
     prior = 0.0
-    within = 0.13
+    within = 0.1
     between = 1.1
     cue = "movement"
 

@@ -19,7 +19,7 @@ class Place(DtwVoter):
     name = "place"
     unit = "mean squared distance along the alignment, in squared torso lengths"
     prior = 2.0
-    within = 0.5
+    within = 0.65
     between = 2.6
     cue = "place"
 

@@ -23,7 +23,7 @@ class Posture(DtwVoter):
     name = "posture"
     unit = "mean squared difference of the limbs along the alignment, in squared sizes"
     prior = 0.0
-    within = 0.25
+    within = 0.22
     between = 1.1
 
     def describe(self, movement: Movement) -> FloatArray:

@@ -19,7 +19,7 @@ class Tempo(MotionVoter):
     name = "tempo"
     unit = "doublings of the duration"
     prior = 0.0
-    within = 0.35
+    within = 0.38
     between = 0.5
     weight_where_needed = 0.3
     """Added to the score per doubling of the duration, of a gesture whose tempo counts: more than

@@ -20,7 +20,7 @@ class Velocity(DtwVoter):
     name = "velocity"
     unit = "mean squared difference along the alignment, in squared mean velocities"
     prior = 1.0
-    within = 0.25
+    within = 0.16
     between = 1.1
     cue = "movement"
 
