@@ -264,7 +264,7 @@ def convert(
     if any(gesture.trajectory is None for gesture in language.gestures):
         people.print(f"{source}: no trajectories, only images: osg-reference files have none")
     several = [gesture.label for gesture in language.gestures if gesture.further]
-    if several and file_format is not FileFormat.OSG_STUDIO:
+    if several and file_format is FileFormat.OSG_REFERENCE:
         people.print(
             f"{target}: {file_format.value} keeps only the first demonstration of "
             f"{', '.join(several)}",
