@@ -263,6 +263,13 @@ def convert(
         file_format = FileFormat.PROTEUS if proteus else FileFormat.OSG_STUDIO
     if any(gesture.trajectory is None for gesture in language.gestures):
         people.print(f"{source}: no trajectories, only images: osg-reference files have none")
+    several = [gesture.label for gesture in language.gestures if gesture.further]
+    if several and file_format is FileFormat.OSG_REFERENCE:
+        people.print(
+            f"{target}: {file_format.value} keeps only the first demonstration of "
+            f"{', '.join(several)}",
+            markup=False,
+        )
     if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -121,3 +122,20 @@ def test_both_hands_are_recognised_after_two_demonstrations(
         ended = osg_studio("recognize", clip, "--language", pool, "--profile", "paper", *RATE)
         assert ended.code == 0, ended.error
         assert ended.out.split("\t")[2] == "circle"
+
+
+def test_a_format_of_one_demonstration_keeps_the_first_and_says_so(
+    osg_studio: OsgStudio, pool: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "reference.json"
+    ended = osg_studio("convert", pool, target, "--format", "osg-reference")
+    assert ended.code == 0, ended.error
+    assert "keeps only the first demonstration of circle" in " ".join(ended.error.split())
+    first = Language.load(pool).gesture("circle")
+    written = json.loads(target.read_text())["circle"]
+    assert written["image"] == first.image.tolist()
+    assert written["salient_keypoints"] == ["RIGHT_WRIST"]
+    copy = tmp_path / "copy.json"
+    ended = osg_studio("convert", pool, copy)
+    assert "first demonstration" not in ended.error
+    assert copy.read_bytes() == pool.read_bytes()

@@ -77,7 +77,8 @@ def change_gesture(
     state = studio.languages.edit(language_id, edit, expected)
     if change.demonstration is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
-        keep_source(studio, state, now, change.demonstration, demonstration)
+        index = -1 if change.further else 0
+        keep_source(studio, state, now, change.demonstration, demonstration, index=index)
     return announce(studio, state, response)
 
 

@@ -87,7 +87,8 @@ def change_gesture_of(
     changed = gesture
     if demonstration is not None:
         diver = "" if change.demonstration is None else change.demonstration.diver
-        changed = _remake(gesture, demonstration, change.salient, diver)
+        show = _show_further if change.further else _remake
+        changed = show(gesture, demonstration, change.salient or None, diver)
     elif change.salient:
         changed = _set_salient(gesture, change.salient)
     switches = set_switches(changed.switches, change.direction, change.tempo, change.mirror)
@@ -112,9 +113,8 @@ def add_demonstration_to(
 
     """
     gesture = gesture_in(language, draft.label)
-    salient = draft.salient or None
     return language.with_changed(
-        gesture.with_demonstration(demonstration.poses, draft.diver, salient=salient)
+        _show_further(gesture, demonstration, draft.salient or None, draft.diver)
     )
 
 
@@ -188,7 +188,7 @@ def _remake(
 ) -> Gesture:
     """Replace the first demonstration; what the gesture says and what counts stays."""
     made = Gesture.from_demonstration(
-        gesture.label, demonstration.poses, salient=salient or None, diver=diver
+        gesture.label, demonstration.poses, salient=salient, diver=diver
     )
     return replace(
         made,
@@ -197,6 +197,13 @@ def _remake(
         switches=gesture.switches,
         further=gesture.further,
     )
+
+
+def _show_further(
+    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
+) -> Gesture:
+    """Add a demonstration; all else stays."""
+    return gesture.with_demonstration(demonstration.poses, diver, salient=salient)
 
 
 def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:

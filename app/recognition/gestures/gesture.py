@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -210,7 +211,11 @@ class Gesture:
 
     def single_demonstrations(self) -> tuple[Gesture, ...]:
         """Return one gesture for each demonstration, the first one's first."""
-        first = replace(self, further=()) if self.further else self
+        return self._apart if self.further else (self,)
+
+    @cached_property
+    def _apart(self) -> tuple[Gesture, ...]:
+        first = replace(self, further=())
         return (first, *(first._with_shown((each,)) for each in self.further))
 
     def with_demonstration(

@@ -344,8 +344,14 @@ export interface components {
         GestureChange: {
             /** Label */
             label?: string | null;
-            /** @description Takes the place of the first demonstration */
+            /** @description Takes the place of the first demonstration, unless `further` */
             demonstration?: components["schemas"]["NewDemonstration"] | null;
+            /**
+             * Further
+             * @description Add the demonstration to those that the gesture has
+             * @default false
+             */
+            further: boolean;
             /**
              * Diver
              * @description Name of the first demonstration's diver

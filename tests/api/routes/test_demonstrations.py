@@ -196,3 +196,20 @@ def test_showing_the_first_anew_keeps_the_others(
     assert [each["source"]["clip_id"] for each in shown] == [line_clip, backwards_clip]
     assert client.patch(address, json={"diver": "Dora"}).status_code == 200
     assert [each["diver"] for each in listed(client, place)] == ["Dora", "Ben"]
+
+
+def test_a_change_of_the_gesture_may_add_a_demonstration(
+    client: httpx.Client, language_id: str, place: str, circle_clip: str, backwards_clip: str
+) -> None:
+    change = {"demonstration": {"clip_id": backwards_clip, "diver": "Ben"}, "further": True}
+    tried = client.post(
+        f"{LANGUAGES}/{language_id}/preview", json={"label": "circle", "change": change}
+    )
+    assert tried.json()["problem"] is None
+    assert len(listed(client, place)) == 1
+    address = f"{LANGUAGES}/{language_id}/gestures/circle"
+    (gesture,) = client.patch(address, json=change | {"command": "stay"}).json()["gestures"]
+    assert gesture["command"] == "stay"
+    assert [each["diver"] for each in gesture["demonstrations"]] == ["Ana", "Ben"]
+    sources = [each["source"]["clip_id"] for each in gesture["demonstrations"]]
+    assert sources == [circle_clip, backwards_clip]

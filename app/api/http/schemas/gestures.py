@@ -59,7 +59,10 @@ class GestureChange(Body):
 
     label: Label | None = None
     demonstration: NewDemonstration | None = Field(
-        default=None, description="Takes the place of the first demonstration"
+        default=None, description="Takes the place of the first demonstration, unless `further`"
+    )
+    further: bool = Field(
+        default=False, description="Add the demonstration to those that the gesture has"
     )
     diver: Diver | None = Field(default=None, description="Name of the first demonstration's diver")
     direction: SwitchPosition | None = None
