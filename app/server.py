@@ -27,6 +27,7 @@ from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.body_limit import BodyLimit
 from app.api.middleware.headers import SecurityHeaders
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
+from app.api.middleware.trailing_slash import NoTrailingSlash
 from app.api.routes import (
     checks,
     clips,
@@ -238,6 +239,7 @@ def _guard(app: FastAPI, settings: Settings) -> None:
         f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.max_language_bytes,
     }
+    app.add_middleware(NoTrailingSlash)
     app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)

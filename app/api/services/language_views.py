@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from urllib.parse import quote
+from urllib.parse import urlencode
 
 from fastapi import Response
 
@@ -63,7 +63,7 @@ def view_gesture(
 ) -> GestureView:
     """Return a gesture of a revision; `source` is the clip of its demonstration."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
-    place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
+    query = urlencode({"label": gesture.label, "revision": state.revision.revision})
     switches = gesture.switches
     return GestureView(
         direction=switches.direction,
@@ -73,7 +73,7 @@ def view_gesture(
         description=gesture.description,
         command=gesture.command,
         salient=list(gesture.salient),
-        thumbnail=f"{place}?revision={state.revision.revision}",
+        thumbnail=f"/api/v1/languages/{state.record.id}/gestures/image?{query}",
         has_trajectory=gesture.trajectory is not None,
         source=source,
     )
