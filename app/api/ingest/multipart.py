@@ -53,8 +53,10 @@ class Upload:
     fields: UploadFields
 
 
-async def receive_file(request: Request, target: Path, settings: Settings) -> Upload:
-    """Write the form's part ``file`` to `target`.
+async def receive_file(
+    request: Request, target: Path, settings: Settings, *, reserved: int = 0
+) -> Upload:
+    """Write the form's part ``file`` to `target`; `reserved` as in `require_space`.
 
     Memory stays at about a megabyte; `target` is the caller's to remove when this raises.
 
@@ -67,7 +69,8 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
 
     """
     stated = request.headers.get("content-length", "")
-    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
+    size = int(stated) if stated.isdecimal() else 0
+    require_space(target.parent, size, settings, reserved=reserved)
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
@@ -240,16 +243,20 @@ async def read_paced(request: Request, settings: Settings) -> AsyncIterator[byte
         yield chunk
 
 
-def require_space(folder: Path, size: int, settings: Settings) -> None:
-    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`."""
-    needed = size + settings.free_disk_bytes
+def require_space(folder: Path, size: int, settings: Settings, *, reserved: int = 0) -> None:
+    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`.
+
+    `reserved` bytes were announced by others and are still to come.
+    """
+    needed = size + reserved + settings.free_disk_bytes
     free = shutil.disk_usage(folder).free
     if free < needed:
+        announced = f", {reserved / 1e6:.0f} MB of it for uploads under way" if reserved else ""
         raise ProblemError(
             507,
             "disk_full",
             f"the server has {free / 1e6:.0f} MB of disk left and needs {needed / 1e6:.0f} MB for "
-            "this; delete clips or free space, then try again",
+            f"this{announced}; delete clips or free space, then try again",
             headers={"Retry-After": "60", "Connection": "close"},
         )
 

@@ -85,10 +85,10 @@ async def upload_clip(
         async for _ in request.stream():
             pass
         return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
-    await require_place_in_queue(request, studio)
+    reserved = await require_place_in_queue(request, studio)
     partial = studio.clips.new_partial()
     try:
-        upload = await receive_file(request, partial, studio.settings)
+        upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         clip = await inspect(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
