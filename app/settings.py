@@ -75,10 +75,16 @@ class Settings(BaseSettings):
     """Space that an upload must leave free, so that the database can still write."""
 
     upload_bytes_per_second: Annotated[int, Field(ge=0)] = 8 * 1024
-    """Slowest upload tolerated after the grace of `upload_grace_seconds`; 0 tolerates any."""
+    """Slowest request body tolerated after `upload_grace_seconds`; 0 tolerates any."""
 
     upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
-    """Seconds before the rate of an upload is checked, and the longest pause within one."""
+    """Seconds before the rate of a request body is checked, and the longest pause within one."""
+
+    idle_seconds: Annotated[float, Field(gt=0)] = 15.0
+    """Seconds for the head of a request; connections without one are then closed."""
+
+    max_connections: Annotated[int, Field(ge=0)] = 0
+    """Open connections, half of them for one address; 0 allows as many as the system does."""
 
     water: WaterCorrection = "auto"
     """Correction of colour and contrast: auto for murky frames, on for all, off for none."""

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import shutil
-import time
 import unicodedata
-from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -74,7 +71,7 @@ async def receive_file(
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
-            async for chunk in read_paced(request, settings):
+            async for chunk in request.stream():
                 parser.feed(chunk)
                 if len(parser.pending) >= _FLUSH_BYTES:
                     await _flush(parser, file)
@@ -84,6 +81,21 @@ async def receive_file(
             raise _malformed("the upload was broken off") from error
         await _flush(parser, file)
     return parser.finished()
+
+
+async def receive_body(request: Request, target: Path, settings: Settings) -> int:
+    """Write a whole body to `target`, and return its size; see `receive_file`."""
+    stated = request.headers.get("content-length", "")
+    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
+    size = 0
+    with await run_in_threadpool(target.open, "wb") as file:
+        try:
+            async for chunk in request.stream():
+                size += len(chunk)
+                await run_in_threadpool(file.write, chunk)
+        except ClientDisconnect as error:
+            raise _malformed("the upload was broken off") from error
+    return size
 
 
 def display_name(name: str) -> str:
@@ -215,34 +227,6 @@ async def _flush(parser: _FilePart, file: BinaryIO) -> None:
     await run_in_threadpool(file.write, data)
 
 
-async def read_paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
-    """Yield the body's chunks as long as they come fast enough.
-
-    Raises
-    ------
-    ProblemError
-        408 when they do not.
-    ClientDisconnect
-        When the sender is gone.
-
-    """
-    began, received = time.monotonic(), 0
-    chunks = aiter(request.stream())
-    while True:
-        try:
-            async with asyncio.timeout(settings.upload_grace_seconds):
-                chunk = await anext(chunks)
-        except StopAsyncIteration:
-            return
-        except TimeoutError as error:
-            raise _too_slow() from error
-        received += len(chunk)
-        excess = time.monotonic() - began - settings.upload_grace_seconds
-        if excess > 0 and received < excess * settings.upload_bytes_per_second:
-            raise _too_slow()
-        yield chunk
-
-
 def require_space(folder: Path, size: int, settings: Settings, *, reserved: int = 0) -> None:
     """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`.
 
@@ -263,8 +247,3 @@ def require_space(folder: Path, size: int, settings: Settings, *, reserved: int 
 
 def _malformed(detail: str) -> ProblemError:
     return ProblemError(400, "malformed_upload", detail, headers={"Connection": "close"})
-
-
-def _too_slow() -> ProblemError:
-    detail = "the upload came too slowly and was ended; try again on a better connection"
-    return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})

@@ -13,6 +13,7 @@ from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name
+from app.api.ingest.multipart import receive_body
 from app.api.services.language_documents import draft_of
 from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio, Studio
@@ -44,8 +45,14 @@ async def import_language(
     name: Annotated[Name, Query()] = "imported",
 ) -> LanguageView:
     """Add the language of a file: ours, or the published implementation's (then under `name`)."""
-    content = await request.body()
-    return await run_in_threadpool(_import, studio, content, name, response)
+    # On disk first: many that are sent slowly must not fill the memory.
+    partial = studio.clips.new_partial()
+    try:
+        await receive_body(request, partial, studio.settings)
+        content = await run_in_threadpool(partial.read_bytes)
+        return await run_in_threadpool(_import, studio, content, name, response)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 @router.get(

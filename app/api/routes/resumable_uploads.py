@@ -26,7 +26,7 @@ from app.api.ingest.intake import (
     require_place_in_queue,
     store,
 )
-from app.api.ingest.multipart import display_name, read_paced, require_space
+from app.api.ingest.multipart import display_name, require_space
 from app.api.middleware.body_limit import too_large
 from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -209,7 +209,7 @@ async def _write(request: Request, upload: Upload, offset: int, studio: Studio) 
     with await run_in_threadpool(upload.path.open, "r+b") as file:
         file.seek(offset)
         try:
-            async for chunk in read_paced(request, studio.settings):
+            async for chunk in request.stream():
                 offset += len(chunk)
                 if offset > upload.size:
                     raise too_large(upload.size)
