@@ -28,8 +28,8 @@ from app.api.middleware.body_limit import BodyLimit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
 from app.api.middleware.pace import BodyPace
+from app.api.middleware.safe_paths import SafePaths
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
-from app.api.middleware.trailing_slash import NoTrailingSlash
 from app.api.routes import (
     checks,
     clips,
@@ -242,7 +242,7 @@ def _guard(app: FastAPI, settings: Settings) -> None:
         f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.max_language_bytes,
     }
-    app.add_middleware(NoTrailingSlash)
+    app.add_middleware(SafePaths)
     app.add_middleware(
         BodyPace,
         grace_seconds=settings.upload_grace_seconds,
