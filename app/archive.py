@@ -87,11 +87,12 @@ def plain_name(entry: ZipInfo) -> str:
 
 def visible_files(archive: ZipFile) -> list[ZipInfo]:
     """Return the entries that are files, without hidden ones such as those of the macOS Finder."""
-    return [
-        entry
-        for entry in archive.infolist()
-        if not entry.is_dir() and not plain_name(entry).startswith(".")
-    ]
+    return [entry for entry in listed_files(archive) if not plain_name(entry).startswith(".")]
+
+
+def listed_files(archive: ZipFile) -> list[ZipInfo]:
+    """Return the entries that are files; one without a name, which no program makes, is none."""
+    return [entry for entry in archive.infolist() if entry.filename and not entry.is_dir()]
 
 
 def names_in(path: Path) -> list[str]:

@@ -25,7 +25,10 @@ from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.body_limit import BodyLimit
+from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
+from app.api.middleware.pace import BodyPace
+from app.api.middleware.safe_paths import SafePaths
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
 from app.api.routes import (
     checks,
@@ -99,6 +102,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     app.state.requests = OpenRequests()
+    app.state.connections = ConnectionGuard(settings.idle_seconds, settings.max_connections)
     app.state.workspaces = registry
     app.state.live_places = asyncio.Semaphore(live.MOST_VIEWS)
     api = APIRouter(prefix=API)
@@ -240,6 +244,12 @@ def _guard(app: FastAPI, settings: Settings) -> None:
         f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.max_language_bytes,
     }
+    app.add_middleware(SafePaths)
+    app.add_middleware(
+        BodyPace,
+        grace_seconds=settings.upload_grace_seconds,
+        bytes_per_second=settings.upload_bytes_per_second,
+    )
     app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)

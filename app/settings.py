@@ -15,6 +15,9 @@ from app.recognition.estimation.water import WaterCorrection
 
 MEBIBYTE = 1024 * 1024
 
+SHORTEST_TOKEN = 16
+"""Characters of a token: 64 bits in hexadecimal, too many to be guessed twenty a minute."""
+
 
 def is_loopback(host: str) -> bool:
     """Return whether `host` is reachable from this machine only."""
@@ -57,7 +60,8 @@ class Settings(BaseSettings):
     """Port to listen on; 0 lets the system choose."""
 
     token: SecretStr | None = None
-    """Secret that every request must contain; required when other machines can reach `host`."""
+    """Secret of at least 16 characters that every request must contain; required when other
+    machines can reach `host`."""
 
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = ()
     """Further host names of the app, comma separated in the environment."""
@@ -75,10 +79,16 @@ class Settings(BaseSettings):
     """Space that an upload must leave free, so that the database can still write."""
 
     upload_bytes_per_second: Annotated[int, Field(ge=0)] = 8 * 1024
-    """Slowest upload tolerated after the grace of `upload_grace_seconds`; 0 tolerates any."""
+    """Slowest request body tolerated after `upload_grace_seconds`; 0 tolerates any."""
 
     upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
-    """Seconds before the rate of an upload is checked, and the longest pause within one."""
+    """Seconds before the rate of a request body is checked, and the longest pause within one."""
+
+    idle_seconds: Annotated[float, Field(gt=0)] = 15.0
+    """Seconds for the head of a request; connections without one are then closed."""
+
+    max_connections: Annotated[int, Field(ge=0)] = 0
+    """Open connections, half of them for one address; 0 allows as many as the system does."""
 
     water: WaterCorrection = "auto"
     """Correction of colour and contrast: auto for murky frames, on for all, off for none."""
@@ -126,8 +136,15 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _public_needs_token(self) -> Self:
-        if self.token is not None and not self.token.get_secret_value().strip():
-            raise ValueError("the token is empty; give a long random one or none at all")
+        if self.token is not None:
+            length = len(self.token.get_secret_value().strip())
+            if not length:
+                raise ValueError("the token is empty; give a long random one or none at all")
+            if length < SHORTEST_TOKEN:
+                raise ValueError(
+                    f"the token has {length} characters and can be guessed; give a random one of "
+                    f"at least {SHORTEST_TOKEN}"
+                )
         if self.public and self.token is None:
             raise ValueError(
                 f"host {self.host!r} can be reached from other machines and no token is set, so "

@@ -34,6 +34,13 @@ def unpacked(path: Path, folder: Path, most: int, most_each: int | None = None) 
         unpack(archive, entries, folder, most_bytes=most, most_bytes_each=most_each)
 
 
+def test_an_entry_without_a_name_is_no_file(tmp_path: Path) -> None:
+    path = archive_of(tmp_path / "z", {"nameless": b"x", "one.json": b""})
+    # Both the entry and the directory hold the name; one that begins with NUL is cut to none.
+    path.write_bytes(path.read_bytes().replace(b"nameless", b"\0ameless"))
+    assert names_in(path) == ["one.json"]
+
+
 def test_plain_names_are_told_without_folders_and_notes_of_the_finder(tmp_path: Path) -> None:
     entries = {"a/": b"", "a/one.json": b"", "..\\two.json": b"", "__MACOSX/a/._one.json": b""}
     assert names_in(archive_of(tmp_path / "z", entries)) == ["one.json", "two.json"]

@@ -23,7 +23,13 @@ def test_by_default_only_this_machine_is_served() -> None:
 def test_a_public_address_without_a_token_is_refused_with_the_way_out(host: str) -> None:
     with pytest.raises(ValidationError, match=r"can be reached.*no token.*--token.*127\.0\.0\.1"):
         Settings(host=host)
-    assert Settings(host=host, token=SecretStr("long and random")).public
+    assert Settings(host=host, token=SecretStr("long and very random")).public
+
+
+def test_a_token_that_can_be_guessed_is_refused() -> None:
+    with pytest.raises(ValidationError, match="15 characters"):
+        Settings(token=SecretStr("x" * 15))
+    Settings(token=SecretStr("x" * 16))
 
 
 @pytest.mark.parametrize("token", ["", "   "])
@@ -78,4 +84,4 @@ def test_another_database_can_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_token_is_never_printed() -> None:
-    assert "hunter2" not in repr(Settings(token=SecretStr("hunter2")))
+    assert "hunter2" not in repr(Settings(token=SecretStr("hunter2 hunter2 hunter2")))

@@ -11,7 +11,15 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.archive import UnpackedTooLarge, names_in, open_archive, plain_name, unpack, visible_files
+from app.archive import (
+    UnpackedTooLarge,
+    listed_files,
+    names_in,
+    open_archive,
+    plain_name,
+    unpack,
+    visible_files,
+)
 from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
 from app.recognition.errors import BagError
 
@@ -100,7 +108,7 @@ def _unpack(path: Path, folder: Path) -> Path:
 
 def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
     """Return the entries that make up the recording by name, after a look at all of them."""
-    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    entries = listed_files(archive)
     if len(entries) > MOST_ENTRIES:
         raise BagError(
             f"{name} has {len(entries)} entries, more than the limit of {MOST_ENTRIES}; pack one "

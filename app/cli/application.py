@@ -1,13 +1,15 @@
 """Application `osg-studio`: defines the commands and turns errors into exit codes.
 
 Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing was recognised or the
-check found an error, 2 bad use or bad input, with one line that names cause and next step.
+check found an error, 2 bad use or bad input, with one line that names cause and next step, 3 the
+program failed, with a traceback.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import traceback
 from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -57,6 +59,7 @@ from app.recognition.spotting import Spotter
 
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
+CRASHED = 3
 
 command_line = typer.Typer(
     name="osg-studio",
@@ -354,4 +357,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     except (OsgError, OSError) as error:
         sys.stderr.write(f"osg-studio: {describe_error(error)}\n")
         sys.exit(BAD_INPUT)
+    except Exception:
+        # Python's own code of a crash is 1, which also means that nothing was recognised.
+        traceback.print_exc()
+        sys.exit(CRASHED)
     sys.exit(0)

@@ -58,8 +58,9 @@ class ClipStore:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
         A dive recording with several topics waits for `choose_topic`: its job has failed already.
-        The file gets its place first: a row never refers to what is not on disk. When two
-        uploads with one idempotency key race, the second one gets the first one's clip.
+        The file gets its place first: a row never refers to what is not on disk. When that
+        fails, the file is at `partial` again, so that adding it can be repeated. When two uploads
+        with one idempotency key race, the second one gets the first one's clip.
         """
         target = self.received(clip)
         target.parent.mkdir()
@@ -76,6 +77,8 @@ class ClipStore:
                 session.flush()
                 session.add(job)
         except BaseException as error:
+            with suppress(OSError):
+                target.replace(partial)
             shutil.rmtree(target.parent, ignore_errors=True)
             earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
             if not earlier:

@@ -8,12 +8,17 @@ import shutil
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import MappingProxyType
 
+from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.errors import NotFound
-from app.store.models import new_id
+from app.store.models import new_id, now
+
+ACTIVE = timedelta(hours=1)
+"""How long after its newest byte an upload counts as going on: longer than a dropped connection or
+a restart lasts, so that files that nobody goes on with do not use up the disk's reservation."""
 
 _ID = re.compile(r"[0-9a-f]{32}")
 
@@ -34,6 +39,8 @@ class Upload:
         What has come of it so far.
     fields
         Values that its sender gave beside the bytes, by name.
+    client
+        Address of its sender.
 
     """
 
@@ -42,11 +49,17 @@ class Upload:
     size: int
     path: Path
     fields: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    client: str = ""
 
     @property
     def offset(self) -> int:
         """Bytes that have come."""
         return self.path.stat().st_size
+
+    @property
+    def missing(self) -> int:
+        """Bytes that are still to come."""
+        return max(self.size - self.offset, 0)
 
 
 class UploadStore:
@@ -64,14 +77,33 @@ class UploadStore:
         self._folder = folder
         folder.mkdir(parents=True, exist_ok=True)
 
-    def create(self, name: str, size: int, fields: Mapping[str, str] | None = None) -> Upload:
+    def create(
+        self, name: str, size: int, fields: Mapping[str, str] | None = None, client: str = ""
+    ) -> Upload:
         """Begin an upload of `size` bytes, with the values that its sender gave."""
         upload_id, given = new_id(), dict(fields or {})
-        about = {"name": name, "size": size, "fields": given}
-        self._about(upload_id).write_text(json.dumps(about))
-        path = self._folder / upload_id
-        path.touch()
-        return Upload(upload_id, name, size, path, given)
+        about = {"name": name, "size": size, "fields": given, "client": client}
+        path, partial = self._folder / upload_id, self._folder / f"{upload_id}{PARTIAL_SUFFIX}"
+        try:
+            partial.write_text(json.dumps(about))
+            publish(partial, self._about(upload_id))
+            path.touch()
+            sync_directory(self._folder)
+        except OSError:
+            for made in (partial, self._about(upload_id), path):
+                made.unlink(missing_ok=True)
+            raise
+        return Upload(upload_id, name, size, path, given, client)
+
+    def active(self) -> list[Upload]:
+        """Return the uploads that got bytes, or were begun, within the last `ACTIVE`."""
+        since, found = now() - ACTIVE, []
+        for about in self._folder.glob("*.json"):
+            with suppress(NotFound, FileNotFoundError):  # It may end meanwhile.
+                upload = self.get(about.stem)
+                if _modification_time(upload.path) >= since:
+                    found.append(upload)
+        return found
 
     def get(self, upload_id: str) -> Upload:
         """Return an upload that is not finished.
@@ -87,8 +119,9 @@ class UploadStore:
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
         about = json.loads(self._about(upload_id).read_text())
-        # An upload that was begun before there were fields has none.
-        return Upload(upload_id, about["name"], about["size"], path, about.get("fields", {}))
+        # An upload that an earlier version began has no fields or client.
+        fields, client = about.get("fields", {}), about.get("client", "")
+        return Upload(upload_id, about["name"], about["size"], path, fields, client)
 
     def remove(self, upload_id: str) -> None:
         """Forget an upload and what came of it; does nothing where there is none."""

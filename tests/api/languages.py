@@ -1,6 +1,11 @@
 """What tests of languages over HTTP share."""
 
+from dataclasses import replace
+
 import httpx
+
+from app.recognition import Gesture, Language, takes_in
+from tests.api.recordings import recording_of
 
 LANGUAGES = "/api/v1/languages"
 
@@ -11,3 +16,10 @@ def add_gesture(
     return client.post(
         f"{LANGUAGES}/{language_id}/gestures", json={"label": label, "clip_id": clip_id}
     )
+
+
+def many_gestures(count: int) -> str:
+    """Return a language file of so many gestures, alike but for their labels."""
+    gesture = Gesture.from_demonstration("circle", takes_in(recording_of("circle"))[0].poses)
+    gestures = [replace(gesture, label=f"circle {number}") for number in range(count)]
+    return Language("many", gestures).to_json()

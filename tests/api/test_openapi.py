@@ -98,7 +98,7 @@ def test_real_objects_answer_as_described(lasting_server: Running) -> None:
         ]
         assert len(readable) >= 15
         for operation in readable:
-            answer = client.get(operation.path.format(**known))
+            answer = client.get(operation.path.format(**known), params={"label": known["label"]})
             # A clip made of numbers has no pictures.
             pictures = {"poster": 404, "filmstrip": 404, "analysis": 422}
             expected = pictures.get(operation.path.rsplit("/", 1)[1], 200)

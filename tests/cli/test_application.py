@@ -67,6 +67,19 @@ def test_bad_input_is_one_line_and_exit_code_two(
     assert ended.error.count("\n") == 1
 
 
+def test_a_crash_has_a_code_of_its_own(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise IndexError("index -1 is out of bounds")
+
+    monkeypatch.setattr("app.cli.robot.create_listener", fail)
+    a_language().save(tmp_path / "language.json")
+    ended = osg_studio("robot", "--language", tmp_path / "language.json", "--source", "none")
+    assert ended.code == 3
+    assert "Traceback" in ended.error
+
+
 def test_an_unknown_command_is_bad_use(osg_studio: OsgStudio) -> None:
     assert osg_studio("dance").code == 2
 

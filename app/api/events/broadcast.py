@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+Result = TypeVar("Result")
 
 MOST_UNREAD = 256
 """Events kept for a stream that is not read; older ones are dropped, since each says how things
@@ -29,6 +31,26 @@ class Event:
 
     kind: str
     data: dict[str, Any]
+    _shared: dict[str, asyncio.Future[Any]] = field(
+        default_factory=dict, init=False, compare=False, repr=False
+    )
+
+    async def share(self, name: str, compute: Callable[[], Coroutine[Any, Any, Result]]) -> Result:
+        """Return a value that is computed once for all streams that get this event.
+
+        Parameters
+        ----------
+        name
+            Of the value.
+        compute
+            Called by the first stream that asks.
+
+        """
+        if name not in self._shared:
+            self._shared[name] = asyncio.ensure_future(compute())
+        # A stream that ends meanwhile must not cancel it for the others.
+        value: Result = await asyncio.shield(self._shared[name])
+        return value
 
 
 class Subscription:

@@ -80,11 +80,12 @@ class Finished(BaseModel):
 
 
 class Failed(BaseModel):
-    """The clip cannot be used."""
+    """The clip or language file cannot be used; `pointer` says where the fault of a file is."""
 
     kind: Literal["failed"] = "failed"
     code: str
     detail: str
+    pointer: str | None = None
 
 
 Message = Probed | Progressed | Finished | Failed

@@ -1,7 +1,7 @@
-"""Worker process: ``python -m app.api.extraction.worker probe|record|session ...``.
+"""Worker process: ``python -m app.api.extraction.worker probe|record|session|import|check ...``.
 
-It opens one clip, writes one JSON object per line to stdout (see `messages`), and ends as soon as
-its stdin is closed, which happens when the server dies.
+It opens one clip or language file, writes one JSON object per line to stdout (see `messages`), and
+ends as soon as its stdin is closed, which happens when the server dies.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.language_files import check_language, import_language
 from app.api.extraction.messages import (
     Failed,
     Finished,
@@ -32,7 +33,7 @@ from app.api.extraction.pictures import Poster, Thumbnails, write_poster
 from app.api.extraction.session_request import SessionRequest
 from app.bags.session_writer import write_session as write_mcap
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
-from app.recognition.errors import ModelError, OsgError, VideoError
+from app.recognition.errors import LanguageError, ModelError, OsgError, VideoError
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import VideoFrame
@@ -203,6 +204,8 @@ def main() -> None:
         report(Failed(code="unsupported_media_type", detail=str(error)))
     except ModelError as error:
         report(Failed(code="model_missing", detail=str(error)))
+    except LanguageError as error:
+        report(Failed(code="language_invalid", detail=str(error), pointer=error.pointer))
     except OsgError as error:
         refusal = chosen.source.refuse(error, chosen.file)
         report(Failed(code=refusal.code, detail=refusal.detail))
@@ -228,6 +231,12 @@ def _arguments() -> argparse.Namespace:
     exporting.set_defaults(source=VIDEO)
     exporting.add_argument("request", type=Path)
     exporting.add_argument("file", type=Path, help="the MCAP file to write")
+    importing, checking = commands.add_parser("import"), commands.add_parser("check")
+    for command in (importing, checking):
+        command.set_defaults(source=VIDEO)
+        command.add_argument("file", type=Path, help="the language file")
+        command.add_argument("target", type=Path, help="the JSON file to write")
+    importing.add_argument("--name", help="of a language whose file has none")
     for command in (recording, exporting):
         for name in ("video", "recording", "poster", "filmstrip"):
             command.add_argument(name, type=Path)
@@ -242,6 +251,10 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
             record(chosen.source, chosen.file, chosen.options, _files(chosen), report)
         case "session":
             write_session(chosen.request, chosen.file, _files(chosen), report)
+        case "import":
+            import_language(chosen.file, chosen.target, chosen.name, report)
+        case "check":
+            check_language(chosen.file, chosen.target, report)
 
 
 def _files(chosen: argparse.Namespace) -> ClipFiles:

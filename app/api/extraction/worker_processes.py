@@ -22,12 +22,32 @@ MOST_SHORT_WORKERS = 2
 """Processes that probe files or write sessions at the same time: a hundred uploads must not be as
 many processes."""
 
+MOST_CHECKS = 2
+"""Health checks at the same time; further ones wait."""
+
+IMPORT_SECONDS = 120
+"""Most processor time for reading a language file: the largest one allowed takes a minute."""
+
+CHECK_SECONDS = 1800
+"""Most processor time for a health report: one of twenty gestures takes twenty seconds, and the
+time grows faster than their number."""
+
+CHECK_SILENCE_SECONDS = 600.0
+"""Most seconds between two reports of a check: its recogniser is prepared without one."""
+
 _PACKAGE_PARENT = Path(__file__).resolve().parents[3]
 
 _DECODER_HANGS = Failed(
     code="decoder",
     detail="the process that read this clip made no progress and was ended; "
     "convert it to an MP4 with H.264 and try again",
+)
+
+
+_TOO_LONG = Failed(
+    code="language_too_large",
+    detail="this language takes more time or memory than one job may use; "
+    "split it into languages with fewer gestures",
 )
 
 
@@ -44,6 +64,7 @@ class Workers:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._short = asyncio.Semaphore(MOST_SHORT_WORKERS)
+        self._checks = asyncio.Semaphore(MOST_CHECKS)
 
     async def probe(self, source: ClipSource, file: Path, options: ReadOptions) -> Probed | Failed:
         """Probe a received file; see `ClipSource.probe`."""
@@ -80,17 +101,63 @@ class Workers:
                 async for step in steps:
                     yield step
 
+    async def import_language(self, file: Path, name: str) -> str | Failed:
+        """Read a language file; return an `ImportedLanguage` as JSON."""
+        with _scratch_folder(file.parent) as folder:
+            target = folder / "language.json"
+            command = ["import", str(file), str(target), f"--name={name}"]
+            messages = self._run(
+                command, folder, IMPORT_SECONDS, cpu_seconds=IMPORT_SECONDS, hangs=_TOO_LONG
+            )
+            async with self._short, aclosing(messages):
+                async for message in messages:
+                    if isinstance(message, Failed):
+                        return message
+            if not target.is_file():
+                return _TOO_LONG
+            return await asyncio.to_thread(target.read_text, "utf-8")
+
+    async def check_language(
+        self, document: str, folder: Path
+    ) -> AsyncGenerator[Progressed | Failed | str, None]:
+        """Check a language; the last item is the health report as JSON, or why there is none."""
+        with _scratch_folder(folder) as scratch:
+            file, target = scratch / "language.json", scratch / "report.json"
+            await asyncio.to_thread(file.write_text, document, "utf-8")
+            messages = self._run(
+                ["check", str(file), str(target)],
+                scratch,
+                CHECK_SILENCE_SECONDS,
+                cpu_seconds=CHECK_SECONDS,
+                hangs=_TOO_LONG,
+            )
+            async with self._checks, aclosing(messages):
+                async for message in messages:
+                    if isinstance(message, Progressed | Failed):
+                        yield message
+                    if isinstance(message, Failed):
+                        return
+            if target.is_file():
+                yield await asyncio.to_thread(target.read_text, "utf-8")
+            else:
+                yield _TOO_LONG
+
     async def _run(
         self,
         command: list[str],
         folder: Path,
         silence_seconds: float,
         options: ReadOptions | None = None,
+        *,
+        cpu_seconds: int | None = None,
+        hangs: Failed = _DECODER_HANGS,
     ) -> AsyncGenerator[Message, None]:
         """Run a worker, which unpacks archives in `folder`, and yield its messages."""
         given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
         with _scratch_folder(folder) as scratch:
             command = [f"--scratch={scratch}", f"--options={given}", *command]
+            if cpu_seconds is not None:
+                command = [f"--cpu-seconds={cpu_seconds}", *command]
             async with self._process(command) as process:
                 assert process.stdout is not None
                 while True:
@@ -100,7 +167,7 @@ class Workers:
                             return
                         yield parse(line)
                     except TimeoutError:
-                        yield _DECODER_HANGS
+                        yield hangs
                         return
                     except ValueError:
                         return  # A line torn by a crash.

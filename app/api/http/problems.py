@@ -13,6 +13,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from app.recognition.errors import (
     BagError,
@@ -136,6 +137,7 @@ def install(app: FastAPI) -> None:
     """Make `app` answer every error with a problem document."""
     app.add_exception_handler(RequestValidationError, _on_invalid_request)
     app.add_exception_handler(HTTPException, _on_http_error)
+    app.add_exception_handler(ClientDisconnect, _on_disconnect)
     for kind in (OsgError, StoreError, OSError, Exception):
         app.add_exception_handler(kind, _on_error)
 
@@ -197,6 +199,11 @@ def _convert_os_error(error: OSError) -> ProblemError:
         return ProblemError(507, "disk_full", detail, headers=headers)
     detail = f"the server's storage cannot be used ({reason}); nothing was changed, try again"
     return ProblemError(503, "storage_unavailable", detail, headers=headers)
+
+
+async def _on_disconnect(_request: Request, _error: Exception) -> JSONResponse:
+    # Nobody reads it, and it is no fault of the server that its log should tell.
+    return ProblemError(400, "client_left", "the client left before it was answered").response()
 
 
 async def _on_error(_request: Request, error: Exception) -> JSONResponse:

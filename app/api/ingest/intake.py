@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from app.api.ingest.fields import UploadFields
 from app.api.services.studio import Studio
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.clip_sources.video_types import HEAD_BYTES
-from app.store import Clip
+from app.store import Clip, Upload
 
 UNSUPPORTED = "unsupported_media_type"
 
@@ -26,16 +27,32 @@ def client_of(request: Request) -> str:
     return request.client.host[:64] if request.client else "local"
 
 
-async def require_place_in_queue(request: Request, studio: Studio) -> None:
-    """Refuse, before its body is read, a request whose sender has too many jobs waiting."""
-    most = studio.settings.max_jobs_per_client
-    if await run_in_threadpool(studio.jobs.count_open, client_of(request)) >= most:
+async def require_place_in_queue(request: Request, studio: Studio) -> int:
+    """Refuse, before its body is read, a request whose sender has too many jobs waiting.
+
+    A resumable upload counts as a job from its beginning.
+
+    Returns
+    -------
+    The bytes that resumable uploads of all senders have announced and not yet sent.
+
+    """
+    most, client = studio.settings.max_jobs_per_client, client_of(request)
+    uploads = await run_in_threadpool(studio.uploads.active)
+    begun = sum(upload.client == client for upload in uploads)
+    if begun + await run_in_threadpool(studio.jobs.count_open, client) >= most:
         raise ProblemError(
             429,
             "queue_full",
             f"{most} clips are waiting already; try again when some of them are done",
             headers={"Retry-After": "30", "Connection": "close"},
         )
+    return bytes_to_come(uploads)
+
+
+def bytes_to_come(uploads: Sequence[Upload]) -> int:
+    """Return how many bytes these uploads have announced and not yet sent."""
+    return sum(upload.missing for upload in uploads)
 
 
 async def inspect(

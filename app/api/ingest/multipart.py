@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import shutil
-import time
 import unicodedata
-from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -53,8 +50,10 @@ class Upload:
     fields: UploadFields
 
 
-async def receive_file(request: Request, target: Path, settings: Settings) -> Upload:
-    """Write the form's part ``file`` to `target`.
+async def receive_file(
+    request: Request, target: Path, settings: Settings, *, reserved: int = 0
+) -> Upload:
+    """Write the form's part ``file`` to `target`; `reserved` as in `require_space`.
 
     Memory stays at about a megabyte; `target` is the caller's to remove when this raises.
 
@@ -67,11 +66,12 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
 
     """
     stated = request.headers.get("content-length", "")
-    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
+    size = int(stated) if stated.isdecimal() else 0
+    require_space(target.parent, size, settings, reserved=reserved)
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
-            async for chunk in read_paced(request, settings):
+            async for chunk in request.stream():
                 parser.feed(chunk)
                 if len(parser.pending) >= _FLUSH_BYTES:
                     await _flush(parser, file)
@@ -81,6 +81,21 @@ async def receive_file(request: Request, target: Path, settings: Settings) -> Up
             raise _malformed("the upload was broken off") from error
         await _flush(parser, file)
     return parser.finished()
+
+
+async def receive_body(request: Request, target: Path, settings: Settings) -> int:
+    """Write a whole body to `target`, and return its size; see `receive_file`."""
+    stated = request.headers.get("content-length", "")
+    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
+    size = 0
+    with await run_in_threadpool(target.open, "wb") as file:
+        try:
+            async for chunk in request.stream():
+                size += len(chunk)
+                await run_in_threadpool(file.write, chunk)
+        except ClientDisconnect as error:
+            raise _malformed("the upload was broken off") from error
+    return size
 
 
 def display_name(name: str) -> str:
@@ -212,52 +227,23 @@ async def _flush(parser: _FilePart, file: BinaryIO) -> None:
     await run_in_threadpool(file.write, data)
 
 
-async def read_paced(request: Request, settings: Settings) -> AsyncIterator[bytes]:
-    """Yield the body's chunks as long as they come fast enough.
+def require_space(folder: Path, size: int, settings: Settings, *, reserved: int = 0) -> None:
+    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`.
 
-    Raises
-    ------
-    ProblemError
-        408 when they do not.
-    ClientDisconnect
-        When the sender is gone.
-
+    `reserved` bytes were announced by others and are still to come.
     """
-    began, received = time.monotonic(), 0
-    chunks = aiter(request.stream())
-    while True:
-        try:
-            async with asyncio.timeout(settings.upload_grace_seconds):
-                chunk = await anext(chunks)
-        except StopAsyncIteration:
-            return
-        except TimeoutError as error:
-            raise _too_slow() from error
-        received += len(chunk)
-        excess = time.monotonic() - began - settings.upload_grace_seconds
-        if excess > 0 and received < excess * settings.upload_bytes_per_second:
-            raise _too_slow()
-        yield chunk
-
-
-def require_space(folder: Path, size: int, settings: Settings) -> None:
-    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`."""
-    needed = size + settings.free_disk_bytes
+    needed = size + reserved + settings.free_disk_bytes
     free = shutil.disk_usage(folder).free
     if free < needed:
+        announced = f", {reserved / 1e6:.0f} MB of it for uploads under way" if reserved else ""
         raise ProblemError(
             507,
             "disk_full",
             f"the server has {free / 1e6:.0f} MB of disk left and needs {needed / 1e6:.0f} MB for "
-            "this; delete clips or free space, then try again",
+            f"this{announced}; delete clips or free space, then try again",
             headers={"Retry-After": "60", "Connection": "close"},
         )
 
 
 def _malformed(detail: str) -> ProblemError:
     return ProblemError(400, "malformed_upload", detail, headers={"Connection": "close"})
-
-
-def _too_slow() -> ProblemError:
-    detail = "the upload came too slowly and was ended; try again on a better connection"
-    return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})

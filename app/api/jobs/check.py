@@ -1,24 +1,21 @@
-"""Check job: computes the health report of a language's revision in a thread."""
+"""Check job: computes the health report of a language's revision in a worker process."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 from collections import OrderedDict
+from contextlib import aclosing
+from pathlib import Path
 from typing import Any, Literal
 
-from starlette.concurrency import run_in_threadpool
-
 from app.api.events.broadcast import Event
+from app.api.extraction.messages import Failed, Progressed
+from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
-from app.recognition import Language
-from app.recognition.health.check import check_health
 
 CACHED_REPORTS = 64
 """Reports kept ready: one of twenty gestures is about a hundred kilobytes of Python objects."""
-
-REPORT_EVERY = 8
-"""Pieces of work, each a take or a movement of some ten milliseconds, between two events: ten a
-second are as smooth as a progress bar need be."""
 
 _reports: OrderedDict[str, dict[str, Any]] = OrderedDict()
 
@@ -32,12 +29,20 @@ class CheckJob:
         The language, for the events.
     document
         The revision's language file.
+    workers
+        Starts the process.
+    folder
+        Where its files may be.
 
     """
 
     resumable: Literal[False] = False
 
-    def __init__(self, language_id: str, revision: int, document: str) -> None:
+    def __init__(
+        self, language_id: str, revision: int, document: str, workers: Workers, folder: Path
+    ) -> None:
+        self._workers = workers
+        self._folder = folder
         self._language_id = language_id
         self._revision = revision
         self._document = document
@@ -58,20 +63,28 @@ class CheckJob:
         }
         return Event("checks", content)
 
-    async def run(self, report: Report) -> dict[str, Any]:
-        """Compute the report, or return the kept one."""
+    async def run(self, report: Report) -> dict[str, Any] | Failed:
+        """Compute the report, or return the kept one, or why there is none."""
         key = self.key
         if key not in _reports:
-            _reports[key] = await run_in_threadpool(self._compute, report)
+            computed = await self._compute(report)
+            if isinstance(computed, Failed):
+                return computed
+            _reports[key] = computed
             while len(_reports) > CACHED_REPORTS:
                 _reports.popitem(last=False)
         else:
             _reports.move_to_end(key)
         return _reports[key]
 
-    def _compute(self, report: Report) -> dict[str, Any]:
-        def progress(stage: str, done: int, total: int) -> None:
-            if done % REPORT_EVERY == 1:
-                report(Progress(stage, done, total))
-
-        return check_health(Language.from_json(self._document), progress=progress).to_dict()
+    async def _compute(self, report: Report) -> dict[str, Any] | Failed:
+        async with aclosing(self._workers.check_language(self._document, self._folder)) as steps:
+            async for step in steps:
+                if isinstance(step, Progressed):
+                    report(Progress(step.stage, step.done, step.total))
+                elif isinstance(step, Failed):
+                    return step
+                else:
+                    computed: dict[str, Any] = json.loads(step)
+                    return computed
+        raise AssertionError("the last step is the report, or why there is none")

@@ -6,13 +6,12 @@ import time
 from contextlib import aclosing
 from typing import Literal
 
-from starlette.concurrency import run_in_threadpool
-
 from app.api.events.broadcast import Event
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import Failed, Finished, Progressed
 from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
+from app.api.jobs.persistence import persist
 from app.clip_sources import ReadOptions, source_named
 from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound
 
@@ -50,11 +49,11 @@ class ExtractionJob:
 
     async def run(self, report: Report) -> None:
         """Extract the clip, unless it was cancelled or deleted meanwhile."""
-        if not await run_in_threadpool(self._jobs.is_running, self._job.id):
+        if not await persist(self._jobs.is_running, self._job.id):
             return
         report(Progress("starting"))
         try:
-            clip = (await run_in_threadpool(self._clips.get, self._job.clip_id)).clip
+            clip = (await persist(self._clips.get, self._job.clip_id)).clip
         except NotFound:
             return
         messages = self._workers.record(
@@ -64,22 +63,22 @@ class ExtractionJob:
             files_of(self._clips, clip.id),
         )
         started: float | None = None
+        end: Finished | Failed | None = None
         async with aclosing(messages) as steps:
             async for message in steps:
-                match message:
-                    case Progressed():
-                        started = started or time.monotonic()
-                        report(_with_eta(message, time.monotonic() - started))
-                    case Finished(frames=frames, warnings=warnings):
-                        await run_in_threadpool(self._jobs.complete, self._job.id, frames, warnings)
-                    case Failed(code=code, detail=detail):
-                        await run_in_threadpool(
-                            self._jobs.finish,
-                            self._job.id,
-                            JobStatus.FAILED,
-                            code=code,
-                            error=detail,
-                        )
+                if isinstance(message, Progressed):
+                    started = started or time.monotonic()
+                    report(_with_eta(message, time.monotonic() - started))
+                else:
+                    end = message
+        # After the worker has ended: storing may have to wait for the database.
+        match end:
+            case Finished(frames=frames, warnings=warnings):
+                await persist(self._jobs.complete, self._job.id, frames, warnings)
+            case Failed(code=code, detail=detail):
+                await persist(
+                    self._jobs.finish, self._job.id, JobStatus.FAILED, code=code, error=detail
+                )
 
 
 def job_event(job: Job) -> Event:

@@ -13,6 +13,7 @@ from app.api.extraction.worker_processes import Workers
 from app.api.jobs.extraction import ExtractionJob, job_event
 from app.api.jobs.fair_queue import FairQueue
 from app.api.jobs.job import JobCancelled
+from app.api.jobs.persistence import persist
 from app.api.jobs.runner import JobRunner
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 
@@ -70,7 +71,9 @@ class ExtractionQueue:
         await asyncio.gather(*self._loops, return_exceptions=True)
         for job_id in running:
             await self._runner.cancel(job_id)
-            await run_in_threadpool(self._jobs.requeue, job_id)
+            # When not even that can be written, the next start finds it running.
+            with suppress(StoreError):
+                await run_in_threadpool(self._jobs.requeue, job_id)
 
     async def submit(self, job: Job) -> None:
         """Let a job wait for its turn."""
@@ -89,7 +92,7 @@ class ExtractionQueue:
         while True:
             job_id = await self._waiting.get()
             try:
-                if job := await run_in_threadpool(self._jobs.start, job_id):
+                if job := await persist(self._jobs.start, job_id):
                     await self._run(job)
             except Exception:
                 # One job's trouble, such as a full disk, must not end the loop for all others.
@@ -107,11 +110,10 @@ class ExtractionQueue:
 
     async def _give_up(self, job_id: str) -> None:
         error = "the server could not keep what it found in this clip; try again"
-        # When not even that can be written, the next start runs the job again.
-        with suppress(StoreError):
-            await run_in_threadpool(
-                self._jobs.finish, job_id, JobStatus.FAILED, code="internal", error=error
-            )
+        try:
+            await persist(self._jobs.finish, job_id, JobStatus.FAILED, code="internal", error=error)
+        except StoreError:
+            logger.exception("the end of job %s could not be stored", job_id)
 
     def _publish(self, job: Job) -> None:
         self._broadcast.send(job_event(job))

@@ -20,6 +20,7 @@ class _Run:
     broadcast: Broadcast
     progress: Progress | None = None
     cancelled: bool = False
+    waiting: int = 0
 
     def report(self, progress: Progress) -> None:
         if self.cancelled:
@@ -46,7 +47,8 @@ class JobRunner:
     async def run(self, job: Job[Result]) -> Result:
         """Run a job, or wait for the running one of the same key, and return its result.
 
-        The job goes on when a caller is cancelled: others may wait for it.
+        The job goes on when a caller is cancelled and others wait for it. When the last one is
+        cancelled, it ends, unless it is resumable.
 
         Raises
         ------
@@ -56,9 +58,16 @@ class JobRunner:
         """
         if job.key not in self._runs:
             self._start(job)
+        run: _Run = self._runs[job.key][0]
         task: asyncio.Task[Result] = self._runs[job.key][1]
-        # Not awaited itself: cancelling the job must not look like cancelling the caller.
-        await asyncio.wait([task])
+        run.waiting += 1
+        try:
+            # Not awaited itself: cancelling the job must not look like cancelling the caller.
+            await asyncio.wait([task])
+        finally:
+            run.waiting -= 1
+            if not (run.waiting or task.done() or job.resumable):
+                await self.cancel(job.key)
         if task.cancelled():
             raise JobCancelled
         return task.result()

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import time
+from collections import OrderedDict, deque
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
@@ -28,6 +30,14 @@ COOKIE_SECONDS = 30 * 24 * 60 * 60
 
 OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
 """Answered without a token, for monitoring."""
+
+MOST_GUESSES = 20
+"""Wrong tokens that one address may send within `GUESS_SECONDS`: some people share an address."""
+
+GUESS_SECONDS = 60.0
+
+MOST_ADDRESSES = 4096
+"""Addresses whose wrong tokens are remembered."""
 
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -93,6 +103,28 @@ def _is_navigation(headers: Headers) -> bool:
     )
 
 
+class Guesses:
+    """Counts wrong tokens by address."""
+
+    def __init__(self) -> None:
+        self._times: OrderedDict[str, deque[float]] = OrderedDict()
+
+    def add(self, client: str) -> None:
+        """Note a wrong token."""
+        times = self._times.pop(client, deque(maxlen=MOST_GUESSES))
+        times.append(time.monotonic())
+        self._times[client] = times
+        if len(self._times) > MOST_ADDRESSES:
+            self._times.popitem(last=False)
+
+    def too_many(self, client: str) -> bool:
+        """Return whether an address has to wait before its next guess."""
+        times = self._times.get(client)
+        if times is None or len(times) < MOST_GUESSES:
+            return False
+        return time.monotonic() - times[0] < GUESS_SECONDS
+
+
 class TokenRequired:
     """Requires the token: as bearer, or in the cookie that ``/?token=`` sets.
 
@@ -109,6 +141,7 @@ class TokenRequired:
         self._app = app
         self._token = settings.token.get_secret_value().encode() if settings.token else None
         key = self._token or b""
+        self._guesses = Guesses()
         # The cookie is not the token itself: what leaks from a browser does not open scripts.
         self._session = hmac.new(key, b"osg-studio session", hashlib.sha256).hexdigest()
 
@@ -116,7 +149,17 @@ class TokenRequired:
         """Pass on requests with the token."""
         if self._token is None or scope["type"] not in ("http", "websocket"):
             return await self._app(scope, receive, send)
-        if scope["path"] in OPEN_PATHS or self._is_known(Headers(scope=scope)):
+        headers = Headers(scope=scope)
+        if scope["path"] in OPEN_PATHS or self._has_session(headers):
+            return await self._app(scope, receive, send)
+        client = scope["client"][0] if scope.get("client") else "local"
+        if self._guesses.too_many(client):
+            # Not compared at all: of many guesses at once, none must learn more than the others.
+            detail = "too many wrong tokens came from this address; try again in a minute"
+            again = {"Retry-After": f"{GUESS_SECONDS:.0f}"}
+            problem = ProblemError(429, "too_many_guesses", detail, headers=again)
+            return await _refuse(problem, scope, receive, send)
+        if self._has_bearer(headers):
             return await self._app(scope, receive, send)
         if (response := self._welcome(scope)) is not None:
             return await response(scope, receive, send)
@@ -124,14 +167,17 @@ class TokenRequired:
             "this server wants a token; open it as /?token=..., or send the header "
             "'Authorization: Bearer ...'"
         )
-        headers = {"WWW-Authenticate": "Bearer"}
-        problem = ProblemError(401, "token_required", detail, headers=headers)
+        if "authorization" in headers or b"token=" in scope["query_string"]:
+            self._guesses.add(client)
+        challenge = {"WWW-Authenticate": "Bearer"}
+        problem = ProblemError(401, "token_required", detail, headers=challenge)
         return await _refuse(problem, scope, receive, send)
 
-    def _is_known(self, headers: Headers) -> bool:
+    def _has_bearer(self, headers: Headers) -> bool:
         scheme, _, shown = headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer" and self._is_token(shown.strip()):
-            return True
+        return scheme.lower() == "bearer" and self._is_token(shown.strip())
+
+    def _has_session(self, headers: Headers) -> bool:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
         except CookieError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from typing import Any
 
 import uvicorn
@@ -11,11 +12,15 @@ from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
+from app.api.middleware.connections import GuardedProtocol
 from app.api.services.studio import Studio
 
 ENDING_SECONDS = 2.0
 """Time for open requests once the server is to stop: all but checks and long explanations are done
 by then, and the whole server must be gone within ten seconds."""
+
+SWEEP_SECONDS = 1.0
+"""Between two looks at the connections."""
 
 FLUSH_SECONDS = 0.1
 """Time for the last answers to leave; they are short, and only who reads is waited for."""
@@ -85,21 +90,31 @@ class EndsInTime:
 
 
 class StudioServer(uvicorn.Server):
-    """Cancels jobs and ends open requests before it stops.
+    """Guards its connections, and cancels jobs and ends open requests before it stops.
 
     Parameters
     ----------
     config
         How to serve.
     app
-        What `config` serves, with its `OpenRequests` and, once it runs, its `Studio`.
+        What `config` serves, with its `OpenRequests`, its `ConnectionGuard` and, once it runs, its
+        `Studio`.
 
     """
 
     def __init__(self, config: uvicorn.Config, app: FastAPI) -> None:
+        config.http = GuardedProtocol
         super().__init__(config)
         self._app = app
+        self._swept = 0.0
         logging.getLogger("uvicorn.error").addFilter(_is_news)
+
+    async def on_tick(self, counter: int) -> bool:
+        """Look after the connections once a second."""
+        if time.monotonic() - self._swept >= SWEEP_SECONDS:
+            self._swept = time.monotonic()
+            self._app.state.connections.sweep()
+        return await super().on_tick(counter)
 
     async def shutdown(self, sockets: Any = None) -> None:
         """Stop what can be stopped, answer what cannot, and close."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Response
+from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
+from app.api.extraction.messages import Failed
+from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.jobs.check import CheckJob
@@ -28,6 +30,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
     },
 )
 async def check_language(
+    request: Request,
     language_id: str,
     studio: CurrentStudio,
     response: Response,
@@ -39,7 +42,8 @@ async def check_language(
     """Predict what will be confused, missed or set off by accident, and what would help.
 
     The first call for a revision takes seconds, further ones none. Its progress comes as `checks`
-    among the events; `DELETE` cancels it, which is answered here by 409.
+    among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody
+    who asked for it has left.
     """
     state = await run_in_threadpool(studio.languages.get, language_id, revision)
     # Another version of the recogniser may judge the same revision otherwise.
@@ -48,9 +52,12 @@ async def check_language(
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
     try:
-        return await studio.runner.run(_job(state))
+        report = await while_connected(request, studio.runner.run(_job(state, studio)))
     except JobCancelled as error:
         raise _refusal(studio) from error
+    if isinstance(report, Failed):
+        raise ProblemError(422, report.code, report.detail)
+    return report
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
@@ -59,12 +66,18 @@ async def cancel_check(
 ) -> Response:
     """Cancel the check of a revision, for all who wait for it; does nothing where none runs."""
     state = await run_in_threadpool(studio.languages.get, language_id, revision)
-    await studio.runner.cancel(_job(state).key)
+    await studio.runner.cancel(_job(state, studio).key)
     return Response(status_code=204)
 
 
-def _job(state: LanguageState) -> CheckJob:
-    return CheckJob(state.record.id, state.revision.revision, state.revision.document)
+def _job(state: LanguageState, studio: Studio) -> CheckJob:
+    return CheckJob(
+        state.record.id,
+        state.revision.revision,
+        state.revision.document,
+        studio.workers,
+        studio.clips.folder,
+    )
 
 
 def _refusal(studio: Studio) -> ProblemError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 import json
 from typing import Annotated
 
@@ -23,7 +24,7 @@ from app.api.services.clip_views import view_clip
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.segmentation import takes_in
-from app.store import ClipStore, JobStatus
+from app.store import ClipStore, ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -58,7 +59,7 @@ router = APIRouter(prefix="/clips", tags=["clips"])
 @router.post(
     "",
     status_code=202,
-    responses=problem_responses(408, 415, 429),
+    responses=problem_responses(408, 409, 415, 429),
     openapi_extra=_UPLOAD_FORM,
 )
 async def upload_clip(
@@ -76,19 +77,17 @@ async def upload_clip(
     used. Where there are several, the job fails with the code `topic_needed` and the clip lists
     them; choose by `POST /clips/{id}/topic`.
 
-    An upload that repeats an earlier one's `Idempotency-Key` answers with the earlier clip.
+    An upload that repeats an earlier one's `Idempotency-Key` and file answers with that one's clip;
+    another file with the same key is refused as `idempotency_key_reused`.
     """
     if idempotency_key and (
         earlier := await run_in_threadpool(studio.clips.by_idempotency_key, idempotency_key)
     ):
-        # Read to the end: answering in the middle of a body would reach no browser.
-        async for _ in request.stream():
-            pass
-        return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
-    await require_place_in_queue(request, studio)
+        return await _repeat(request, studio, earlier)
+    reserved = await require_place_in_queue(request, studio)
     partial = studio.clips.new_partial()
     try:
-        upload = await receive_file(request, partial, studio.settings)
+        upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         clip = await inspect(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
@@ -96,6 +95,29 @@ async def upload_clip(
         return await store(clip, partial, studio, client_of(request))
     finally:
         partial.unlink(missing_ok=True)
+
+
+async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> ClipAccepted:
+    """Answer an upload whose key was used before; its file must be the same."""
+    # Read to the end: answering in the middle of a body would reach no browser.
+    partial = studio.clips.new_partial()
+    try:
+        await receive_file(request, partial, studio.settings)
+        same = await run_in_threadpool(
+            filecmp.cmp, partial, studio.clips.received(earlier.clip), shallow=False
+        )
+    finally:
+        partial.unlink(missing_ok=True)
+    if not same:
+        detail = "this Idempotency-Key was used for another file; send this one with its own key"
+        raise ProblemError(422, "idempotency_key_reused", detail)
+    if earlier.clip.deleted is not None:
+        detail = (
+            f"the clip of this Idempotency-Key was deleted; restore it by POST "
+            f"/api/v1/clips/{earlier.clip.id}/restore, or send another key"
+        )
+        raise ProblemError(409, "clip_deleted", detail, clip_id=earlier.clip.id)
+    return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
 
 
 @router.get("", response_model=list[ClipView], responses={**problem_responses(), **NOT_SENT_AGAIN})

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import AsyncIterator
-from typing import Any
+from functools import partial
 
 from fastapi import APIRouter
 from sse_starlette import EventSourceResponse, ServerSentEvent
-from starlette.concurrency import run_in_threadpool
 
 from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
-from app.api.routes.jobs import EVENT_STREAM, view_job
+from app.api.routes.jobs import EVENT_STREAM, current_view
 from app.api.services.studio import CurrentStudio, Studio
-from app.store import NotFound
 
 router = APIRouter(prefix="/events", tags=["events"])
 
@@ -36,17 +34,11 @@ async def _change_events(studio: Studio) -> AsyncIterator[ServerSentEvent]:
     with studio.broadcast.subscribe() as events:
         yield ServerSentEvent(comment="listening", retry=1000)
         async for event in events:
-            content = await _content(studio, event)
-            yield ServerSentEvent(data=json.dumps(content), event=event.kind)
+            text = await event.share("text", partial(_write_text, studio, event))
+            yield ServerSentEvent(data=text, event=event.kind)
 
 
-async def _content(studio: Studio, event: Event) -> dict[str, Any]:
-    if event.kind != "jobs":
-        return event.data
-    try:
-        job = await run_in_threadpool(studio.jobs.get, event.data["id"])
-    except NotFound:
-        return event.data
-    view = view_job(job, studio.runner.progress(job.id))
-    content: dict[str, Any] = view.model_dump(mode="json")
-    return content
+async def _write_text(studio: Studio, event: Event) -> str:
+    if event.kind == "jobs" and (view := await current_view(studio, event)) is not None:
+        return view.model_dump_json()
+    return json.dumps(event.data)

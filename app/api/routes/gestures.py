@@ -1,4 +1,8 @@
-"""Routes of a language's gestures: add, change, remove, image."""
+"""Routes of a language's gestures: add, change, remove, image.
+
+A gesture is addressed by ``?label=``, because browsers resolve ``.`` and ``..`` in a path before
+they send it. The label as the last part of the path works too, for every other label.
+"""
 
 from __future__ import annotations
 
@@ -26,6 +30,11 @@ from app.recognition import Gesture, Language, LanguageError
 from app.recognition.features.png import encode_png
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
+
+_IMAGE = {
+    **problem_responses(404),
+    200: {"description": "The trajectory image", "content": {"image/png": {}}},
+}
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
@@ -59,6 +68,7 @@ def add_gesture(
     return announce(studio, state, response)
 
 
+@router.patch("", responses=problem_responses(404, 409, 412))
 @router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
 def change_gesture(
     language_id: str,
@@ -82,6 +92,7 @@ def change_gesture(
     return announce(studio, state, response)
 
 
+@router.delete("", responses=problem_responses(404, 409, 412))
 @router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
 def remove_gesture(
     language_id: str,
@@ -103,14 +114,8 @@ def remove_gesture(
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
-@router.get(
-    "/{label:path}/image",
-    response_class=Response,
-    responses={
-        **problem_responses(404),
-        200: {"description": "The trajectory image", "content": {"image/png": {}}},
-    },
-)
+@router.get("/image", response_class=Response, responses=_IMAGE)
+@router.get("/{label:path}/image", response_class=Response, responses=_IMAGE)
 def get_gesture_image(
     language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
 ) -> Response:

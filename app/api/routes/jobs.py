@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
+from functools import partial
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
 from sse_starlette import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
+from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.jobs import JobView
 from app.api.jobs.job import Progress
@@ -85,10 +87,15 @@ async def _progress_events(studio: Studio, job_id: str) -> AsyncIterator[ServerS
         async for event in events:
             if event.kind != "jobs" or event.data["id"] != job_id:
                 continue
-            view = await _current(studio, job_id)
+            view = await current_view(studio, event)
             yield _event(view)
             if view is None or view.status.final:
                 return
+
+
+async def current_view(studio: Studio, event: Event) -> JobView | None:
+    """Return how the job of an event stands; the database is read once for all streams."""
+    return await event.share("view", partial(_current, studio, event.data["id"]))
 
 
 async def _current(studio: Studio, job_id: str) -> JobView | None:

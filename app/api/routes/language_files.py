@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
 
@@ -9,19 +10,24 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.problems import problem_responses
+from app.api.extraction.language_files import ImportedLanguage, read_language
+from app.api.extraction.messages import Failed
+from app.api.http.connection import while_connected
+from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name
-from app.api.services.language_documents import draft_of
+from app.api.ingest.multipart import receive_body
+from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio, Studio
-from app.recognition import Language
 from app.recognition.language.file_format import FileFormat
-from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import find_requirements
 from app.recognition.language.schema import FORMAT, VERSION
-from app.store import LanguageState
+from app.store import Draft, LanguageState
+
+SMALL_BYTES = 512 * 1024
+"""Size up to which a file is read in a thread, within half a second: thirty gestures of ours."""
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -44,8 +50,14 @@ async def import_language(
     name: Annotated[Name, Query()] = "imported",
 ) -> LanguageView:
     """Add the language of a file: ours, or the published implementation's (then under `name`)."""
-    content = await request.body()
-    return await run_in_threadpool(_import, studio, content, name, response)
+    # On disk first: many that are sent slowly must not fill the memory.
+    partial = studio.clips.new_partial()
+    try:
+        size = await receive_body(request, partial, studio.settings)
+        found = await while_connected(request, _read(partial, size, name, studio))
+        return await run_in_threadpool(_create, studio, found, response)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 @router.get(
@@ -135,10 +147,26 @@ def _content(studio: Studio, state: LanguageState, format: FileFormat) -> str:
     return format.write(studio.language(state))
 
 
-def _import(studio: Studio, content: bytes, name: str, response: Response) -> LanguageView:
-    if is_reference(content):
-        language, change = from_reference(content, name), "Import of an osg-reference file"
-    else:
-        language, change = Language.from_json(content), "Import"
-    state = studio.languages.create(draft_of(language, change), language.revision)
-    return announce(studio, state, response)
+async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLanguage:
+    """Read a language file; a large one in a process of its own, with limits."""
+    if size <= SMALL_BYTES:
+        content = await run_in_threadpool(file.read_bytes)
+        return await run_in_threadpool(read_language, content, name)
+    found = await studio.workers.import_language(file, name)
+    if isinstance(found, Failed):
+        faults = (
+            [] if found.pointer is None else [Fault(pointer=found.pointer, detail=found.detail)]
+        )
+        raise ProblemError(422, found.code, found.detail, errors=faults)
+    return ImportedLanguage.model_validate_json(found)
+
+
+def _create(studio: Studio, found: ImportedLanguage, response: Response) -> LanguageView:
+    draft = Draft(
+        name=found.name[:LONGEST_NAME],
+        labels=found.labels,
+        change=found.change,
+        document=found.document,
+        author=found.author,
+    )
+    return announce(studio, studio.languages.create(draft, found.revision), response)

@@ -151,6 +151,7 @@ def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStu
     )
 
 
+@router.get("/gestures/demonstration", responses=problem_responses(404))
 @router.get("/gestures/{label:path}/demonstration", responses=problem_responses(404))
 def get_demonstration(
     language_id: str, label: str, studio: CurrentStudio, revision: Revision = None

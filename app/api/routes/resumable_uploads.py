@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import base64
-import binascii
-from typing import Annotated, Final
+import os
+from typing import Annotated, BinaryIO, Final
 from weakref import WeakValueDictionary
 
 from fastapi import APIRouter, Depends, Header, Request, Response
@@ -19,8 +19,14 @@ from starlette.requests import ClientDisconnect
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.ingest.fields import LONGEST, UploadFields
-from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import display_name, read_paced, require_space
+from app.api.ingest.intake import (
+    bytes_to_come,
+    client_of,
+    inspect,
+    require_place_in_queue,
+    store,
+)
+from app.api.ingest.multipart import display_name, require_space
 from app.api.middleware.body_limit import too_large
 from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -32,6 +38,7 @@ OFFSETS: Final = "application/offset+octet-stream"
 
 _COMMON = {"Tus-Resumable": VERSION, "Cache-Control": "no-store"}
 
+_beginning: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 _finishing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
 
@@ -75,14 +82,18 @@ async def begin_upload(
     """Begin an upload; `Location` is where its parts go."""
     if upload_length > studio.settings.max_clip_bytes:
         raise too_large(studio.settings.max_clip_bytes)
-    await require_place_in_queue(request, studio)
-    require_space(studio.clips.folder, upload_length, studio.settings)
     given = _metadata(upload_metadata)
     name = display_name(given.get("filename", ""))
     # Before the bytes come: a malformed field is refused without sending a gigabyte.
     fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
-    upload = await run_in_threadpool(studio.uploads.create, name, upload_length, texts)
+    # One at a time: between the check and the file that reserves the space nobody else may begin.
+    async with _beginning.setdefault(str(studio.clips.folder), asyncio.Lock()):
+        reserved = await require_place_in_queue(request, studio)
+        require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)
+        upload = await run_in_threadpool(
+            studio.uploads.create, name, upload_length, texts, client_of(request)
+        )
     location = f"{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
@@ -91,14 +102,19 @@ async def begin_upload(
     "/{upload_id}", dependencies=[Depends(require_version)], responses=problem_responses(404, 412)
 )
 def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
-    """Return how many bytes have arrived; `Content-Location` is the clip once all of it has."""
+    """Return how many bytes have arrived; `Content-Location` is the clip once all of it has.
+
+    While all bytes are there and the clip is not, because it could not be stored, the last byte is
+    asked for again: clients take an upload for finished whose offset is its length.
+    """
     if clip := studio.clips.by_idempotency_key(upload_id):
         size = str(clip.clip.size)
         return Response(
             headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
         )
     upload = studio.uploads.get(upload_id)
-    progress = {"Upload-Offset": str(upload.offset), "Upload-Length": str(upload.size)}
+    offset = upload.offset if upload.missing else max(upload.size - 1, 0)
+    progress = {"Upload-Offset": str(offset), "Upload-Length": str(upload.size)}
     return Response(headers=_COMMON | progress)
 
 
@@ -120,12 +136,25 @@ async def append_part(
     if content_type != OFFSETS:
         detail = f"a part must be sent as {OFFSETS}, not as {content_type[:80]!r}"
         raise ProblemError(415, "unsupported_media_type", detail)
-    upload = await run_in_threadpool(studio.uploads.get, upload_id)
-    if upload_offset != upload.offset:
-        detail = f"{upload.offset} bytes have come; go on there instead of at {upload_offset}"
+    try:
+        upload = await run_in_threadpool(studio.uploads.get, upload_id)
+    except NotFound:
+        # The answer to the last part was lost, and the part is sent again.
+        clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
+        if clip is None or upload_offset not in _ends(clip.clip.size):
+            raise
+        headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.size)}
+        return Response(status_code=204, headers=headers)
+    came = upload.offset
+    if upload_offset not in (_ends(upload.size) if came == upload.size else (came,)):
+        detail = f"{came} bytes have come; go on there instead of at {upload_offset}"
         raise ProblemError(409, "upload_offset", detail)
-    require_space(studio.clips.folder, upload.size - upload.offset, studio.settings)
-    offset = await _write(request, upload, studio)
+    others = [
+        each for each in await run_in_threadpool(studio.uploads.active) if each.id != upload_id
+    ]
+    reserved = bytes_to_come(others)
+    require_space(studio.clips.folder, upload.missing, studio.settings, reserved=reserved)
+    offset = await _write(request, upload, upload_offset, studio)
     headers = _COMMON | {"Upload-Offset": str(offset)}
     if offset == upload.size:
         headers |= await _accept(request, upload, studio)
@@ -157,7 +186,7 @@ def _metadata(header: str) -> dict[str, str]:
             continue
         try:
             text = base64.b64decode(value, validate=True)
-        except binascii.Error as error:
+        except ValueError as error:  # also of characters beyond ASCII
             detail = f"the {key} in Upload-Metadata is not base64"
             raise ProblemError(400, "malformed_upload", detail) from error
         if len(text) > LONGEST.get(key, len(text)):
@@ -167,16 +196,20 @@ def _metadata(header: str) -> dict[str, str]:
     return values
 
 
-async def _write(request: Request, upload: Upload, studio: Studio) -> int:
-    """Write what comes to where the upload ends; return the offset after it.
+def _ends(size: int) -> tuple[int, ...]:
+    """Return the offsets at which the last part of a whole file may be sent again."""
+    return (size, size - 1)
+
+
+async def _write(request: Request, upload: Upload, offset: int, studio: Studio) -> int:
+    """Write what comes from `offset` on to the disk; return the offset after it.
 
     What came before the connection was lost stays, so that the next part goes on after it.
     """
-    offset = upload.offset
     with await run_in_threadpool(upload.path.open, "r+b") as file:
         file.seek(offset)
         try:
-            async for chunk in read_paced(request, studio.settings):
+            async for chunk in request.stream():
                 offset += len(chunk)
                 if offset > upload.size:
                     raise too_large(upload.size)
@@ -184,11 +217,22 @@ async def _write(request: Request, upload: Upload, studio: Studio) -> int:
         except ClientDisconnect as error:
             detail = f"the connection was lost after {offset} of {upload.size} bytes; go on there"
             raise ProblemError(400, "upload_broken_off", detail) from error
+        # An acknowledged part outlasts a power cut.
+        await run_in_threadpool(_sync, file)
     return offset
 
 
+def _sync(file: BinaryIO) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+
+
 async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
-    """Make a clip of a file that is whole; of two who finish it the second gets the same one."""
+    """Make a clip of a file that is whole; of two who finish it the second gets the same one.
+
+    The upload is forgotten once it is a clip, or is refused for what it is. It stays when the
+    store cannot take it now.
+    """
     async with _finishing.setdefault(upload.id, asyncio.Lock()):
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
         if clip is None:
@@ -200,10 +244,12 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
                     size=upload.size,
                     fields=UploadFields.read(upload.fields),
                 )
-                made.idempotency_key = upload.id
-                await store(made, upload.path, studio, client_of(request))
-            finally:
+            except ProblemError:
                 await run_in_threadpool(studio.uploads.remove, upload.id)
+                raise
+            made.idempotency_key = upload.id
+            await store(made, upload.path, studio, client_of(request))
+            await run_in_threadpool(studio.uploads.remove, upload.id)
             clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     if clip is None:
         raise NotFound(f"the clip of upload {upload.id} was deleted meanwhile")

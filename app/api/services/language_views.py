@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from itertools import zip_longest
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
 from fastapi import Response
 
@@ -64,7 +64,7 @@ def view_gesture(
 ) -> GestureView:
     """Return a gesture of a revision; `sources` are the clips of its demonstrations."""
     # The revision in the address lets browsers keep the picture until the gesture changes.
-    place = f"/api/v1/languages/{state.record.id}/gestures/{quote(gesture.label, safe='')}/image"
+    query = urlencode({"label": gesture.label, "revision": state.revision.revision})
     switches = gesture.switches
     return GestureView(
         direction=switches.direction,
@@ -74,7 +74,7 @@ def view_gesture(
         description=gesture.description,
         command=gesture.command,
         salient=list(gesture.salient),
-        thumbnail=f"{place}?revision={state.revision.revision}",
+        thumbnail=f"/api/v1/languages/{state.record.id}/gestures/image?{query}",
         has_trajectory=gesture.trajectory is not None,
         source=sources[0] if sources else None,
         demonstrations=view_demonstrations(state, gesture, sources),

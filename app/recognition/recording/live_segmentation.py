@@ -11,6 +11,7 @@ from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.segmentation import (
     LONGEST_TAKE,
+    Bracket,
     Take,
     TakeMachine,
     TakeState,
@@ -62,6 +63,7 @@ class LiveTakes:
         self.frame_size = frame_size
         self._machine = TakeMachine()
         self._moments: deque[PoseSequence] = deque()
+        self._gap: Bracket | None = None
 
     def __len__(self) -> int:
         """Return the number of frames kept."""
@@ -95,21 +97,47 @@ class LiveTakes:
         """
         time = float(moment.time[0])
         self._moments.append(moment)
-        idle = self._machine.state is TakeState.idle
-        memory = LONGEST_SALUTE if idle else LONGEST_TAKE + LONGEST_SALUTE
-        while time - self._moments[0].time[0] > memory:
-            self._moments.popleft()
-        bracket = self._machine.update(time, salute)
+        # Before old frames are dropped: after a pause, the take that it ends is among them.
+        take = self._cut(self._machine.update(time, salute))
+        self._gap = self._machine.gap
+        if self._gap is None:
+            self._drop_old_frames(time)
         return Sight(
             salute=salute,
             held=self._machine.trigger.held,
             state=self._machine.state,
-            take=cut_take(join_sequences(self._moments), bracket) if bracket else None,
+            take=take,
         )
+
+    def cut_gap(self) -> Take | None:
+        """Cut out what lies before the salute that began a take with the last frame.
+
+        It lies between the salute that ended the last take and that one. Where a salute was missed,
+        all later ones are paired wrongly, and this is the take.
+
+        Returns
+        -------
+        None where the last frame began no take, or too little or too much lies in between.
+
+        """
+        return self._cut(self._gap)
+
+    def end_gap(self) -> None:
+        """Let the salute that began a take with the last frame end the gap before it instead."""
+        self._machine.end_gap()
 
     def finish(self) -> Take | None:
         """End the stream and return the unclosed take, if there is one."""
         if not self._moments:
             return None
-        bracket = self._machine.finish(float(self._moments[-1].time[0]))
+        return self._cut(self._machine.finish(float(self._moments[-1].time[0])))
+
+    def _cut(self, bracket: Bracket | None) -> Take | None:
         return cut_take(join_sequences(self._moments), bracket) if bracket else None
+
+    def _drop_old_frames(self, time: float) -> None:
+        machine = self._machine
+        short = machine.state is TakeState.idle and not machine.remembers(time)
+        memory = LONGEST_SALUTE if short else LONGEST_TAKE + LONGEST_SALUTE
+        while time - self._moments[0].time[0] > memory:
+            self._moments.popleft()

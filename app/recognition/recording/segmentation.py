@@ -85,6 +85,9 @@ class TakeMachine:
         Least and most seconds of a take.
     state
         Current state.
+    gap
+        What lies between the salute that ended the last take and the one that begins a take with
+        this frame; None with every other frame. Where a salute was missed, the gap is the take.
 
     """
 
@@ -94,6 +97,9 @@ class TakeMachine:
     state: TakeState = field(default=TakeState.idle, init=False)
     _began: float = field(default=0.0, init=False)
     _released: float | None = field(default=None, init=False)
+    gap: Bracket | None = field(default=None, init=False)
+    _closing: float = field(default=0.0, init=False)
+    _ended: Span | None = field(default=None, init=False)
 
     def update(self, time: float, score: float) -> Bracket | None:
         """Process the next frame.
@@ -111,16 +117,28 @@ class TakeMachine:
 
         """
         held = self.trigger.update(time, score)
+        self.gap = None
         match self.state:
             case TakeState.idle if held:
                 self.state = TakeState.recording
                 self._began = time if self.trigger.since is None else self.trigger.since
                 self._released = None
+                self.gap = self._find_gap(time)
             case TakeState.recording:
                 return self._recording(time, held)
             case TakeState.done if not held:
                 self.state = TakeState.idle
+                released = self.trigger.until
+                self._ended = Span(self._closing, time if released is None else released)
         return None
+
+    def end_gap(self) -> None:
+        """Let the salute that began a take with this frame end the gap instead."""
+        self.state, self._closing = TakeState.done, self._began
+
+    def remembers(self, time: float) -> bool:
+        """Return whether a gap that lasts at `time` seconds may still become a take."""
+        return self._ended is not None and time - self._ended.end <= self.longest
 
     def finish(self, time: float) -> Bracket | None:
         """End the stream at `time` seconds.
@@ -150,10 +168,16 @@ class TakeMachine:
         if since - released < self.shortest:
             self._released = None
             return None
-        self.state = TakeState.done
+        self.state, self._closing = TakeState.done, since
         return Bracket(
             first_salute=Span(self._began, released), last_salute=Span(since, time), end=since
         )
+
+    def _find_gap(self, time: float) -> Bracket | None:
+        ended, self._ended = self._ended, None
+        if ended is None or not self.shortest <= self._began - ended.end <= self.longest:
+            return None
+        return Bracket(first_salute=ended, last_salute=Span(self._began, time), end=self._began)
 
     def _unclosed(self, released: float, end: float) -> Bracket:
         return Bracket(first_salute=Span(self._began, released), last_salute=None, end=end)
@@ -264,7 +288,8 @@ def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Tak
     """
     untrimmed = poses.between(bracket.start, bracket.end)
     stroke = Span(bracket.start, bracket.end)
-    if trim:
+    # A camera that stalls may have given no frame in between.
+    if trim and len(untrimmed):
         around = poses.between(
             bracket.first_salute.start,
             bracket.last_salute.end if bracket.last_salute else bracket.end,

@@ -341,6 +341,12 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
 
 
 def _video_stream(container: InputContainer, path: Path) -> VideoStream:
+    # Not every demuxer heeds `max_streams`.
+    if len(container.streams) > MOST_STREAMS:
+        raise VideoError(
+            f"{path.name} holds {len(container.streams)} streams, more than the limit of "
+            f"{MOST_STREAMS}; export its picture alone"
+        )
     stream = container.streams.best("video")
     if not isinstance(stream, VideoStream):
         others = sorted({other.type for other in container.streams})

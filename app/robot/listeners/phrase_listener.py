@@ -10,6 +10,7 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
 from app.robot.listeners.salute_listener import LandmarkListener
+from app.robot.listeners.stream_order import StreamOrder
 
 
 class PhraseListener:
@@ -46,14 +47,23 @@ class PhraseListener:
         """State of the salutes."""
         return self._listener.state
 
+    @property
+    def order(self) -> StreamOrder:
+        """What is known of the order of the frames."""
+        return self._listener.order
+
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame; see `LandmarkListener.feed`."""
         time = float(moment.time[0])
         events: list[Event] = [*self._to_events(time, self._cancelled)]
+        self._cancelled, late = (), self.order.late
+        found = self._listener.feed(moment, salute)
+        if self.order.late > late:
+            return tuple(events)
         if time < self._time:  # another stream
             events += self._cancel_message(time)
-        self._time, self._cancelled = time, ()
-        events += self._add_phrases(self._listener.feed(moment, salute))
+        self._time = time
+        events += self._add_phrases(found)
         # An open take may still continue the message, so a pause cannot end it yet.
         if self._parser is not None and self._listener.state is not TakeState.recording:
             events += self._to_events(time, self._parser.expire(time - self._lag))

@@ -8,7 +8,8 @@ from app.recognition import PoseSequence, Take
 from app.recognition.recording.live_segmentation import LiveTakes
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot.active_language import ActiveLanguage
-from app.robot.events import Event, StateChanged
+from app.robot.events import Event, StateChanged, TakeRecognized, TakeRejected
+from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_take, reject_take
 
 NOT_ENDED_IN_TIME = (
@@ -30,8 +31,13 @@ class LandmarkListener(Protocol):
         """State of the salutes."""
         ...
 
+    @property
+    def order(self) -> StreamOrder:
+        """What is known of the order of the frames."""
+        ...
+
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Process the next frame and return its events."""
+        """Process the next frame and return its events; none of a frame that is late."""
         ...
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
@@ -63,8 +69,9 @@ class Listener:
     def __init__(self, language: ActiveLanguage) -> None:
         self._language = language
         self._takes: LiveTakes | None = None
-        self._last: PoseSequence | None = None
+        self._order = StreamOrder()
         self._state: TakeState | None = None
+        self._doubtful = False  # whether the last take was rejected
 
     @property
     def language(self) -> ActiveLanguage:
@@ -76,6 +83,11 @@ class Listener:
         """Waiting for a salute, in a take, or holding the salute that ended the take."""
         return self._state or TakeState.idle
 
+    @property
+    def order(self) -> StreamOrder:
+        """What is known of the order of the frames."""
+        return self._order
+
     def __len__(self) -> int:
         """Return the number of frames in memory."""
         return len(self._takes) if self._takes else 0
@@ -83,7 +95,8 @@ class Listener:
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame.
 
-        An earlier time or another size means another camera, so the memory is cleared.
+        A late or repeated frame is dropped. Frames of another clock or another size are those of
+        another camera, so the memory is cleared.
 
         Parameters
         ----------
@@ -97,18 +110,13 @@ class Listener:
         `StateChanged`, `TakeRecognized` and `TakeRejected`; for most frames none.
 
         """
-        time = float(moment.time[0])
-        events: tuple[Event, ...] = ()
-        if self._last is not None and (reason := describe_break(self._last, moment)):
-            events = self.abandon(time, reason)
-        self._last = moment
-        if self._takes is None:
-            self._takes = LiveTakes(moment.frame_size)
-        sight = self._takes.feed_moment(moment, salute)
-        events += self._set_state(time, sight.state)
-        if sight.take is None:
-            return events
-        return (*events, judge_take(self._language, sight.take, time, NOT_ENDED_IN_TIME))
+        frames = self._order.admit(moment, salute)
+        events: list[Event] = []
+        if self._order.reason:
+            events += self._reject_open(float(moment.time[0]), self._order.reason)
+        for frame in frames:
+            events += self._process(*frame)
+        return tuple(events)
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory.
@@ -121,13 +129,13 @@ class Listener:
             Reason for rejecting an open take.
 
         """
-        take = self._clear()
-        rejected = (reject_take(self._language, take, time, reason),) if take else ()
-        return (*rejected, *(self._set_state(time, TakeState.idle) if self._state else ()))
+        self._order.restart()
+        return self._reject_open(time, reason)
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream; an open take is rejected, with its nearest gesture."""
-        time = 0.0 if self._last is None else float(self._last.time[0])
+        time = self._order.time
+        self._order.restart()
         take = self._clear()
         if take is None:
             return ()
@@ -137,10 +145,44 @@ class Listener:
         """Recognise the takes that end from now on by another language."""
         self._language = language
 
+    def _process(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
+        """Process a frame that is in order."""
+        time = float(moment.time[0])
+        if self._takes is None:
+            self._takes = LiveTakes(moment.frame_size)
+        sight = self._takes.feed_moment(moment, salute)
+        if (missed := self._recognize_gap(time)) is not None:
+            return (*self._set_state(time, TakeState.done), missed)
+        changed = self._set_state(time, sight.state)
+        if sight.take is None:
+            return changed
+        verdict = judge_take(self._language, sight.take, time, NOT_ENDED_IN_TIME)
+        self._doubtful = isinstance(verdict, TakeRejected)
+        return (*changed, verdict)
+
+    def _recognize_gap(self, time: float) -> TakeRecognized | None:
+        """Recognise the gap before the salute that begins a take; None where it is no gesture."""
+        assert self._takes is not None
+        gap = self._takes.cut_gap() if self._doubtful else None
+        if gap is None:
+            return None
+        verdict = judge_take(self._language, gap, time, NOT_ENDED_IN_TIME)
+        if not isinstance(verdict, TakeRecognized):
+            return None
+        self._takes.end_gap()
+        self._doubtful = False
+        return verdict
+
+    def _reject_open(self, time: float, reason: str) -> tuple[Event, ...]:
+        """Clear the memory and reject an open take for `reason`."""
+        take = self._clear()
+        rejected = (reject_take(self._language, take, time, reason),) if take else ()
+        return (*rejected, *(self._set_state(time, TakeState.idle) if self._state else ()))
+
     def _clear(self) -> Take | None:
         """Clear the memory and return the take that was open."""
         take = self._takes.finish() if self._takes else None
-        self._takes = self._last = None
+        self._takes, self._doubtful = None, False
         return take
 
     def _set_state(self, time: float, state: TakeState) -> tuple[Event, ...]:
@@ -148,16 +190,3 @@ class Listener:
             return ()
         self._state = state
         return (StateChanged(time, state),)
-
-
-def describe_break(last: PoseSequence, moment: PoseSequence) -> str:
-    """Return why one frame cannot follow another in the same take; empty where it can."""
-    before, now = float(last.time[0]), float(moment.time[0])
-    if now <= before:
-        return f"the source's time went back, from {before:.2f} s to {now:.2f} s"
-    if moment.frame_size != last.frame_size:
-        old, new = (f"{width} x {height}" for width, height in (last.frame_size, moment.frame_size))
-        return f"the picture's size changed, from {old} to {new} pixels"
-    if moment.landmarks != last.landmarks:
-        return f"the landmarks changed, from {len(last.landmarks)} to {len(moment.landmarks)}"
-    return ""

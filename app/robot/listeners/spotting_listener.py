@@ -7,7 +7,7 @@ from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import Spotted, Spotter
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, StateChanged
-from app.robot.listeners.salute_listener import describe_break
+from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_recognition
 
 
@@ -29,7 +29,8 @@ class SpottingListener:
     def __init__(self, language: ActiveLanguage) -> None:
         self._language = language
         self._spotter = Spotter(language.recognizer)
-        self._last: PoseSequence | None = None
+        self._order = StreamOrder()
+        self._begun = False
 
     @property
     def language(self) -> ActiveLanguage:
@@ -41,31 +42,42 @@ class SpottingListener:
         """Always idle: there are no salutes."""
         return TakeState.idle
 
+    @property
+    def order(self) -> StreamOrder:
+        """What is known of the order of the frames."""
+        return self._order
+
     def __len__(self) -> int:
         """Return the number of frames in memory."""
         return len(self._spotter)
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame; see `Listener.feed`. `salute` is ignored."""
-        time = float(moment.time[0])
-        events: tuple[Event, ...] = ()
-        if self._last is None:
-            events = (StateChanged(time, TakeState.idle),)
-        elif reason := describe_break(self._last, moment):
-            events = self.abandon(time, reason)
-        self._last = moment
-        return events + self._to_events(time, self._spotter.feed(moment))
+        frames = self._order.admit(moment, salute)
+        events: list[Event] = []
+        if self._order.reason:
+            events += self._start_again(float(moment.time[0]))
+        for each, _ in frames:
+            time = float(each.time[0])
+            if not self._begun:
+                events.append(StateChanged(time, TakeState.idle))
+            self._begun = True
+            events += self._to_events(time, self._spotter.feed(each))
+        return tuple(events)
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory; return the events of gestures that had already ended."""
+        self._order.restart()
+        return self._start_again(time)
+
+    def _start_again(self, time: float) -> tuple[Event, ...]:
         events = self._to_events(time, self._spotter.finish())
         self._spotter = Spotter(self._language.recognizer)
         return events
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream and return the events that were still pending."""
-        time = 0.0 if self._last is None else float(self._last.time[0])
-        return self._to_events(time, self._spotter.finish())
+        return self._to_events(self._order.time, self._spotter.finish())
 
     def set_language(self, language: ActiveLanguage) -> None:
         """Spot the gestures of another language from the next frame on.

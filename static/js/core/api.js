@@ -77,10 +77,15 @@ const id = encodeURIComponent;
 /** @param {{ revision?: number }} language */
 const matching = (language) => ({ "If-Match": `"${language.revision}"` });
 /**
+ * The address of a gesture, or of a part of it. Its label is in the query, because a browser
+ * resolves the path "/gestures/..".
+ *
  * @param {{ id: string }} language
  * @param {string} label
+ * @param {"" | "/image" | "/demonstration"} [part]
  */
-const gestureAt = (language, label) => `/languages/${id(language.id)}/gestures/${id(label)}`;
+const gestureAt = (language, label, part = "") =>
+  `/languages/${id(language.id)}/gestures${part}?label=${id(label)}`;
 
 export const clips = {
   /** @type {() => Promise<Clip[]>} */
@@ -175,7 +180,7 @@ export const languages = {
     ),
   /** @type {(language: string, label: string, revision: number) => string} */
   image: (language, label, revision) =>
-    `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
+    `${BASE}${gestureAt({ id: language }, label, "/image")}&revision=${revision}`,
   /** @type {(language: string) => Promise<Language>} */
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
   /** @type {(language: { id: string, revision?: number }) => Promise<any>} */
@@ -201,7 +206,7 @@ export const languages = {
     request("POST", `/languages/${id(language)}/preview/health`, { body }),
   /** @type {(language: string, label: string) => Promise<Poses>} */
   demonstration: (language, label) =>
-    request("GET", `${gestureAt({ id: language }, label)}/demonstration`),
+    request("GET", gestureAt({ id: language }, label, "/demonstration")),
   /** @type {(language: { id: string, revision: number }, gesture: object) => Promise<Language>} */
   addGesture: (language, gesture) =>
     request("POST", `/languages/${id(language.id)}/gestures`, {

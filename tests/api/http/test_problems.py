@@ -93,6 +93,7 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/api/v1/clips/{clip_id}/topic"): {"topic": "/camera"},
     ("POST", "/api/v1/languages/{language_id}/revert"): {"revision": 1},
     ("POST", "/api/v1/languages/{language_id}/gestures"): {"label": "x", "clip_id": "missing"},
+    ("PATCH", "/api/v1/languages/{language_id}/gestures"): {"label": "x"},
     ("PATCH", "/api/v1/languages/{language_id}/gestures/{label}"): {"label": "x"},
     ("POST", "/api/v1/languages/{language_id}/preview"): {"label": "x", "change": {}},
     ("POST", "/api/v1/languages/{language_id}/preview/health"): {"label": "x", "change": {}},
@@ -101,7 +102,11 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
 }
 
 
-QUERIES = {"/api/v1/languages/{language_id}/contrast": {"one": "circle", "other": "line"}}
+GESTURES = "/api/v1/languages/{language_id}/gestures"
+QUERIES = {
+    "/api/v1/languages/{language_id}/contrast": {"one": "circle", "other": "line"},
+    **{GESTURES + part: {"label": "circle"} for part in ("", "/image", "/demonstration")},
+}
 
 
 def test_a_body_that_is_no_json_is_a_problem_on_every_route(client: httpx.Client) -> None:

@@ -8,7 +8,7 @@ from pydantic import SecretStr
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from app.api.middleware.access import COOKIE
+from app.api.middleware.access import COOKIE, MOST_GUESSES
 from app.settings import Settings
 from tests.api.running import Running, assert_problem, running
 
@@ -157,6 +157,24 @@ def test_a_wrong_token_is_none(stranger: httpx.Client, name: str, value: str) ->
 def test_the_token_opens_as_bearer(stranger: httpx.Client) -> None:
     headers = {"Authorization": f"Bearer {TOKEN}"}
     assert stranger.get(LANGUAGES, headers=headers).status_code == 200
+
+
+def test_guesses_are_slowed_and_who_is_let_in_stays_so(settings: Settings) -> None:
+    secret = settings.model_copy(update={"token": SecretStr(TOKEN)})
+    bearer = {"Authorization": f"Bearer {TOKEN}"}
+    with (
+        running(secret) as server,
+        httpx.Client(base_url=server.address, timeout=60) as guest,
+        httpx.Client(base_url=server.address, timeout=60) as guesser,
+    ):
+        assert guest.get("/", params={"token": TOKEN}).status_code == 303
+        for number in range(MOST_GUESSES):
+            wrong = {"Authorization": f"Bearer {number}"}
+            assert_problem(guesser.get(LANGUAGES, headers=wrong), 401, "token_required")
+        refused = guesser.get(LANGUAGES, headers=bearer)
+        assert_problem(refused, 429, "too_many_guesses")
+        assert refused.headers["retry-after"] == "60"
+        assert guest.get(LANGUAGES).status_code == 200
 
 
 def test_the_token_in_the_address_becomes_a_cookie_and_leaves_the_address(

@@ -1,6 +1,7 @@
 """The health report over HTTP: once a revision, and not sent twice."""
 
 import json
+import socket
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
@@ -9,7 +10,8 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.api.running import Running, assert_problem
+from tests.api.languages import many_gestures
+from tests.api.running import Running, assert_problem, until
 from tests.conftest import ROOT
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
@@ -93,3 +95,35 @@ def checks(lines: Iterator[str]) -> Iterator[dict[str, Any]]:
     for written in lines:
         if written == "event: checks":
             yield json.loads(next(lines).removeprefix("data: "))
+
+
+def begin_check(server: Running, language: str) -> socket.socket:
+    """Ask for a check, and return the connection when it runs."""
+    connection = socket.create_connection(("127.0.0.1", server.port))
+    path = f"/api/v1/languages/{language}/check"
+    connection.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+    until(lambda: server.studio.runner._runs)
+    return connection
+
+
+def test_a_check_whose_client_leaves_ends(server: Running, client: httpx.Client) -> None:
+    document = (ROOT / "languages" / "osg-table-2.json").read_bytes()
+    language = client.post(f"{LANGUAGES}/import", content=document).json()["id"]
+    client.patch(f"{LANGUAGES}/{language}", json={"name": "checked and left"})
+    with begin_check(server, language):
+        folder = server.studio.clips.folder
+        until(lambda: list(folder.glob(".unpacked-*")))
+    until(lambda: not server.studio.runner._runs)
+    until(lambda: not list(folder.glob(".unpacked-*")))
+
+
+@pytest.mark.slow
+def test_a_check_of_many_gestures_leaves_the_server_free(
+    server: Running, client: httpx.Client
+) -> None:
+    document = many_gestures(300)
+    language = client.post(f"{LANGUAGES}/import", content=document).json()["id"]
+    with begin_check(server, language):
+        for _ in range(20):
+            assert client.get("/healthz", timeout=5).status_code == 200
+    until(lambda: not server.studio.runner._runs)

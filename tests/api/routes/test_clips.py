@@ -166,6 +166,24 @@ def test_a_repeated_upload_is_one_clip(client: httpx.Client, small_clip: Path) -
     assert len(client.get(CLIPS).json()) == 2
 
 
+def test_a_key_that_was_used_for_another_file_is_refused(
+    client: httpx.Client, small_clip: Path, tmp_path: Path
+) -> None:
+    key = {"Idempotency-Key": "7f3c"}
+    first = upload(client, small_clip, **key).json()
+    other = write_clip(tmp_path / "other.mp4", frames=3)
+    assert_problem(upload(client, other, **key), 422, "idempotency_key_reused")
+    assert len(client.get(CLIPS).json()) == 1
+    client.delete(f"{CLIPS}/{first['id']}")
+    gone = assert_problem(upload(client, small_clip, **key), 409, "clip_deleted")
+    assert gone["clip_id"] == first["id"]
+
+
+@pytest.mark.parametrize("path", [f"{CLIPS}/%00", f"{CLIPS}/a%00b/video", "/%00"])
+def test_a_path_with_a_nul_names_nothing(client: httpx.Client, path: str) -> None:
+    assert_problem(client.get(path), 404, "not_found")
+
+
 def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"max_jobs_per_client": 1})
     with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:

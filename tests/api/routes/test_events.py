@@ -1,9 +1,11 @@
 """One stream tells every page what changed."""
 
 import json
+from contextlib import ExitStack
 from typing import Any
 
 import httpx
+from sqlalchemy import event
 
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.test_clips import CLIPS
@@ -29,3 +31,30 @@ def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> Non
                     break
     assert ("languages", {"id": language["id"]}) in heard
     assert heard[-1] == ("clips", {"id": clip_id})
+
+
+def test_the_database_is_read_once_for_all_streams(client: httpx.Client, server: Running) -> None:
+    clip_id = add_recorded_clip(server.studio, recording_of("circle"))
+    job = client.get(f"{CLIPS}/{clip_id}").json()["job_id"]
+    reads: list[str] = []
+    engine = server.studio.jobs._database.engine
+
+    @event.listens_for(engine, "before_cursor_execute")
+    def count(_connection: Any, _cursor: Any, statement: str, *_: Any) -> None:
+        if statement.startswith("SELECT"):
+            reads.append(statement)
+
+    with ExitStack() as opened:
+        address = f"{server.address}/api/v1/events"
+        streams = [
+            opened.enter_context(httpx.stream("GET", address, timeout=60)).iter_lines()
+            for _ in range(20)
+        ]
+        for lines in streams:
+            while "listening" not in next(lines):
+                pass
+        server.studio.broadcast.publish("jobs", id=job, clip_id=clip_id)
+        for lines in streams:
+            told = next(line for line in lines if line.startswith("data:"))
+            assert json.loads(told.removeprefix("data:"))["status"] == "done"
+    assert len(reads) == 1

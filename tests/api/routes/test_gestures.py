@@ -1,6 +1,7 @@
 """Gestures over HTTP: saved from takes and ranges, changed, removed, shown."""
 
 from typing import Any
+from urllib.parse import quote
 
 import httpx
 import pytest
@@ -54,9 +55,51 @@ def test_a_label_of_any_characters_can_be_addressed(
     (gesture,) = add_gesture(client, language_id, circle_clip, label).json()["gestures"]
     assert gesture["label"] == label
     assert client.get(gesture["thumbnail"]).status_code == 200
-    address = gesture["thumbnail"].partition("/image")[0]
+    address = place(language_id, quote(label, safe=""))
+    assert client.get(f"{address}/image").status_code == 200
     changed = client.patch(address, json={"label": "plain"}).json()
     assert changed["labels"] == ["plain"]
+
+
+@pytest.mark.parametrize(
+    "label", [".", "..", "/", "//", "%2e", "%2E%2e", "../..", "a/", "\U0001f42c" * 80]
+)
+def test_no_label_means_anything_in_an_address(
+    client: httpx.Client, language_id: str, circle_clip: str, label: str
+) -> None:
+    (gesture,) = add_gesture(client, language_id, circle_clip, label).json()["gestures"]
+    assert gesture["label"] == label
+    assert client.get(gesture["thumbnail"]).headers["content-type"] == "image/png"
+    named = {"label": label}
+    shown = client.get(f"{place(language_id)}/demonstration", params=named)
+    assert shown.status_code == 200
+    renamed = client.patch(place(language_id), params=named, json={"label": "circle"})
+    assert renamed.json()["labels"] == ["circle"]
+    back = client.patch(place(language_id), params={"label": "circle"}, json=named)
+    assert back.json()["labels"] == [label]
+    assert client.delete(place(language_id), params=named).json()["labels"] == []
+    assert client.get(f"{LANGUAGES}/{language_id}").status_code == 200
+
+
+def test_a_gesture_must_be_named_to_be_deleted(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    add_gesture(client, language_id, circle_clip)
+    assert_problem(client.delete(place(language_id)), 422, "request_invalid")
+    assert client.get(f"{LANGUAGES}/{language_id}").json()["labels"] == ["circle"]
+
+
+@pytest.mark.parametrize("method", ["DELETE", "PATCH", "PUT"])
+@pytest.mark.parametrize("end", ["/", "/gestures/.."])
+def test_a_path_that_a_browser_resolves_to_the_language_changes_nothing(
+    client: httpx.Client, language_id: str, method: str, end: str
+) -> None:
+    url = client.base_url.join(f"{LANGUAGES}/{language_id}{end}")
+    assert url.path == f"{LANGUAGES}/{language_id}/"  # httpx resolves the dots as browsers do
+    before = client.get(f"{LANGUAGES}/{language_id}").json()
+    answer = client.request(method, url, json={"author": "nobody"}, follow_redirects=True)
+    assert_problem(answer, 404, "not_found")
+    assert client.get(f"{LANGUAGES}/{language_id}").json() == before
 
 
 def test_a_gesture_changes_in_what_is_given_only(

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import base64
 import os
+import shutil
 import socket
+import sqlite3
+from contextlib import closing
 from datetime import timedelta
 from pathlib import Path
 
@@ -94,6 +97,60 @@ def test_a_lost_connection_and_a_restart_lose_nothing_that_came(
         assert [each["name"] for each in client.get(CLIPS).json()] == ["dive.mp4"]
 
 
+def test_a_locked_database_costs_no_byte_of_a_whole_upload(
+    settings: Settings, small_clip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.store.database.BUSY_TIMEOUT_SECONDS", 0.2)
+    content = small_clip.read_bytes()
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        place = begun(client, len(content))
+        with closing(sqlite3.connect(settings.data_dir / "studio.db")) as other:
+            other.execute("BEGIN IMMEDIATE")
+            refused = sent(client, place, 0, content)
+            assert_problem(refused, 503, "store_unavailable")
+            # A client takes an upload of full length for a finished one.
+            assert offset_of(client, place) == len(content) - 1
+            other.rollback()
+        (kept,) = (settings.data_dir / "uploads").glob("*[!n]")
+        assert kept.read_bytes() == content
+        finished = sent(client, place, len(content) - 1, content[-1:])
+        clip = finished.headers["content-location"]
+        assert client.get(f"{clip}/video").content == content
+        # Who lost this answer sends the part again, by either offset.
+        for offset in (len(content) - 1, len(content)):
+            again = sent(client, place, offset, content[offset:])
+            assert again.headers["content-location"] == clip
+        assert len(client.get(CLIPS).json()) == 1
+        assert list((settings.data_dir / "uploads").iterdir()) == []
+
+
+def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> None:
+    free = shutil.disk_usage(settings.data_dir.parent).free
+    # Half of what is free may be used, so that other programs do not disturb.
+    tight = settings.model_copy(
+        update={"free_disk_bytes": free // 2, "max_clip_bytes": free, "max_jobs_per_client": 3}
+    )
+    with running(tight) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        place = begun(client, free // 3)
+        headers = TUS | {"Upload-Length": str(free // 3)}
+        refused = assert_problem(client.post(UPLOADS, headers=headers), 507, "disk_full")
+        assert "uploads under way" in str(refused["detail"])
+        assert sent(client, place, 0, b"beginning").status_code == 204
+        client.delete(place, headers=TUS)
+        assert client.post(UPLOADS, headers=headers).status_code == 201
+
+
+def test_an_upload_counts_as_a_waiting_job_from_its_beginning(settings: Settings) -> None:
+    narrow = settings.model_copy(update={"max_jobs_per_client": 2})
+    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        for _ in range(2):
+            place = begun(client, 100)
+        answer = client.post(UPLOADS, headers=TUS | {"Upload-Length": "100"})
+        assert_problem(answer, 429, "queue_full")
+        client.delete(place, headers=TUS)
+        begun(client, 100)
+
+
 def test_the_topic_of_a_dive_recording_comes_with_the_metadata(
     settings: Settings, tmp_path: Path
 ) -> None:
@@ -111,6 +168,12 @@ def test_the_topic_of_a_dive_recording_comes_with_the_metadata(
         assert_problem(sent(client, other, 0, content), 422, "topic_unusable")
         names = {each["name"] for each in client.get(CLIPS).json()}
         assert names == {"dive.mcap"}
+
+
+def test_metadata_beyond_ascii_is_refused(client: httpx.Client) -> None:
+    headers = {name.encode(): text.encode() for name, text in TUS.items()}
+    headers |= {b"Upload-Length": b"3", b"Upload-Metadata": b"filename \xe9"}
+    assert_problem(client.post(UPLOADS, headers=headers), 400, "malformed_upload")
 
 
 @pytest.mark.parametrize(

@@ -75,6 +75,12 @@ def test_every_common_kind_of_clip_is_read(
     assert warnings == ()
 
 
+def test_more_streams_than_a_film_has_are_refused(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mkv", extra_streams=70)
+    with pytest.raises(VideoError, match="71 streams, more than the limit of 64"):
+        probe(clip)
+
+
 def test_the_name_says_nothing(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4").rename(tmp_path / "http:--clip.txt|x")
     assert len(read(clip)[0]) == 12

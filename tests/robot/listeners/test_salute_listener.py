@@ -11,6 +11,7 @@ from app.recognition import PoseSequence, Recording, takes_in
 from app.recognition.recording.live_segmentation import LONGEST_SALUTE
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot import Event, Listener, StateChanged, TakeRecognized, TakeRejected
+from app.robot.listeners.stream_order import MOST_LATE
 from tests.api.recordings import RATE, recording_of
 from tests.robot.languages import moments_of, run_listener, spoken
 
@@ -114,17 +115,107 @@ def test_a_take_that_nobody_ends_is_rejected_after_a_minute_and_memory_stays_bou
 def test_another_picture_or_time_going_back_ends_a_take() -> None:
     begun = cut(recording_of("circle"), 2.5)
     *_, (last, _) = moments_of(begun)
-    larger = PoseSequence(
-        landmarks=last.landmarks, xy=last.xy, time=last.time + 0.05, frame_size=(1280, 960)
-    )
-    for following, reason in [(moved(last, -1), "time went back"), (larger, "640 x 480 to 1280")]:
+    larger = [
+        PoseSequence(
+            landmarks=last.landmarks, xy=last.xy, time=last.time + 0.05, frame_size=(1280, 960)
+        )
+    ]
+    earlier = [moved(last, number / RATE - 2) for number in range(MOST_LATE)]
+    for following, reason in [(earlier, "time went back"), (larger, "640 x 480 to 1280")]:
         listener = Listener(spoken("circle"))
         run_listener(listener, begun)
-        rejected, idle = listener.feed(following, 0.0)
+        rejected, idle = [event for each in following for event in listener.feed(each, 0.0)]
         assert isinstance(rejected, TakeRejected)
         assert reason in rejected.reason
         assert isinstance(idle, StateChanged)
         assert idle.state is TakeState.idle
+
+
+def test_late_and_repeated_frames_are_dropped_and_counted_and_the_take_stays() -> None:
+    frames = moments_of(recording_of("circle"))
+    middle = len(frames) // 2
+    disordered = [*frames[:middle], frames[middle - 1], frames[middle - 9], *frames[middle:]]
+    disordered[8], disordered[9] = disordered[9], disordered[8]
+    listener, alone = Listener(spoken("circle")), Listener(spoken("circle"))
+    told = [event for frame in disordered for event in listener.feed(*frame)]
+    expected = [event for frame in frames for event in alone.feed(*frame)]
+    assert listener.order.late == 3
+    (said,) = [event for event in told if isinstance(event, TakeRecognized)]
+    (same,) = [event for event in expected if isinstance(event, TakeRecognized)]
+    assert (said.label, said.start, said.end) == (same.label, same.start, same.end)
+
+
+@pytest.mark.parametrize("seconds", [59.0, 61.0, 62.0, 70.0, 3600.0, 1e6])
+def test_a_pause_or_a_step_of_the_clock_in_a_take_rejects_it(seconds: float) -> None:
+    listener = Listener(spoken("circle"))
+    begun = cut(recording_of("circle"), 2.0)
+    run_listener(listener, begun)
+    *_, (last, _) = moments_of(begun)
+    told = [
+        event
+        for number in range(1, 4 * RATE)
+        for event in listener.feed(moved(last, seconds + number / RATE), 0.0)
+    ]
+    (rejected,) = [event for event in told if isinstance(event, TakeRejected)]
+    assert "no salute ended it within 60 s" in rejected.reason
+    assert listener.state is TakeState.idle
+    # And it goes on.
+    later = [
+        event
+        for moment, salute in moments_of(recording_of("circle"))
+        for event in listener.feed(moved(moment, seconds + 100), salute)
+    ]
+    assert [event.label for event in later if isinstance(event, TakeRecognized)] == ["circle"]
+
+
+def dive(*shapes: str, rest: float = 3.0) -> list[tuple[PoseSequence, float]]:
+    """Return gestures between their salutes, with a rest of still hands after each."""
+    frames: list[tuple[PoseSequence, float]] = []
+    for shape in shapes:
+        began = float(frames[-1][0].time[0]) + 1 / RATE if frames else 0.0
+        frames += [(moved(each, began), salute) for each, salute in moments_of(recording_of(shape))]
+        last, _ = frames[-1]
+        frames += [(moved(last, number / RATE), 0.0) for number in range(1, round(rest * RATE) + 1)]
+    return frames
+
+
+def labels_in(listener: Listener, frames: list[tuple[PoseSequence, float]]) -> list[str]:
+    events = [event for frame in frames for event in listener.feed(*frame)]
+    return [event.label for event in events if isinstance(event, TakeRecognized)]
+
+
+@pytest.mark.parametrize("rest", [1.2, 3.0, 12.0])
+def test_after_a_missed_salute_the_next_gestures_are_recognised(rest: float) -> None:
+    language = spoken("circle", "line")
+    frames = dive("circle", "line", "circle", "line", rest=rest)
+    assert labels_in(Listener(language), frames) == ["circle", "line", "circle", "line"]
+    # Begun after the first salute, as after a restart.
+    began = next(index for index, (_, salute) in enumerate(frames) if salute == 0)
+    listener = Listener(language)
+    assert labels_in(listener, frames[began:]) == ["line", "circle", "line"]
+    assert listener.state is TakeState.idle
+
+
+def test_a_salute_that_was_not_seen_costs_one_gesture() -> None:
+    language = spoken("circle", "line")
+    frames = dive("circle", "line", "circle", "line")
+    for missed in range(8):
+        listener, kept, number, before = Listener(language), [], -1, 0.0
+        for moment, salute in frames:
+            number += salute > before
+            before = salute
+            kept.append((moment, 0.0 if number == missed else salute))
+        recognised = labels_in(listener, kept)
+        # Without the salute that ends it, a gesture is recognised at the next one's first salute.
+        expected = ["circle", "line", "circle", "line"]
+        del expected[min((missed + 1) // 2, 3)]
+        assert recognised == expected, missed
+
+
+def test_a_rejected_gesture_does_not_turn_the_pairs_around() -> None:
+    listener = Listener(spoken("circle"))
+    frames = dive("circle", "line", "circle", "line", "circle")
+    assert labels_in(listener, frames) == ["circle"] * 3
 
 
 def test_a_take_is_recognised_by_the_language_at_its_end() -> None:

@@ -92,14 +92,10 @@ def test_an_emergency_needs_no_repetition_and_an_object_stays_one(bench: Bench) 
     "other",
     [
         {"rejected": True},
-        {"seconds_ago": STALE},
-        {"language_id": "older"},
         {"confidence": 0.3},
     ],
 )
-def test_nothing_comes_of_what_is_rejected_stale_foreign_or_unsure(
-    bench: Bench, other: dict[str, Any]
-) -> None:
+def test_nothing_comes_of_what_is_rejected_or_unsure(bench: Bench, other: dict[str, Any]) -> None:
     robot = Robot(bench, emergency=["line"], least_confidence=0.5)
     robot.show("line", **other)
     # A report on the first would come before the report on the second.
@@ -107,6 +103,27 @@ def test_nothing_comes_of_what_is_rejected_stale_foreign_or_unsure(
     robot.show("circle")
     bench.wait(lambda: bool(robot.commands), "command")
     assert [command.label for command in robot.commands] == ["circle"]
+
+
+@pytest.mark.parametrize("other", [{"seconds_ago": STALE}, {"language_id": "older"}])
+def test_only_an_emergency_may_be_stale_or_of_another_language(
+    bench: Bench, other: dict[str, Any]
+) -> None:
+    robot = Robot(bench, emergency=["line"])
+    assert robot.show("circle", **other).startswith("ignored")
+    assert robot.show("line", **other).startswith("emergency")
+    bench.wait(lambda: bool(robot.commands), "command")
+    assert [command.label for command in robot.commands] == ["line"]
+
+
+def test_two_recognitions_of_one_take_and_another_body_confirm_nothing(bench: Bench) -> None:
+    robot = Robot(bench)
+    now = bench.probe.get_clock().now().nanoseconds
+    start = to_stamp(now - 1_500_000_000)
+    assert robot.show("circle", seconds_ago=0.05, start=start).startswith("repeat")
+    assert "once more" in robot.show("circle", start=start)
+    assert robot.show("circle", body_id="other").startswith("repeat")
+    assert robot.commands == []
 
 
 def test_a_gesture_can_take_it_back(bench: Bench) -> None:

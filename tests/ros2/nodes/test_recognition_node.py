@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -149,6 +151,41 @@ def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
     assert recognitions[0].rejected
     assert "time went back" in recognitions[0].reason
     assert recognitions[1].label == "circle"
+
+
+def test_keypoints_without_stamps_are_timed_by_their_arrival(
+    bench: Bench, recogniser: RecognitionNode
+) -> None:
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
+    bodies, hands = bench.speaker(BodyKeypoints, "body_keypoints"), bench.speaker(Hands, "hands")
+    recording = recording_of("circle")
+    began = time.monotonic()
+    for seconds, (body, seen) in zip(
+        recording.poses.time.tolist(), messages_of(recording), strict=True
+    ):
+        time.sleep(max(began + seconds - time.monotonic(), 0))
+        body.header.stamp = seen.header.stamp = to_stamp(0)
+        before = recogniser.health.inputs
+        bodies.publish(body)
+        hands.publish(seen)
+        wait_for_inputs(bench, recogniser, before + 1)
+    bench.wait(lambda: bool(recognitions), "recognition")
+    assert recognitions[0].label == "circle"
+
+
+def test_a_pause_in_a_take_ends_it_and_not_the_node(
+    bench: Bench, recogniser: RecognitionNode
+) -> None:
+    recognitions = bench.subscribe(GestureRecognition, "recognition")
+    play(bench, cut(recording_of("circle"), 40))
+    later = recording_of("circle")
+    poses = replace(later.poses, time=later.poses.time + 70)
+    play(bench, Recording(poses, later.hands, later.salute))
+    bench.wait(lambda: len(recognitions) == 2, "both takes")
+    assert recognitions[0].rejected
+    assert "no salute ended it within 60 s" in recognitions[0].reason
+    assert recognitions[1].label == "circle"
+    assert recogniser.facts()["late or repeated"] == "0"
 
 
 def test_the_published_ports_nodes_can_stay(bench: Bench, two_signs: Path) -> None:

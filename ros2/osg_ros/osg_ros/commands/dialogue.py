@@ -1,13 +1,16 @@
 """Command dialogue: decides when a recognised gesture becomes a command, without ROS.
 
 A misrecognised gesture must not move a robot. So a command is given when the diver repeats its
-gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. In a
-language with phrases the whole message is repeated and executed, not its single gestures.
+gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. A cancel
+and an emergency are never ignored, however old they are, because stopping is the safe direction.
+All else is taken in the order of arrival, while it is fresh. In a language with phrases the whole
+message is repeated and executed, not its single gestures.
 """
 
 from __future__ import annotations
 
 import math
+from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -18,6 +21,9 @@ of the sample clips takes 4 to 6 s, so this leaves two attempts."""
 STALE_SECONDS = 3.0
 """Longest delay from the picture that ended a gesture to its arrival. Pose estimation on a slow
 robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
+
+MOST_BODIES = 32
+"""Bodies of which the last gesture is kept: more than divers work near one robot."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,8 @@ class Rules:
         Longest time from a gesture to the end of its repetition; for a message, to each next
         gesture of its repetition and to the end of the repetition.
     stale_seconds
-        Largest difference between a gesture's stamp and the current time, in either direction.
+        Largest difference between a gesture's stamp and the current time, in either direction;
+        labels in `cancel` and `emergency` may be older.
     least_confidence
         A gesture below it counts as rejected, a message as not understood.
     cancel
@@ -82,6 +89,10 @@ class RecognizedGesture:
         Time of the picture that ended the take, in seconds.
     language_id
         Id of the language that recognised it.
+    start
+        Time at which the take began, in seconds; None: at `stamp`.
+    body_id
+        Whose gesture it is.
 
     """
 
@@ -89,6 +100,13 @@ class RecognizedGesture:
     confidence: float
     stamp: float
     language_id: str
+    start: float | None = None
+    body_id: str = ""
+
+    @property
+    def began(self) -> float:
+        """Time at which the take began, in seconds."""
+        return self.stamp if self.start is None else min(self.start, self.stamp)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,6 +129,8 @@ class RecognizedPhrase:
         Label of the gesture that caused it; None for a rejected gesture and for a pause.
     language_id
         Id of its language.
+    body_id
+        Whose message it is.
 
     """
 
@@ -122,6 +142,12 @@ class RecognizedPhrase:
     stamp: float
     label: str | None
     language_id: str
+    body_id: str = ""
+
+    @property
+    def began(self) -> float:
+        """Time at which the message began, in seconds."""
+        return min(self.start, self.stamp)
 
 
 @dataclass(frozen=True)
@@ -179,12 +205,34 @@ class Pending:
         Time by which the repetition must have ended, in seconds; for a message, ended or continued.
     mission
         Mission of the message; None for a gesture.
+    body_id
+        Who must repeat it.
 
     """
 
     label: str
     deadline: float
     mission: str | None = None
+    body_id: str = ""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The last that one body showed, to tell it from its repetition.
+
+    Attributes
+    ----------
+    stamp, started
+        Stamp and beginning of the last event, in seconds: later events are newer.
+    middle
+        Middle of the last gesture or message that was understood. What began before it is another
+        recognition of the same one, by another camera or recogniser.
+
+    """
+
+    stamp: float = -math.inf
+    started: float = -math.inf
+    middle: float = -math.inf
 
 
 class CommandDialogue:
@@ -208,8 +256,9 @@ class CommandDialogue:
         self.rules = rules
         self.table = CommandTable()
         self.pending: Pending | None = None
-        self._latest = -math.inf
-        self._latest_phrase = (-math.inf, -math.inf)
+        self._now = -math.inf
+        self._gestures: OrderedDict[str, Shown] = OrderedDict()
+        self._messages: OrderedDict[str, Shown] = OrderedDict()
 
     def set_table(self, table: CommandTable) -> Decision | None:
         """Set the commands of another language and clear a pending gesture or message.
@@ -238,15 +287,20 @@ class CommandDialogue:
             Current time in seconds, in the clock of the stamps.
 
         """
-        refused = self._find_refusal(gesture, now, is_newer=gesture.stamp > self._latest)
-        if refused is not None:
-            return Decision(refused)
-        self._latest = gesture.stamp
+        self._follow_clock(now)
         # `>=` is False for NaN, so a confidence of NaN is too low.
         sure = gesture.confidence >= self.rules.least_confidence
-        if gesture.label is None or not sure:
+        safe = sure and gesture.label in self.rules.cancel | self.rules.emergency
+        before = self._gestures.get(gesture.body_id, Shown())
+        is_newer = gesture.stamp > before.stamp
+        refused = None if safe else self._find_refusal(gesture, now, before, is_newer=is_newer)
+        if refused is not None:
+            return Decision(refused)
+        label = gesture.label if sure else None
+        self._remember(self._gestures, gesture, now, understood=label is not None)
+        if label is None:
             return Decision("not understood; show the gesture again")
-        return self._decide_label(gesture.label, gesture.stamp)
+        return self._decide_label(label, gesture)
 
     def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
         """Decide about a phrase event, which follows a gesture or a pause.
@@ -259,16 +313,22 @@ class CommandDialogue:
             Current time in seconds, in the clock of the stamps.
 
         """
+        self._follow_clock(now)
+        before = self._messages.get(phrase.body_id, Shown())
         # One picture can end a message and begin another one: two events with the same stamp.
-        order = (phrase.stamp, phrase.start)
-        refused = self._find_refusal(phrase, now, is_newer=order > self._latest_phrase)
+        is_newer = (phrase.stamp, phrase.start) > (before.stamp, before.started)
+        whole = phrase.kind == "complete"
+        refused = None
+        if phrase.kind != "cancelled":
+            same = before if whole else replace(before, middle=-math.inf)
+            refused = self._find_refusal(phrase, now, same, is_newer=is_newer)
         if refused is None and not self.table.phrase_labels:
             refused = "ignored: the language of the commands has no phrases"
         if refused is not None:
             return Decision(refused)
-        self._latest_phrase = order
+        self._remember(self._messages, phrase, now, understood=whole)
         pending = self.pending if self.pending and self.pending.mission else None
-        in_time = pending is not None and phrase.stamp <= pending.deadline
+        in_time = self._is_repetition(pending, phrase)
         if phrase.kind == "complete" and phrase.mission:
             return self._complete(phrase, pending if in_time else None)
         if phrase.kind == "continues" and pending and in_time:
@@ -294,14 +354,50 @@ class CommandDialogue:
         repetition that ended in time may arrive that late.
 
         """
+        self._follow_clock(now)
         pending = self.pending
         if pending is None or now <= pending.deadline + self.rules.stale_seconds:
             return None
         self.pending = None
         return Decision(f"{pending.label!r} was not repeated in time; show it twice")
 
+    def _follow_clock(self, now: float) -> None:
+        """Note the time; when the clock was set back, move what was noted back with it."""
+        step = now - self._now
+        if math.isfinite(step) and step < 0:
+            if self.pending is not None:
+                self.pending = replace(self.pending, deadline=self.pending.deadline + step)
+            for shown in (self._gestures, self._messages):
+                for body, last in shown.items():
+                    shown[body] = Shown(last.stamp + step, last.started + step, last.middle + step)
+        self._now = now if math.isfinite(now) else self._now
+
+    def _remember(
+        self,
+        shown: OrderedDict[str, Shown],
+        input_: RecognizedGesture | RecognizedPhrase,
+        now: float,
+        *,
+        understood: bool,
+    ) -> None:
+        """Note the last that a body showed."""
+        last = shown.pop(input_.body_id, Shown())
+        # A stamp from the future must not keep back what follows.
+        stamp = min(input_.stamp, now)
+        middle = (input_.began + stamp) / 2 if understood else last.middle
+        shown[input_.body_id] = Shown(
+            max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
+        )
+        if len(shown) > MOST_BODIES:
+            shown.popitem(last=False)
+
     def _find_refusal(
-        self, input_: RecognizedGesture | RecognizedPhrase, now: float, *, is_newer: bool
+        self,
+        input_: RecognizedGesture | RecognizedPhrase,
+        now: float,
+        before: Shown,
+        *,
+        is_newer: bool,
     ) -> str | None:
         """Return why a gesture or message is ignored; None where it is not."""
         what = "message" if isinstance(input_, RecognizedPhrase) else "gesture"
@@ -312,9 +408,21 @@ class CommandDialogue:
             return f"ignored: the {what} is not newer than the one before"
         if input_.language_id != self.table.language_id:
             return f"ignored: the {what} is of another language than the commands"
+        if input_.began < before.middle:
+            return f"ignored: the {what} is the one before, recognised once more"
         return None
 
-    def _decide_label(self, label: str, stamp: float) -> Decision:
+    def _is_repetition(
+        self, pending: Pending | None, input_: RecognizedGesture | RecognizedPhrase
+    ) -> bool:
+        """Return whether an input may confirm the pending one: in time, and of the same body."""
+        return (
+            pending is not None
+            and input_.stamp <= pending.deadline
+            and input_.body_id == pending.body_id
+        )
+
+    def _decide_label(self, label: str, gesture: RecognizedGesture) -> Decision:
         pending, self.pending = self.pending, None
         command = self.table.commands.get(label)
         if label in self.table.phrase_labels - self.rules.cancel - self.rules.emergency:
@@ -328,10 +436,11 @@ class CommandDialogue:
             return Decision(f"{label!r} has no command", label=label)
         if label in self.rules.emergency:
             return Decision(f"emergency {label!r}: {command}", command, label, emergency=True)
-        in_time = pending is not None and stamp <= pending.deadline
-        if not self.rules.confirmed or (in_time and pending and pending.label == label):
+        repeated = self._is_repetition(pending, gesture) and pending and pending.label == label
+        if not self.rules.confirmed or repeated:
             return Decision(f"{label!r}: {command}", command, label)
-        self.pending = Pending(label, stamp + self.rules.confirm_seconds)
+        deadline = gesture.stamp + self.rules.confirm_seconds
+        self.pending = Pending(label, deadline, body_id=gesture.body_id)
         return Decision(f"repeat {label!r} to confirm: {command}", label=label)
 
     def _complete(self, phrase: RecognizedPhrase, pending: Pending | None) -> Decision:
@@ -343,5 +452,5 @@ class CommandDialogue:
         if not self.rules.confirmed or (pending and pending.mission == phrase.mission):
             return Decision(phrase.text, phrase.mission, phrase.text)
         deadline = phrase.stamp + self.rules.confirm_seconds
-        self.pending = Pending(phrase.text, deadline, phrase.mission)
+        self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
         return Decision(f"repeat the message to confirm: {phrase.text}", label=phrase.text)

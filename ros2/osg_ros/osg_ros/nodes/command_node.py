@@ -151,8 +151,15 @@ class CommandNode(ManagedNode):
         stamp = to_nanoseconds(recognition.header.stamp)
         # `rejected` wins where the message has a label too.
         label = None if recognition.rejected else recognition.label or None
+        start = to_nanoseconds(recognition.start)
         gesture = RecognizedGesture(
-            label, recognition.confidence, stamp / NANOSECONDS, recognition.language_id
+            label,
+            recognition.confidence,
+            stamp / NANOSECONDS,
+            recognition.language_id,
+            # Publishers that are not ours may leave it out.
+            start=start / NANOSECONDS if start else None,
+            body_id=recognition.body_id,
         )
         decision = self._dialogue.decide(gesture, self._now() / NANOSECONDS)
         self._act(decision, recognition)
@@ -168,6 +175,7 @@ class CommandNode(ManagedNode):
             stamp=to_nanoseconds(phrase.header.stamp) / NANOSECONDS,
             label=phrase.label or None,
             language_id=phrase.language_id,
+            body_id=phrase.body_id,
         )
         self._act(self._dialogue.decide_phrase(heard, self._now() / NANOSECONDS), phrase)
 

@@ -74,7 +74,11 @@ class GestureNode(ManagedNode):
         assert self._estimator is not None
         self._topics.recognitions.publish_active(True)
         kind, topic = select_image_topic(self.settings["image_transport"])
-        source = TopicSource(self.resolve_topic_name(topic), self.report_problem)
+        source = TopicSource(
+            self.resolve_topic_name(topic),
+            self._report_picture,
+            lambda: int(self.get_clock().now().nanoseconds),
+        )
         self.add_subscription(kind, topic, source.put, SENSOR_DATA)
         language = self._service.language
         # The worker publishes it with the first picture, which may come much later.
@@ -99,8 +103,14 @@ class GestureNode(ManagedNode):
             self._estimator = None
 
     def facts(self) -> Mapping[str, str]:
-        """Return the language for diagnostics."""
-        return self._service.facts() if self._service else {}
+        """Return the language for diagnostics, and how the recogniser is."""
+        worker = self._worker.facts() if self._worker else {}
+        return {**(self._service.facts() if self._service else {}), **worker}
+
+    def watch(self) -> None:
+        """End the process where the recogniser does not go on."""
+        if self._worker is not None and (fault := self._worker.find_fault()):
+            self.fail(fault)
 
     def handle_frame(self, source: TopicSource, frame: Frame, found: FrameLandmarks) -> None:
         """Publish the landmarks of a frame."""
@@ -111,6 +121,11 @@ class GestureNode(ManagedNode):
     def handle_event(self, source: TopicSource, event: Event, language: ActiveLanguage) -> None:
         """Publish an event."""
         self._topics.publish_event(event, language, source.stopwatch, source.frame_id)
+
+    def _report_picture(self, what: str) -> None:
+        """Report a picture that cannot be used; it arrived all the same."""
+        self.count_input()
+        self.report_problem(what)
 
     def _create_listener(self, language: ActiveLanguage) -> PhraseListener:
         assert self._estimator is not None

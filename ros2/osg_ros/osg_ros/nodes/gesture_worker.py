@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Iterable, Mapping
 from contextlib import closing
 from typing import Protocol
 
@@ -11,6 +15,16 @@ from app.recognition.estimation import FrameLandmarks, PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.robot import ActiveLanguage, Event, Frame, PhraseListener, Runtime
 from osg_ros.topics.topic_source import TopicSource
+
+MOST_FAILURES = 3
+"""Failures within `FAILURE_SECONDS` after which the recogniser is not started again."""
+
+FAILURE_SECONDS = 60.0
+"""Seconds after which a failure no longer counts; an error in every picture is found before."""
+
+STUCK_SECONDS = 120.0
+"""Seconds without progress after which the thread hangs. The first picture takes longest: some
+providers compile the models for up to a minute."""
 
 LONGEST_FRAME = 10.0
 """Seconds to wait for the last frame when the thread is stopped; a slow robot needs one second."""
@@ -34,6 +48,9 @@ class FrameHandler(Protocol):
 
 class GestureWorker:
     """Thread that runs `app.robot.Runtime` until it is stopped.
+
+    After a failure the recogniser is started again with an empty memory. One that fails again and
+    again, or hangs, is a fault (`find_fault`) on which the process should end.
 
     Parameters
     ----------
@@ -59,17 +76,17 @@ class GestureWorker:
         handler: FrameHandler,
     ) -> None:
         self._source = source
+        self._estimator = estimator
+        self._water = water
         self._handler = handler
         self._next: ActiveLanguage | None = None
         self._listener = listener
-        self._runtime = Runtime(
-            source,
-            estimator,
-            self._listener,
-            water=water,
-            changes=self._take_language,
-            observer=lambda frame, found: handler.handle_frame(source, frame, found),
-        )
+        self._stopping = False
+        self._failures: deque[float] = deque(maxlen=MOST_FAILURES)
+        self._failed = 0
+        self._fault = ""
+        self._beat: float | None = None
+        self._runtime = self._create_runtime()
         self._thread = threading.Thread(target=self._run, name="gestures", daemon=True)
         self._thread.start()
 
@@ -77,20 +94,72 @@ class GestureWorker:
         """Recognise another language from the next frame on."""
         self._next = language
 
+    def facts(self) -> Mapping[str, str]:
+        """Return for diagnostics how the recogniser is."""
+        state = self.find_fault() or "working"
+        return {"recogniser": state, "recogniser failures": str(self._failed)}
+
+    def find_fault(self) -> str:
+        """Return why the recogniser does not go on; empty where it does."""
+        if self._fault or self._stopping:
+            return self._fault
+        if not self._thread.is_alive():
+            return "the recogniser's thread has ended"
+        silent = 0.0 if self._beat is None else time.monotonic() - self._beat
+        return f"the recogniser hangs for {silent:.0f} s" if silent > STUCK_SECONDS else ""
+
     def stop(self) -> None:
         """Stop after the current frame."""
+        self._stopping = True
         self._runtime.stop()
         self._source.close()
         self._thread.join(LONGEST_FRAME)
 
+    def _create_runtime(self) -> Runtime:
+        return Runtime(
+            self._source,
+            self._estimator,
+            self._listener,
+            water=self._water,
+            changes=self._take_language,
+            observer=lambda frame, found: self._handler.handle_frame(self._source, frame, found),
+        )
+
     def _run(self) -> None:
+        with closing(self._source):
+            while not self._stopping and not self._fault:
+                try:
+                    self._handle_events(self._runtime)
+                    return
+                except Exception as error:
+                    self._note_failure(error)
+
+    def _handle_events(self, events: Iterable[Event]) -> None:
+        for event in events:
+            self._handler.handle_event(self._source, event, self._listener.language)
+
+    def _note_failure(self, error: Exception) -> None:
+        """Report a failure, and start again with an empty memory where it is not the last."""
+        now = time.monotonic()
+        self._failed += 1
+        self._failures.append(now)
+        what = f"the recogniser failed ({type(error).__name__}: {error})"
+        if not isinstance(error, OsgError):
+            what += "\n" + "".join(traceback.format_exception(error))
+        recent = [each for each in self._failures if now - each <= FAILURE_SECONDS]
+        if len(recent) == MOST_FAILURES:
+            self._fault = what.partition("\n")[0]
+            self._handler.report_problem(f"{what}; it is not started again")
+            return
+        self._handler.report_problem(f"{what}; it starts again")
         try:
-            with closing(self._source):
-                for event in self._runtime:
-                    self._handler.handle_event(self._source, event, self._listener.language)
-        except OsgError as error:
-            self._handler.report_problem(str(error))
+            self._handle_events(self._listener.abandon(now, "the recogniser failed"))
+        except Exception as second:
+            self._fault = f"the recogniser cannot be started again ({second})"
+            return
+        self._runtime = self._create_runtime()
 
     def _take_language(self) -> ActiveLanguage | None:
+        self._beat = time.monotonic()
         language, self._next = self._next, None
         return language

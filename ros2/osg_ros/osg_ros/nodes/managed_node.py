@@ -80,6 +80,8 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         Counts for diagnostics.
     finished
         Whether the node was shut down and cannot be used again.
+    failure
+        Why the process must end; empty while the node works.
 
     """
 
@@ -96,6 +98,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         self.settings = Settings(self, (AUTOSTART, DIAGNOSTIC_PERIOD, *settings))
         self.health = Health(self.get_fully_qualified_name(), awaited, steady=steady)
         self.finished = False
+        self.failure = ""
         self._publishers_made: list[Any] = []
         self._subscriptions_made: list[Any] = []
         self._reported = time.monotonic()
@@ -125,6 +128,15 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
 
     def release(self) -> None:
         """Release what `prepare` acquired, also after it failed half way."""
+
+    def watch(self) -> None:
+        """Call `fail` where the node does not work any more; called before every report."""
+
+    def fail(self, reason: str) -> None:
+        """Let the process end, so that its supervisor starts it again."""
+        if not self.failure:
+            self.failure = reason
+            self.get_logger().fatal(f"{reason}; the process ends")
 
     def facts(self) -> Mapping[str, str]:
         """Return further keys and values for diagnostics."""
@@ -235,6 +247,9 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         self._publishers_made.clear()
 
     def _report(self) -> None:
+        self.watch()
+        if self.failure:
+            self.health.problem(self.failure)
         now = time.monotonic()
         seconds, self._reported = max(now - self._reported, 1e-3), now
         report = self.health.report(now, seconds, self.facts())

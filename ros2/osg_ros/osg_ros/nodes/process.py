@@ -19,6 +19,9 @@ from osg_ros.nodes.managed_node import ManagedNode
 NOT_STARTED = 1
 """Exit code when a node with autostart does not start; the log has the reason."""
 
+FAILED = 3
+"""Exit code when a node does not work any more; a supervisor such as systemd starts it again."""
+
 LONGEST_WAIT: Final = 0.5
 """Longest delay until a signal is handled while no messages arrive, in seconds."""
 
@@ -73,7 +76,7 @@ def catch_stop_signals() -> Iterator[threading.Event]:
 
 
 def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
-    """Run nodes until SIGINT or SIGTERM; the main function of every executable.
+    """Run nodes until SIGINT, SIGTERM or the failure of one; the main function of every executable.
 
     Parameters
     ----------
@@ -90,5 +93,7 @@ def spin(make: Callable[[], Sequence[ManagedNode]]) -> None:
                 sys.exit(NOT_STARTED)
             while not ending.is_set():
                 executor.spin_once(timeout_sec=LONGEST_WAIT)
+                if any(node.failure for node in nodes):
+                    sys.exit(FAILED)
     finally:
         rclpy.try_shutdown()

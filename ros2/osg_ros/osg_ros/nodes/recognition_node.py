@@ -28,7 +28,7 @@ from osg_ros.parameters import Setting
 from osg_ros.topics.body_messages import read_body, read_published_body
 from osg_ros.topics.optional_messages import find_message_type
 from osg_ros.topics.recognition_topics import RecognitionTopics
-from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
+from osg_ros.topics.stamps import StampOrArrival, Stopwatch, to_nanoseconds
 from osg_ros.topics.synchronization import StampPairs
 
 INPUT: Final = Setting(
@@ -85,6 +85,7 @@ class RecognitionNode(ManagedNode):
         self._recognitions.publish_active(True)
         self._recognitions.publish_language(self._service.language)
         if self.settings["input"] == "osg":
+            self._stamp_of = StampOrArrival("body_keypoints", self._read_clock, self.report_problem)
             self._pairs: StampPairs[BodyKeypoints, Hands] = StampPairs()
             self.add_subscription(BodyKeypoints, "body_keypoints", self._take_body, SENSOR_DATA)
             self.add_subscription(Hands, "hands", self._take_hands, SENSOR_DATA)
@@ -109,8 +110,10 @@ class RecognitionNode(ManagedNode):
             self._service = None
 
     def facts(self) -> Mapping[str, str]:
-        """Return the language for diagnostics."""
-        return self._service.facts() if self._service else {}
+        """Return the language for diagnostics, and how many keypoints came too late."""
+        listener = self._listener
+        late = {"late or repeated": str(listener.order.late)} if listener else {}
+        return {**(self._service.facts() if self._service else {}), **late}
 
     def _create_listener(self, language: ActiveLanguage) -> PhraseListener:
         return create_listener(language, without_salutes=self._without_salutes)
@@ -126,7 +129,7 @@ class RecognitionNode(ManagedNode):
             self._hear(*pair)
 
     def _hear(self, body: BodyKeypoints, hands: Hands) -> None:
-        stamp = to_nanoseconds(body.header.stamp)
+        stamp = self._stamp_of(body.header.stamp)
         found = FrameLandmarks(read_body(body), ())
         size = (body.image_width, body.image_height)
         try:
@@ -142,10 +145,13 @@ class RecognitionNode(ManagedNode):
         self._body = body
 
     def _take_salute(self, salute: Bool) -> None:
-        now = self.get_clock().now().nanoseconds
+        now = self._read_clock()
         body, self._body = self._body, None
         moment = read_published_body(body, self._find_stopwatch(now).seconds(now), self._size)
         self._listen(moment, float(salute.data), "")
+
+    def _read_clock(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
 
     def _find_stopwatch(self, stamp: int) -> Stopwatch:
         if self._stopwatch is None:

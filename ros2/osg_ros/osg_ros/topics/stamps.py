@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from builtin_interfaces.msg import Time
 
 NANOSECONDS = 1_000_000_000
@@ -42,3 +44,38 @@ class Stopwatch:
     def stamp(self, seconds: float) -> Time:
         """Convert seconds after the first stamp to a stamp."""
         return to_stamp(self.origin + round(seconds * NANOSECONDS))
+
+
+class StampOrArrival:
+    """Gives messages without a stamp, which is 0, the time of their arrival.
+
+    Parameters
+    ----------
+    topic
+        Name of the topic, for people.
+    now
+        Present time in nanoseconds.
+    report_problem
+        Called once, with the first message that has no stamp.
+
+    """
+
+    def __init__(
+        self, topic: str, now: Callable[[], int], report_problem: Callable[[str], None]
+    ) -> None:
+        self._topic = topic
+        self._now = now
+        self._report_problem = report_problem
+        self._told = False
+
+    def __call__(self, stamp: Time) -> int:
+        """Return nanoseconds: the stamp, or now where there is none."""
+        if nanoseconds := to_nanoseconds(stamp):
+            return nanoseconds
+        if not self._told:
+            self._told = True
+            self._report_problem(
+                f"the messages on {self._topic} have no stamps; the time of their arrival is used, "
+                "so gestures are timed less exactly"
+            )
+        return self._now()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from app.recognition.errors import OsgError
 from app.robot import Frame, NoFrame, Notice
 from osg_ros.topics.image_messages import PictureDecoder
-from osg_ros.topics.stamps import Stopwatch, to_nanoseconds
+from osg_ros.topics.stamps import StampOrArrival, Stopwatch
 
 QUIET_SECONDS: Final = 0.2
 """Seconds without a picture after which the runtime gets a turn to check its language and end."""
@@ -26,7 +27,10 @@ class TopicSource:
     name
         Name of the topic, for people.
     report_problem
-        Called with one line when a picture cannot be decoded and is skipped.
+        Called with one line when a picture cannot be decoded and is skipped, and when the pictures
+        have no stamps.
+    now
+        Present time in nanoseconds, for pictures without a stamp.
 
     Attributes
     ----------
@@ -34,16 +38,25 @@ class TopicSource:
         Converts the frames' seconds to stamps; None before the first picture.
     frame_id
         Frame of the newest picture's header, which identifies the camera.
+    unreadable
+        Number of pictures that could not be decoded.
 
     """
 
     live = True
     began = None
 
-    def __init__(self, name: str, report_problem: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        name: str,
+        report_problem: Callable[[str], None],
+        now: Callable[[], int] = time.time_ns,
+    ) -> None:
         self.name = name
+        self._stamp_of = StampOrArrival(name, now, report_problem)
         self.stopwatch: Stopwatch | None = None
         self.frame_id = ""
+        self.unreadable = 0
         self._report_problem = report_problem
         self._decoder = PictureDecoder()
         self._news = threading.Condition()
@@ -96,9 +109,14 @@ class TopicSource:
         try:
             image = self._decoder.decode(message)
         except OsgError as error:
-            self._report_problem(f"a picture on {self.name} is left out: {error}")
+            self.unreadable += 1
+            reason = str(error).partition(";")[0]  # what to do next is about recordings
+            self._report_problem(
+                f"the pictures on {self.name} arrive and cannot be decoded "
+                f"({self.unreadable} so far): {reason}"
+            )
             return None
-        stamp = to_nanoseconds(message.header.stamp)
+        stamp = self._stamp_of(message.header.stamp)
         if self.stopwatch is None:
             self.stopwatch = Stopwatch(stamp)
         self.frame_id = message.header.frame_id

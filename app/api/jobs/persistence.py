@@ -1,0 +1,39 @@
+"""Persistence of a job's state: repeats a write until the database takes it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+from starlette.concurrency import run_in_threadpool
+
+from app.store import StoreUnavailable
+
+FIRST_PAUSE_SECONDS = 0.5
+LONGEST_PAUSE_SECONDS = 5.0
+"""Pauses between tries: short enough that nobody waits long once the database is back."""
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+logger = logging.getLogger(__name__)
+
+
+async def persist(
+    call: Callable[Arguments, Result], *args: Arguments.args, **kwargs: Arguments.kwargs
+) -> Result:
+    """Call a method of the store in a thread, again while the database is locked or full.
+
+    A job whose end is lost would be running for ever. Cancelling the task ends the tries.
+    """
+    pause = FIRST_PAUSE_SECONDS
+    while True:
+        try:
+            return await run_in_threadpool(call, *args, **kwargs)
+        except StoreUnavailable as error:
+            if pause == FIRST_PAUSE_SECONDS:
+                logger.warning("a job's state cannot be stored yet: %s", error)
+            await asyncio.sleep(pause)
+            pause = min(2 * pause, LONGEST_PAUSE_SECONDS)
