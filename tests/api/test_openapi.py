@@ -87,6 +87,7 @@ def test_real_objects_answer_as_described(lasting_server: Running) -> None:
             "recognition_id": recognition_id,
             "job_id": client.get(f"/api/v1/clips/{clip_id}").json()["job_id"],
             "label": "circle",
+            "index": 0,
         }
         readable = [
             operation

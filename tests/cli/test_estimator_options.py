@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.recognition import Language
+from app.recognition.poses.landmarks import TORSO
 from app.recognition.poses.skeletons import COCO_17
 from tests.command_line import OsgStudio
 from tests.documented import documented
@@ -49,7 +50,7 @@ def test_a_language_is_defined_and_recognised_by_yolo_pose_as_documented(
     for gesture in language.gestures:
         assert gesture.salient == ("right_wrist",)
         assert gesture.trajectory is not None
-        assert set(gesture.trajectory.landmarks) <= set(COCO_17)
+        assert set(gesture.trajectory.landmarks) <= {*COCO_17, TORSO}
     ended = osg_studio(*recognize, "--json", *WITHOUT_HANDS)
     assert ended.code == 0, ended.error
     (take,) = json.loads(ended.out)["takes"]

@@ -18,7 +18,7 @@ class ArmPath(DtwVoter):
 
     name = "arm_path"
     unit = "mean squared distance along the alignment, in squared sizes of the movement"
-    prior = 2.0
+    prior = 1.0
     within = 0.11
     between = 1.0
     cue = "movement"

@@ -18,7 +18,7 @@ class Direction(DtwVoter):
 
     name = "direction"
     unit = "mean squared difference of unit vectors along the alignment, at most 4 a step"
-    prior = 1.0
+    prior = 0.25
     within = 0.14
     between = 1.3
     cue = "movement"

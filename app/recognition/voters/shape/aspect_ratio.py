@@ -15,7 +15,7 @@ class AspectRatio(Proportion):
 
     name = "aspect_ratio"
     unit = "doublings of width over height"
-    prior = 0.05
+    prior = 0.025
     within = 0.3
     between = 0.46
 

@@ -11,7 +11,7 @@ class Circularity(Proportion):
 
     name = "circularity"
     unit = "share of the area of a disc with the same perimeter"
-    prior = 0.05
+    prior = 0.025
     within = 0.055
     between = 0.17
 

@@ -47,7 +47,7 @@ class FourierDescriptors(ShapeVoter):
 
     name = "fourier"
     unit = "Euclidean distance between outlines of norm 1 at their best common start point"
-    prior = 0.05
+    prior = 0.025
     within = 0.33
     between = 0.8
 

@@ -25,7 +25,7 @@ class HuMoments(ShapeVoter):
 
     name = "hu"
     unit = "Euclidean distance between the seven invariants, each in decades"
-    prior = 0.05
+    prior = 0.025
     within = 2.9
     between = 4.7
 

@@ -9,7 +9,7 @@ class PathComplexity(Proportion):
 
     name = "path_complexity"
     unit = "perimeters of the bounding box"
-    prior = 0.2
+    prior = 0.025
     within = 0.1
     between = 0.23
 

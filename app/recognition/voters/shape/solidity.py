@@ -9,7 +9,7 @@ class Solidity(Proportion):
 
     name = "solidity"
     unit = "share of the convex hull's area"
-    prior = 0.05
+    prior = 0.025
     within = 0.075
     between = 0.29
 

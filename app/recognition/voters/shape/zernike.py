@@ -28,7 +28,7 @@ class ZernikeMoments(ShapeVoter):
 
     name = "zernike"
     unit = "Euclidean distance between the 25 magnitudes"
-    prior = 0.05
+    prior = 0.025
     within = 0.4
     between = 0.62
 
