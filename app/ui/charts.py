@@ -101,11 +101,11 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
     return _block(
         "<h3>Distance to every gesture, as each voter measures it</h3><div class='scroll'>"
         f"<table aria-label='Votes'><thead><tr><th scope='col'>voter</th>"
-        f"<th scope='col'>share</th>{heads}</tr></thead><tbody>{rows}</tbody>"
+        f"<th scope='col'>weight</th>{heads}</tr></thead><tbody>{rows}</tbody>"
         f"<tfoot><tr><th scope='row' colspan='2'>votes</th>{totals}</tr></tfoot></table></div>"
         "<p class='dim'>\N{BLACK CIRCLE} a voter\N{RIGHT SINGLE QUOTATION MARK}s choice. "
-        "The stronger the shade, the nearer, within a row. Voters without a share cannot tell "
-        "these gestures apart.</p>" + rest
+        "The stronger the shade, the nearer, within a row. Voters of weight 0 do not separate "
+        "these gestures.</p>" + rest
     )
 
 

@@ -79,11 +79,11 @@ class SpaceTimeCube:
         Parameters
         ----------
         cube
-            The range laid out.
+            The range's positions.
         salient
             Landmarks whose trails stand out.
         wall
-            What hangs behind it, if anything.
+            The back wall; None without a trajectory image.
         poses
             The whole clip's.
         first
@@ -134,7 +134,7 @@ class SpaceTimeCube:
         )
         x, y = cube.aspect / 2, 0.5
         ticks = cube.ticks()
-        marks = [((-x, y, cube.at_time(t)), (-x - 0.025, y, cube.at_time(t))) for t in ticks]
+        marks = [((-x, y, cube.depth_at(t)), (-x - 0.025, y, cube.depth_at(t))) for t in ticks]
         scene.add_line_segments(
             "/cube/ticks",
             np.array(marks, np.float32),
@@ -152,14 +152,14 @@ class SpaceTimeCube:
                 width,
                 height,
                 format="png",
-                position=(-x - 0.04 - width / 2, y, cube.at_time(second)),
+                position=(-x - 0.04 - width / 2, y, cube.depth_at(second)),
                 cast_shadow=False,
                 receive_shadow=False,
             )
 
     def _draw_trails(self, cube: CubeGeometry) -> None:
         scene = self._server.scene
-        quiet = cube.quiet_trails(self._salient)
+        quiet = cube.other_trails(self._salient)
         if len(quiet):
             scene.add_line_segments(
                 "/trails/quiet", quiet, self._theme.quiet, thickness=1.0, thickness_units="screen"

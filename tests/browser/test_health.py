@@ -44,7 +44,7 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     expect(page.get_by_role("heading", name="circle and line")).to_be_focused()
     expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("0")
     assert faults(page) == []
-    expect(page.get_by_text("circle differs from line in this")).to_be_visible()
+    expect(page.get_by_text("circle differs from line by")).to_be_visible()
     circle = page.get_by_role("img", name="The movement of circle")
     dots = circle.locator(".dots")
     before = dots.get_attribute("d")

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import FrameLocator, Locator, Page, expect
 
 from app.recognition import Language
-from app.ui.workspace import first_look
+from app.ui.workspace import initial_frame
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -58,7 +58,7 @@ def first_shown(page: Page, server: Running) -> int:
     (take,) = httpx.get(f"{place}/takes", timeout=60).json()
     times = httpx.get(f"{place}/timeline", timeout=60).json()["time"]
     stroke = [at for at in times if take["stroke_start"] <= at <= take["stroke_end"]]
-    return int(times.index(stroke[0])) + first_look(len(stroke))
+    return int(times.index(stroke[0])) + initial_frame(len(stroke))
 
 
 def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> None:
@@ -68,11 +68,9 @@ def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> Non
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")
     # The scene is drawn anew: its clock shows when that is done.
     expect(page.frame_locator("#lab").get_by_role("table", name="Votes")).to_be_visible()
-    picture(page, "light")
     page.emulate_media(color_scheme="dark")
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "dark")
     page.set_viewport_size({"width": 390, "height": 844})
-    picture(page, "phone")
     page.set_viewport_size({"width": 1440, "height": 900})
     lab_of(page)
 
@@ -90,7 +88,6 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
     expect(cards).to_have_count(8)
     expect(page.locator("#welcome").get_by_role("button", name="circle test 1")).to_be_visible()
-    picture(page, "start")
 
     # One press on the start page, without any choice, leads to why the sample was misread.
     page.locator("#welcome").get_by_role("button", name="Why was a triangle read").click()

@@ -86,7 +86,7 @@ def test_the_verdict_says_in_words_what_came_out(
 
 def test_the_vote_table_has_a_row_per_voter_and_the_most_votes_come_first() -> None:
     head, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
-    assert head == ["voter", "share", "wedgechosen", "circleexpected", "line"]
+    assert head == ["voter", "weight", "wedgechosen", "circleexpected", "line"]
     assert rows == [
         ["hu", "33%", ".25", "1.00", "1.00"],
         ["aspect ratio", "33%", ".004", "1.00", "1.00"],
@@ -95,7 +95,7 @@ def test_the_vote_table_has_a_row_per_voter_and_the_most_votes_come_first() -> N
     ]
 
 
-def test_voters_that_have_no_share_come_last_and_do_not_count() -> None:
+def test_voters_of_weight_zero_come_last_and_do_not_count() -> None:
     told = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
     table = Elements(charts.vote_table(told, None))
     assert [row[:2] for row in table.rows[1:]] == [

@@ -35,7 +35,7 @@ def shown(tmp_path: Path) -> Range:
 
 def wall_behind(shown: Range) -> Wall:
     drawing = draw(Trajectory.from_poses(shown.poses).select(SALIENT))
-    return Wall.behind(CubeGeometry.from_poses(shown.poses), shown.poses, SALIENT, drawing)
+    return Wall.from_drawing(CubeGeometry.from_poses(shown.poses), shown.poses, SALIENT, drawing)
 
 
 def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, shown: Range) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseError
-from app.ui.workspace import Range, Workspace, compared_images, first_look
+from app.ui.workspace import Range, Workspace, compared_images, initial_frame
 from tests.api.recordings import recording_of
 from tests.api.running import until
 from tests.recognition.damaged_clips import write_clip
@@ -61,8 +61,8 @@ def test_showing_a_view_stands_where_past_and_future_are_seen(
     shown = Range.of(view)
     frames = len(shown.poses)
     assert workspace.view == view
-    assert workspace.playback.frame == shown.first + first_look(frames)
-    assert 0 < first_look(frames) < frames - 1
+    assert workspace.playback.frame == shown.first + initial_frame(frames)
+    assert 0 < initial_frame(frames) < frames - 1
     assert workspace.playback.position.frames == len(view.recording.poses)
 
 

@@ -158,7 +158,7 @@ function drawReport(report) {
   const worst = report.pairs.filter(
     ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
   );
-  const bar = percent(report.bar.confusion);
+  const threshold = percent(report.bar.confusion);
   return [
     warningsList(report.warnings),
     alone
@@ -177,12 +177,12 @@ function drawReport(report) {
           { className: "health-columns" },
           section(
             "Estimated confusions",
-            `Of a hundred simulated trials of the gesture at the left, how many are nearer to the one above. Framed: above the threshold of ${bar} %. Choose a cell to see the two side by side.`,
+            `Per cent of simulated trials of the gesture on the left that are nearest to the gesture above. Framed: above the threshold of ${threshold} %. Choose a cell to compare the two.`,
             matrix(report),
           ),
           section(
             "Map",
-            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${bar} %.` : ""}`,
+            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${threshold} %.` : ""}`,
             languageMap({
               points: report.map,
               worst,
