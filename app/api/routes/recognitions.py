@@ -13,6 +13,7 @@ from app.api.http.schemas.recognitions import ExplanationView, RecognitionReques
 from app.api.http.schemas.values import Label
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_views import shows_pictures
+from app.api.services.explanation_notes import write_notes
 from app.api.services.stored_recognitions import (
     load_situation,
     tune_recognizer,
@@ -97,7 +98,9 @@ def explain_recognition(
     situation = load_situation(record, studio)
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
-    return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
+    explanation = explain(situation, meant)
+    notes = write_notes(studio, record, situation.language, meant, explanation.nearest)
+    return ExplanationView(id=record.id, **explanation.to_dict(), notes=notes)
 
 
 def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:

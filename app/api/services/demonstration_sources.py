@@ -7,6 +7,7 @@ import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.clip_ranges import Demonstration
+from app.api.services.salute_ranges import count_salutes_in_clip
 from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
@@ -45,11 +46,12 @@ def sources_in(studio: Studio, language: Language) -> dict[str, SourceView]:
     """Return by label where the demonstrations of a language come from, as far as is known."""
     keys = {gesture.label: key for gesture in language.gestures if (key := _key(gesture))}
     known = studio.sources.of(set(keys.values()))
-    return {
-        label: SourceView(**known[key].model_dump(exclude={"trajectory"}))
-        for label, key in keys.items()
-        if key in known
-    }
+    return {label: _view(studio, known[key]) for label, key in keys.items() if key in known}
+
+
+def _view(studio: Studio, source: DemonstrationSource) -> SourceView:
+    salutes = count_salutes_in_clip(studio, source.clip_id, source.start, source.end)
+    return SourceView(**source.model_dump(exclude={"trajectory"}), salutes=salutes)
 
 
 def _key(gesture: Gesture) -> str | None:

@@ -38,11 +38,12 @@ export const reloadClip = (id) =>
   });
 
 /**
- * Show another clip.
+ * Show another clip; the clip on display keeps its take, range and recognition.
  *
  * @param {string | null} id
  */
 export function select(id) {
+  if (id === state.clip) return;
   update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
 }
 

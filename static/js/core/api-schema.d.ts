@@ -212,6 +212,11 @@ export interface components {
             }[];
             /** Tried */
             tried: number;
+            /**
+             * Notes
+             * @description What is wrong with the demonstrations or the range, in sentences
+             */
+            notes?: string[];
         } & {
             [key: string]: unknown;
         };
@@ -1282,6 +1287,12 @@ export interface components {
             end: number;
             /** Keep Transit */
             keep_transit: boolean;
+            /**
+             * Salutes
+             * @description Vulcan salutes in the demonstration, which should have none
+             * @default 0
+             */
+            salutes: number;
         };
         /**
          * SwitchView

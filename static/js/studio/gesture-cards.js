@@ -3,7 +3,7 @@
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile } from "../core/dom.js";
-import { readable } from "../core/format.js";
+import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -54,6 +54,13 @@ function draw(gesture, element) {
       h("b", { title: gesture.label }, gesture.label),
       h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
       mark ? h("span", { className: `tag ${mark}` }, mark) : null,
+      gesture.source?.salutes
+        ? h(
+            "span",
+            { className: "tag fault", title: "Save it again from a take, without the salutes." },
+            `contains ${plural(gesture.source.salutes, "salute")}`,
+          )
+        : null,
     ),
     h(
       "div",

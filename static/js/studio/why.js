@@ -167,7 +167,20 @@ function remediesOf(why) {
   );
 }
 
-const reasons = (why) => [h("p", { className: "why-sentence" }, why.sentence), remediesOf(why)];
+const notesOf = ({ notes }) =>
+  notes.length
+    ? h(
+        "ul",
+        { className: "why-notes" },
+        notes.map((text) => h("li", {}, text)),
+      )
+    : null;
+
+const reasons = (why) => [
+  h("p", { className: "why-sentence" }, why.sentence),
+  notesOf(why),
+  remediesOf(why),
+];
 
 const ASK_EXPECTED =
   "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";

@@ -77,3 +77,7 @@ class ExplanationView(BaseModel):
     differences: list[dict[str, Any]]
     counterfactuals: list[dict[str, Any]] = Field(description="Verified, the smallest first")
     tried: int
+    notes: list[str] = Field(
+        default_factory=list,
+        description="What is wrong with the demonstrations or the range, in sentences",
+    )
