@@ -103,6 +103,28 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
     expect(told).to_contain_text(WEIGHT)
 
 
+def revision_of(library: Library) -> int:
+    """Return the language's newest revision."""
+    language = library.client.get(f"/api/v1/languages/{library.language}")
+    return int(language.json()["revision"])
+
+
+def test_a_trial_leaves_the_language_alone_when_another_clip_is_chosen(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    strict = f"/api/v1/languages/{library.language}/gestures/circle"
+    library.client.patch(strict, json={"direction": "on"}).raise_for_status()
+    refused = replace(library, clip=add_clip(server, "circle backwards", name="backwards.mp4"))
+    page = open_page({**refused.address, "recognition": refused.recognise("circle")}, scene=False)
+    before = revision_of(library)
+    try_out(page, re.compile("the switch direction of 'circle' off"))
+    expect(page.locator("#outcome")).to_contain_text("Recognised as circle, as expected")
+    assert revision_of(library) == before
+    page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
+    expect(page.locator("#outcome")).to_be_empty()
+    assert revision_of(library) == before
+
+
 def test_a_change_of_a_gesture_is_kept_or_taken_back(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
@@ -112,12 +134,14 @@ def test_a_change_of_a_gesture_is_kept_or_taken_back(
     refused = replace(library, clip=clip)
     page = open_page({**refused.address, "recognition": refused.recognise("circle")}, scene=False)
     outcome = page.locator("#outcome")
+    before = revision_of(library)
     for words in ("the switch direction of 'circle' off", "this take as the demonstration"):
         expect(outcome).to_contain_text("Not recognised")
         trial = try_out(page, re.compile(words))
         expect(outcome).to_contain_text("Recognised as circle, as expected")
         trial.get_by_role("button", name="Discard").click()
     expect(outcome).to_contain_text("Not recognised")
+    assert revision_of(library) == before
     try_out(page, re.compile("direction")).get_by_role("button", name="Keep").click()
     expect(page.get_by_text("Change kept")).to_be_visible()
     switches = library.client.get(f"/api/v1/languages/{library.language}").json()["gestures"]

@@ -372,6 +372,15 @@ export interface components {
             } | null;
         };
         /**
+         * GestureTrial
+         * @description A changed gesture to recognise with, on a copy of the language.
+         */
+        GestureTrial: {
+            /** Label */
+            label: string;
+            change: components["schemas"]["GestureChange"];
+        };
+        /**
          * GestureView
          * @description A gesture of a language.
          */
@@ -1053,6 +1062,8 @@ export interface components {
             tuning?: components["schemas"]["TuningEntry"] | null;
             /** Expected */
             expected?: string | null;
+            /** @description Recognise with this change; the language is not edited */
+            trial?: components["schemas"]["GestureTrial"] | null;
         };
         /**
          * RecognitionView
@@ -1075,6 +1086,8 @@ export interface components {
             profile: string;
             /** @description Null: as the language says */
             tuning?: components["schemas"]["TuningEntry"] | null;
+            /** @description The change it was recognised with; null: none */
+            trial?: components["schemas"]["GestureTrial"] | null;
             /** Expected */
             expected: string | null;
             /**

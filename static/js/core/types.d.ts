@@ -101,6 +101,7 @@ export interface Recognition {
   end: number;
   profile: Language["profile"];
   tuning: Tuning | null;
+  trial: Schemas["GestureTrial"] | null;
   expected: string | null;
   created: string;
   label: string | null;
@@ -201,11 +202,10 @@ export interface Position {
   picture: number | null;
 }
 
-/** A counterfactual that is applied and not kept yet. */
+/** A counterfactual that was recognised with, on a copy of the language, and is not kept yet. */
 export interface Trial {
   change: Counterfactual["change"];
   base: Partial<State>;
-  edited: boolean;
   result: string;
 }
 
