@@ -121,7 +121,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     assert len(votes) == 9
     assert 7 <= sum(votes.values()) == lab.locator("tr:not(.mute) td.choice").count()
     outcome = page.locator("#outcome")
-    expect(outcome).to_have_text(re.compile(r"Recognised as .*\d+ of \d+ voters"))
+    expect(outcome).to_have_text(re.compile(r"Recognised as .*voters with \d+ % of the weight"))
     winner = outcome.locator("b.chosen").inner_text()
     expect(table.locator("th.chosen")).to_have_attribute("title", winner)
     expect(table.locator("th", has_text="expected")).to_have_attribute("title", "circle")

@@ -94,6 +94,14 @@ class Recognition:
         return {voter: label for voter, label in self.votes.items() if self.weights[voter] > 0}
 
     @property
+    def support(self) -> dict[str, float]:
+        """By label the total weight of the voters that chose it, largest first."""
+        totals: dict[str, float] = {}
+        for voter, label in self.counted.items():
+            totals[label] = totals.get(label, 0.0) + self.weights[voter]
+        return dict(sorted(totals.items(), key=lambda each: -each[1]))
+
+    @property
     def margin(self) -> float:
         """How much nearer `nearest` is than every other gesture, in the unit of `scores`.
 

@@ -8,12 +8,6 @@ from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.differences import Difference
 from app.recognition.text.wording import humanize_all, join_words
 
-NUMBERS = (
-    "none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
-    "eleven", "twelve",
-)  # fmt: skip
-"""Numbers that are spelt out in sentences."""
-
 MOST_VOTERS_NAMED = 3
 """Voters named in a sentence; the table has all."""
 
@@ -61,12 +55,7 @@ def _outcome(analysis: Analysis) -> str:
 
 
 def _voters(analysis: Analysis, label: str) -> str:
-    count, total = analysis.votes.get(label, 0), sum(analysis.votes.values())
-    return f"{_number(count)} of {_number(total)} voters".capitalize()
-
-
-def _number(count: int) -> str:
-    return NUMBERS[count] if count < len(NUMBERS) else str(count)
+    return f"Voters with {100 * analysis.support.get(label, 0.0):.0f} % of the weight"
 
 
 def _reason(analysis: Analysis) -> str:

@@ -81,3 +81,11 @@ export const readable = (identifier) => identifier.replaceAll("_", " ");
  * @param {string} noun
  */
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+
+/**
+ * A share in [0, 1] as a percentage; "<1 %" is not nothing.
+ *
+ * @param {number} share
+ */
+export const percent = (share) =>
+  share > 0 && share < 0.005 ? "<1 %" : `${(100 * share).toFixed(0)} %`;

@@ -2,11 +2,13 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
+import { percent } from "../core/format.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { frameShown } from "./playback.js";
+import { supportOf } from "./support.js";
 import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
@@ -126,15 +128,21 @@ export async function loadResult() {
   }
 }
 
-/** Show what was recognised; the votes are in the workspace. */
+/** The confidence, the weight of the voters that chose the nearest gesture, and a trial. */
+const supportWords = (result) =>
+  [
+    `confidence ${percent(result.confidence)}`,
+    `voters with ${percent(supportOf(result).get(result.nearest) ?? 0)} of the weight`,
+    result.trial ? "on trial, not saved" : "",
+  ]
+    .filter(Boolean)
+    .join(", ");
+
+/** Show what was recognised. */
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, nearest, expected, votes, weights, fault } = result;
-  const voters = Object.keys(votes)
-    .filter((voter) => weights[voter] !== 0)
-    .map((voter) => votes[voter]);
-  const count = voters.filter((vote) => vote === nearest).length;
+  const { label, nearest, expected, fault } = result;
   const wrong = label === null || (expected !== null && expected !== label);
   const parts =
     label === null
@@ -157,7 +165,7 @@ export function drawOutcome({ result }) {
   box.className = `outcome ${wrong ? "wrong" : "right"}`;
   return box.replaceChildren(
     h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
-    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)),
+    h("span", {}, ...parts, h("small", {}, supportWords(result))),
   );
 }
 

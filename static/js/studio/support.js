@@ -1,0 +1,16 @@
+// The support of a recognition: per gesture, the total weight of the voters that chose it.
+
+/** @import { Recognition } from "../core/types.d.ts" */
+
+/**
+ * @param {Pick<Recognition, "votes" | "weights">} recognition
+ * @returns {Map<string, number>}
+ */
+export function supportOf({ votes, weights }) {
+  /** @type {Map<string, number>} */
+  const totals = new Map();
+  for (const [voter, label] of Object.entries(votes))
+    if (label !== null && weights[voter])
+      totals.set(label, (totals.get(label) ?? 0) + weights[voter]);
+  return totals;
+}
