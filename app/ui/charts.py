@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -55,18 +55,6 @@ def hint(title: str, text: str) -> str:
     return _block(
         f"<div class='card'><p><b>{escape(title)}</b></p><p class='dim'>{escape(text)}</p></div>"
     )
-
-
-def vote_sentence(votes: Mapping[str, str | None]) -> str:
-    """List the voters of each gesture, the gesture with most votes first."""
-    parties: dict[str, list[str]] = {}
-    for voter, label in votes.items():
-        parties.setdefault(label or "no one", []).append(humanize(voter))
-    ordered = sorted(parties.items(), key=lambda party: -len(party[1]))
-    sentences = [
-        f"<b>{escape(label)}</b>: {escape(', '.join(voters))}." for label, voters in ordered
-    ]
-    return _block(f"<h3>Who voted for what</h3><p>{'<br>'.join(sentences)}</p>")
 
 
 def vote_table(recognition: Recognition, expected: str | None) -> str:

@@ -16,7 +16,7 @@ from app.recognition.recording.video import read_frames
 
 Image = npt.NDArray[np.uint8]
 
-MAX_WIDTH = 480
+MAX_WIDTH = 640
 """Pixels. Larger pictures reduce the frame rate of playback."""
 
 MAX_FRAMES = 1800

@@ -6,7 +6,7 @@ Axes as a camera has them: x right, y down, z forward, and z is time. The height
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -70,6 +70,11 @@ class CubeGeometry:
         z = np.broadcast_to(depth[:, None, None], (*flat.shape[:2], 1))
         points = np.concatenate([flat, z], axis=2).astype(np.float32)
         return cls(poses.landmarks, points, depth, width / height, seconds)
+
+    def flattened(self, share: float) -> CubeGeometry:
+        """Return the same positions with their depth multiplied by `share`; 0: in one plane."""
+        points = self.points * np.array([1, 1, share], np.float32)
+        return replace(self, points=points, depth=self.depth * np.float32(share))
 
     @property
     def back(self) -> float:

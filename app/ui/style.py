@@ -123,6 +123,11 @@ _RULES: Final = """
 div[style*="width: 20em"] { width: 100% !important; }
 """
 
+SHEET_HIDDEN: Final = (
+    "<style>.mantine-Paper-root[style*='position: fixed'] { display: none !important; }</style>"
+)
+"""Hides the sheet at the bottom of a phone, which would cover the flat picture."""
+
 PANEL_STYLE: Final = f"<style>\n{_define_schemes()}{_RULES}</style>"
 """Markup for viser's `add_html`, whose style sheet applies to the whole page of viser.
 

@@ -20,6 +20,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
 from app.ui.back_wall import Wall
+from app.ui.camera import CUBE, FLAT, CameraPose, ease
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback_server import quiet, start_server
@@ -27,6 +28,10 @@ from app.ui.panels import Inspector, TimeCursor
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
+
+TRANSITION_SECONDS = 0.45
+TRANSITION_STEPS = 12
+"""Of the way between the flat picture and the cube: long enough to follow, short enough to wait."""
 
 INITIAL_SHARE = 0.45
 """Share of a range at which it is first shown: half of the trail is past, half is to come, and
@@ -132,6 +137,8 @@ class Workspace:
         self._server = start_server()
         self._configure_theme()
         self._scene = SpaceTimeCube(self._server, self._theme)
+        self._flat = True
+        FLAT.start_with(self._server)
         self.playback = Playback(self._draw)
         self._cursor = TimeCursor(self._server.gui)
         self._inspector = Inspector(self._server.gui)
@@ -165,7 +172,6 @@ class Workspace:
             before, self._view = self._view, view
             if before is None or _frames_of(before) != _frames_of(view):
                 self._load(before, view, shown)
-            self._inspect(view, shown)
 
     def set_dark(self, dark: bool) -> None:
         """Change to dark or light colours."""
@@ -181,6 +187,27 @@ class Workspace:
                 return
             self._draw_scene(self._view, Range.of(self._view))
             self.playback.redraw(self.playback.frame)
+
+    def set_flat(self, flat: bool, *, animate: bool = True) -> None:
+        """Show the picture flat, or the space-time cube; browsers see the way between them."""
+        with self._lock:
+            if flat == self._flat:
+                return
+            self._flat = flat
+            pose = FLAT if flat else CUBE
+            pose.start_with(self._server)
+            self._inspector.set_visible(False)
+            clients = list(self._server.get_clients().values())
+            starts = [CameraPose.of(client.camera) for client in clients]
+            steps = TRANSITION_STEPS if animate and clients else 1
+            for step in range(1, steps + 1):
+                share = ease(step / steps)
+                self._scene.set_depth(1 - share if flat else share)
+                for client, start in zip(clients, starts, strict=True):
+                    start.blend(pose, share).apply(client)
+                if step < steps:
+                    clock.sleep(TRANSITION_SECONDS / steps)
+            self._inspector.set_visible(not flat)
 
     def close(self) -> None:
         """Stop playback, decoding and the server."""
@@ -229,14 +256,6 @@ class Workspace:
         self._scene.show(cube, salient, wall, view.recording.poses, shown.first)
         self._picture_frame = -1
         return trajectory
-
-    def _inspect(self, view: WorkspaceView, shown: Range) -> None:
-        recognition = view.recognition
-        if recognition is None:
-            self._inspector.show_undecided()
-            return
-        images = compared_images(view, recognition, shown.poses)
-        self._inspector.show_decision(recognition, view.expected, images)
 
     def _draw(self, frame: int) -> int | None:
         """Draw a frame and return the index of its picture; called by the playback only."""

@@ -31,7 +31,9 @@ import {
 } from "./studio/stage.js";
 import { drawNow } from "./studio/timeline.js";
 import { offerTour, startTour } from "./studio/tour.js";
+import { drawFlat, drawRatio } from "./studio/stage-view.js";
 import { drawTransport } from "./studio/transport.js";
+import { drawVotes } from "./studio/votes.js";
 import { drawWelcome } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
@@ -69,10 +71,13 @@ function drawEverything() {
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
+  follow(["clips", "clip"], drawRatio);
+  follow(["position", "clips", "clip", "takes", "take", "start", "end"], drawFlat);
+  follow(["result", "clips", "clip", "gestures"], drawVotes);
   follow(["position"], showMoment);
   follow(["joint"], showJoint);
   follow(["result"], drawOutcome);
-  follow(["why", "result", "trial"], drawWhy);
+  follow(["why", "result", "trial", "clips", "clip"], drawWhy);
   follow(["why", "timeline"], drawCosts);
 }
 

@@ -114,12 +114,6 @@ def test_each_voters_choice_is_marked_once_and_not_by_colour_alone() -> None:
     assert "a voter\N{RIGHT SINGLE QUOTATION MARK}s choice" in charts.vote_table(recognition(), "x")
 
 
-def test_the_votes_are_also_told_as_sentences() -> None:
-    text = Elements(charts.vote_sentence(recognition().counted)).text
-    assert "wedge: hu, aspect ratio." in text
-    assert "circle: solidity." in text
-
-
 def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
     plain = recognition()
     distances = plain.distances.copy()
@@ -151,7 +145,6 @@ def test_captions_hints_and_legends_are_escaped() -> None:
         charts.hint(MARKUP, MARKUP),
         charts.image_row([(MARKUP, np.zeros((4, 4), np.uint8))]),
         charts.line_chart(MARKUP, moments, [charts.Curve(MARKUP, moments, "red")]),
-        charts.vote_sentence({MARKUP: MARKUP}),
     ):
         elements = Elements(html)
         assert MARKUP in elements.text

@@ -95,11 +95,16 @@ class Recognition:
 
     @property
     def support(self) -> dict[str, float]:
-        """By label the total weight of the voters that chose it, largest first."""
+        """By label the weight of the voters that chose it, largest first; the sum is 1.
+
+        Voters that cannot compare this take have no vote, and their weight does not count.
+        """
         totals: dict[str, float] = {}
         for voter, label in self.counted.items():
             totals[label] = totals.get(label, 0.0) + self.weights[voter]
-        return dict(sorted(totals.items(), key=lambda each: -each[1]))
+        whole = sum(totals.values())
+        ordered = sorted(totals.items(), key=lambda each: -each[1])
+        return {label: total / whole for label, total in ordered}
 
     @property
     def margin(self) -> float:

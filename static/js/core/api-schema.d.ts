@@ -110,6 +110,19 @@ export interface components {
             created: string;
         };
         /**
+         * ComparedImage
+         * @description A trajectory image that a recognition compared.
+         */
+        ComparedImage: {
+            /** Caption */
+            caption: string;
+            /**
+             * Image
+             * @description A data URI of a PNG
+             */
+            image: string;
+        };
+        /**
          * ContrastView
          * @description Two gestures of a language, and in what they differ.
          */
@@ -1473,6 +1486,16 @@ export interface components {
              * @default true
              */
             dark: boolean;
+            /**
+             * Flat
+             * @default true
+             */
+            flat: boolean;
+            /**
+             * Animate
+             * @default true
+             */
+            animate: boolean;
         };
         /**
          * Fault

@@ -229,6 +229,8 @@ export const recognitions = {
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
   /** @type {(recognition: string) => string} */
   analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
+  /** @type {(recognition: string) => Promise<{ caption: string, image: string }[]>} */
+  images: (recognition) => request("GET", `/recognitions/${id(recognition)}/images`),
   /** @type {(recognition: string) => Promise<Explanation>} */
   explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
 };
@@ -238,8 +240,8 @@ export const workspaces = {
   open: (dark) => request("POST", "/workspaces", { body: { dark } }),
   /** @type {(workspace: string) => Promise<Workspace>} */
   find: (workspace) => request("GET", `/workspaces/${id(workspace)}`),
-  /** @type {(workspace: string, dark: boolean) => Promise<any>} */
-  change: (workspace, dark) => request("PATCH", `/workspaces/${id(workspace)}`, { body: { dark } }),
+  /** @type {(workspace: string, look: { dark?: boolean, flat?: boolean, animate?: boolean }) => Promise<any>} */
+  change: (workspace, look) => request("PATCH", `/workspaces/${id(workspace)}`, { body: look }),
   /** @type {(workspace: string, view: object) => Promise<any>} */
   show: (workspace, view) => request("PUT", `/workspaces/${id(workspace)}/view`, { body: view }),
 };

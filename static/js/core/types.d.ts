@@ -107,6 +107,9 @@ export interface Recognition {
   label: string | null;
   nearest: string | null;
   confidence: number;
+  voters: string[];
+  gestures: string[];
+  distances: (number | null)[][];
   votes: Record<string, string | null>;
   weights: Record<string, number>;
   fault: string | null;

@@ -10,7 +10,7 @@ import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 import { change, draft, saved } from "./gesture-draft.js";
-import { figure } from "./pose-picture.js";
+import { figure } from "../studio/pose-picture.js";
 import { chosenIn } from "./salient-keypoints.js";
 
 const BY_HAND = "by hand";

@@ -18,6 +18,13 @@ const currentResult = () => /** @type {Recognition} */ (state.result);
 /** @returns {any} */
 const tuning = () => currentResult().tuning ?? currentLanguage().tuning ?? { weights: {} };
 
+/** The weight factors with another one for a voter; 1 is none. */
+function withFactor(voter, factor) {
+  const weights = { ...tuning().weights, [voter]: factor };
+  if (factor === 1) delete weights[voter];
+  return weights;
+}
+
 const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
 
 const APPLY = {
@@ -29,6 +36,7 @@ const APPLY = {
     const { weights } = tuning();
     return tuned({ weights: { ...weights, [voter]: (weights[voter] ?? 1) * factor } });
   },
+  weight_factor: ({ voter, factor }) => tuned({ weights: withFactor(voter, factor) }),
   simplification: (change) => tuned({ simplification: change.tolerance }),
   keypoint_repair: (change) => tuned({ keypoints_repaired: change.on }),
   // Weights are for the voters of a profile.
@@ -39,7 +47,13 @@ const APPLY = {
 };
 
 /** Changes of how the whole language is recognised. */
-const TUNING = new Set(["voter_weight", "simplification", "keypoint_repair", "profile"]);
+const TUNING = new Set([
+  "voter_weight",
+  "weight_factor",
+  "simplification",
+  "keypoint_repair",
+  "profile",
+]);
 
 /** The request's part for a changed gesture. */
 const changed = ({ label }, change) => ({ trial: { label, change } });

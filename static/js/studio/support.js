@@ -1,4 +1,5 @@
-// The support of a recognition: per gesture, the total weight of the voters that chose it.
+// The support of a recognition: per gesture, the weight of the voters that chose it. Voters that
+// cannot compare the take have no vote, and their weight does not count.
 
 /** @import { Recognition } from "../core/types.d.ts" */
 
@@ -12,5 +13,6 @@ export function supportOf({ votes, weights }) {
   for (const [voter, label] of Object.entries(votes))
     if (label !== null && weights[voter])
       totals.set(label, (totals.get(label) ?? 0) + weights[voter]);
-  return totals;
+  const whole = [...totals.values()].reduce((sum, each) => sum + each, 0);
+  return new Map([...totals].map(([label, total]) => [label, total / whole]));
 }

@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
-import { state, update } from "../core/state.js";
+import { selectedClip, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
@@ -182,6 +182,9 @@ const reasons = (why) => [
   remediesOf(why),
 ];
 
+const ASK_RECOGNITION =
+  "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
+
 const ASK_EXPECTED =
   "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";
 
@@ -190,8 +193,10 @@ export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
   const asks = result !== null && result.expected === null && !trying;
-  box.hidden = !result || !(why || asks || trying);
+  box.hidden = selectedClip()?.status !== "done";
+  byId("reasons").hidden = selectedClip()?.status !== "done";
   if (box.hidden) return box.replaceChildren();
+  if (!result) return box.replaceChildren(note(ASK_RECOGNITION));
   const words = asks
     ? [note(ASK_EXPECTED), shares(result, null)]
     : [trying, ...(why ? reasons(why) : []), shares(result, why)];
