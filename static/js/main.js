@@ -1,5 +1,6 @@
 // The start of the page: loads the data, registers the views, and binds drawing to the state.
 
+import { drawBatch } from "./clips/batch-card.js";
 import { drawClips, findClips } from "./clips/clip-list.js";
 import { followJob, reloadClip, reloadClips } from "./clips/clip-store.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
@@ -62,6 +63,7 @@ function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
+  follow(["clips", "jobs"], drawBatch);
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);

@@ -143,7 +143,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.keyboard.press("Shift+.")
     expect(clock).to_have_text(re.compile(rf"frame {at + 9} of \d+$"))
     expect(page.locator(".toast")).to_have_count(0)
-    assert picture(page, "studio").stat().st_size < 400_000
+    assert picture(page, "studio").stat().st_size < 600_000
     take_other_pictures(page, picture)
     page.get_by_role("button", name="Play", exact=True).click()
     expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()

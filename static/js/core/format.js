@@ -31,6 +31,16 @@ export function duration(seconds) {
 }
 
 /**
+ * A duration that is an estimate of many parts: in whole minutes, or in tens of seconds.
+ *
+ * @param {number} seconds
+ */
+export const about = (seconds) =>
+  seconds < 55
+    ? `about ${Math.max(10, 10 * Math.round(seconds / 10))} s`
+    : `about ${Math.round(seconds / 60)} min`;
+
+/**
  * @param {number} seconds
  * @returns {string}
  */

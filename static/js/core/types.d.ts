@@ -177,6 +177,16 @@ export interface HealthState {
   away?: boolean;
 }
 
+/** The clips whose poses are found one after the other, and how many frames are done. */
+export interface Batch {
+  members: string[];
+  /** The first frames that were reported, and when, in milliseconds. */
+  began: { frames: number; at: number } | null;
+  frames: number;
+  left: number;
+  at: number;
+}
+
 /** A file on its way to the server. */
 export interface Upload {
   key: string;

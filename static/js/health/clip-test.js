@@ -4,7 +4,7 @@
 // same for everybody, survives reloads, and is repeated whenever the language has changed.
 
 import { labelInName } from "../clips/clip-label.js";
-import { BUSY } from "../clips/clip-store.js";
+import { BUSY } from "../clips/busy.js";
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";

@@ -1,6 +1,7 @@
 // The panel in the middle while there is nothing to show: how to begin, or the progress.
 
-import { BUSY, needsTopic, statusText } from "../clips/clip-store.js";
+import { BUSY } from "../clips/busy.js";
+import { needsTopic, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
@@ -133,10 +134,14 @@ function showPose(panel, clip, { time, pose }) {
     !video.error &&
     (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
-  // A seek that is cut short by the next shows nothing, so the next waits.
-  if (playable && !video.seeking && video.dataset.start)
-    video.currentTime = Number(video.dataset.start) + time;
-  drawPose(panel.querySelector(".skeleton"), pose);
+  const skeletonDrawing = panel.querySelector(".skeleton");
+  if (!playable) return drawPose(skeletonDrawing, pose);
+  // A seek that is cut short by the next shows nothing, so the next waits; the pose is drawn with
+  // its own frame.
+  if (video.seeking || !video.dataset.start) return undefined;
+  video.onseeked = () => drawPose(skeletonDrawing, pose);
+  video.currentTime = Number(video.dataset.start) + time;
+  return undefined;
 }
 
 /** Change what moves in the panel, and keep the rest: the video would be loaded anew. */

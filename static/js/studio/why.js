@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { selectedClip, state, update } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
+import { attempt, toast } from "../core/toasts.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 
@@ -127,11 +127,11 @@ function remedy(found) {
   );
 }
 
-const shared = (href, title, note) =>
+const shared = (href, title, note, onclick = () => {}) =>
   h(
     "span",
     {},
-    h("a", { href, download: "" }, title),
+    h("a", { href, download: "", onclick }, title),
     h("small", { className: "dim" }, ` ${note}`),
   );
 
@@ -147,7 +147,9 @@ const shares = (result, why) =>
           "plays without a server",
         )
       : null,
-    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"),
+    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove", () => {
+      toast("The session is being written", "The download starts by itself, in half a minute.");
+    }),
   );
 
 const note = (text) => h("p", { className: "dim" }, text);
