@@ -163,7 +163,7 @@ def _nearness(distances: FloatArray) -> FloatArray:
 def image_row(images: Sequence[tuple[str, npt.NDArray[np.uint8]]]) -> str:
     """Return trajectory images side by side, each ``(H, W)`` grey or ``(H, W, 3)`` RGB."""
     figures = "".join(
-        f"<figure><img alt='trajectory image: {escape(caption)}' src='{_data_url(image)}'>"
+        f"<figure><img alt='trajectory image: {escape(caption)}' src='{data_url(image)}'>"
         f"<figcaption>{escape(caption)}</figcaption></figure>"
         for caption, image in images
     )
@@ -297,10 +297,16 @@ def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
-def _data_url(image: npt.NDArray[np.uint8]) -> str:
+def data_url(image: npt.NDArray[np.uint8]) -> str:
+    """Return an image as data URI of a PNG."""
+    return "data:image/png;base64," + base64.b64encode(png(image)).decode("ascii")
+
+
+def png(image: npt.NDArray[np.uint8]) -> bytes:
+    """Encode an image, ``(H, W)`` grey or ``(H, W, 3)`` RGB, as PNG."""
     pixels = image[..., ::-1] if image.ndim == 3 else image
     encoded = cv2.imencode(".png", np.ascontiguousarray(pixels))[1]
-    return "data:image/png;base64," + base64.b64encode(encoded.tobytes()).decode("ascii")
+    return encoded.tobytes()
 
 
 def _block(content: str) -> str:

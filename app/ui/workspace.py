@@ -21,6 +21,7 @@ from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
 from app.ui.back_wall import Wall
 from app.ui.camera import CUBE, FLAT, CameraPose, ease
+from app.ui.direction_marks import mark_direction, mark_gesture
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback_server import quiet, start_server
@@ -321,7 +322,7 @@ def compared_images(
     sets = dict.fromkeys(gesture.salient for _, gesture in shown)
     takes = [(_take_caption(names, sets), _drawn(poses, names)) for names in sets]
     images = [(caption, image) for caption, image in takes if image is not None]
-    return images + [(caption, gesture.image) for caption, gesture in shown]
+    return images + [(caption, mark_gesture(gesture)) for caption, gesture in shown]
 
 
 def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
@@ -331,7 +332,8 @@ def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
     """Draw a take's paths of the named landmarks; None when it has no such landmark."""
     try:
-        return draw(Trajectory.from_poses(poses).select(names)).image
+        trajectory = Trajectory.from_poses(poses).select(names)
+        return mark_direction(draw(trajectory).image, trajectory)
     except PoseError:
         return None
 

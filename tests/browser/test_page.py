@@ -147,6 +147,30 @@ def test_a_duplicated_tab_gets_a_workspace_of_its_own(open_page: OpenPage) -> No
     assert workspace_of(first) == workspace
 
 
+def test_cards_and_compared_images_show_start_and_direction(
+    open_page: OpenPage, library: Library
+) -> None:
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page = open_page(query, scene=False)
+    for name in ("Trajectory of circle, from the dot along the arrow", "Trajectory image: this"):
+        image = page.get_by_role("img", name=name)
+        expect(image).to_be_visible()
+        coloured = image.evaluate(
+            """async (image) => {
+              await image.decode();
+              const canvas = document.createElement("canvas");
+              [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+              const context = canvas.getContext("2d");
+              context.drawImage(image, 0, 0);
+              const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+              let count = 0;
+              for (let i = 0; i < data.length; i += 4) count += data[i + 2] > data[i] + 60;
+              return count;
+            }"""
+        )
+        assert coloured > 100
+
+
 def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, scene=False)
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from urllib.parse import quote
 
 from fastapi import APIRouter, Response
@@ -13,7 +12,7 @@ from app.api.services.stored_recognitions import load_recognition, load_situatio
 from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.views import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
-from app.recognition.features.png import encode_png
+from app.ui.charts import data_url
 from app.ui.recognition_page import analysis_page
 from app.ui.workspace import Range, compared_images
 
@@ -37,13 +36,7 @@ def get_compared_images(
     images = compared_images(view, load_recognition(record), Range.of(view).poses)
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
-    return [
-        ComparedImage(
-            caption=caption,
-            image=f"data:image/png;base64,{b64encode(encode_png(image)).decode('ascii')}",
-        )
-        for caption, image in images
-    ]
+    return [ComparedImage(caption=caption, image=data_url(image)) for caption, image in images]
 
 
 @router.get(

@@ -175,7 +175,7 @@ export const languages = {
     ),
   /** @type {(language: string, label: string, revision: number) => string} */
   image: (language, label, revision) =>
-    `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}`,
+    `${BASE}${gestureAt({ id: language }, label)}/image?revision=${revision}&marks=true`,
   /** @type {(language: string) => Promise<Language>} */
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
   /** @type {(language: { id: string, revision?: number }) => Promise<any>} */

@@ -26,8 +26,10 @@ async function remove(gesture) {
   }
 }
 
+/** The address of a trajectory image with start dot and arrow. */
+const withMarks = (thumbnail) => `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
+
 function draw(gesture, element) {
-  const { revision } = currentLanguage();
   const mark =
     state.result &&
     (gesture.label === state.result.label
@@ -37,13 +39,13 @@ function draw(gesture, element) {
         : null);
   const signature = JSON.stringify([gesture, mark]);
   if (element?.dataset.signature === signature) return element;
-  const image = `${gesture.thumbnail}${gesture.thumbnail.includes("revision=") ? "" : `?revision=${revision}`}`;
+  const image = withMarks(gesture.thumbnail);
   const card = h(
     "li",
     { className: `card${mark ? ` ${mark}` : ""}` },
     h("img", {
       src: image,
-      alt: `Trajectory of ${gesture.label}`,
+      alt: `Trajectory of ${gesture.label}, from the dot along the arrow`,
       loading: "lazy",
       width: 112,
       height: 112,
