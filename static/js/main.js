@@ -69,7 +69,7 @@ function drawEverything() {
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
-  follow(["gestures", "result", "clip"], drawGestures);
+  follow(["gestures", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);

@@ -57,6 +57,25 @@ export function addTestClips(files) {
   );
 }
 
+/** Take clips of the library into the test. */
+export const addLibraryClips = (ids) =>
+  setPending([
+    ...state.pending,
+    ...ids.map((clip) => ({ clip, language: state.language, expected: null })),
+  ]);
+
+/** The clips of the library that are not in the test, with the label that their name suggests. */
+export function candidates() {
+  const taken = new Set([
+    ...(state.tested ?? []).filter(({ expected }) => expected !== null).map((each) => each.clip_id),
+    ...state.pending.filter(({ language }) => language === state.language).map(({ clip }) => clip),
+    ...(state.gestures?.gestures ?? []).map(({ source }) => source?.clip_id),
+  ]);
+  return state.clips
+    .filter(({ id, status }) => status === "done" && !taken.has(id))
+    .map((clip) => ({ clip, expected: labelInName(clip.name, state.gestures?.labels ?? []) }));
+}
+
 /** The expected label of a pending clip: as chosen, or as its name suggests. */
 export const meantBy = ({ clip, expected }) =>
   expected ??

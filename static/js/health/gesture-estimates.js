@@ -3,7 +3,7 @@
 import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
 import { editLink } from "./finding-links.js";
-import { percent, rateText } from "./rates.js";
+import { intervalText, percent, rateText } from "./rates.js";
 
 /** A rate with its interval; above the threshold it is also marked by a sign. */
 function rate(estimate, threshold) {
@@ -23,7 +23,7 @@ function rate(estimate, threshold) {
       "aria-hidden": "true",
       style: { "--share": `${100 * estimate.rate}%` },
     }),
-    h("small", { className: "dim num" }, `${percent(estimate.low)} to ${percent(estimate.high)}`),
+    h("small", { className: "dim num" }, intervalText(estimate)),
   );
 }
 

@@ -225,6 +225,13 @@ function nothing() {
 const reportOf = ({ gestures, health }) =>
   health && health.id === gestures?.id ? health.report : null;
 
+/** Go to the test with clips, which stands below the report. */
+function showTest() {
+  const title = document.getElementById("test-title");
+  title?.scrollIntoView({ block: "start" });
+  title?.focus({ preventScroll: true });
+}
+
 function overview() {
   const name = h("h1");
   const about = h("small", { className: "dim" });
@@ -262,7 +269,13 @@ function overview() {
   return h(
     "div",
     { className: "health-page" },
-    h("div", { className: "health-head" }, h("div", {}, name, about), says),
+    h(
+      "div",
+      { className: "health-head" },
+      h("div", {}, name, about),
+      says,
+      h("button", { type: "button", onclick: showTest }, "Test with clips"),
+    ),
     bar,
     body,
     batchSection(),
