@@ -101,8 +101,18 @@ def _cause(analysis: Analysis) -> Difference | None:
 
 
 def _remedy(analysis: Analysis) -> str:
-    found = analysis.counterfactuals.found
+    # A take is recognised by its own demonstration by construction, which is no remedy to name.
+    found = [
+        each
+        for each in analysis.counterfactuals.found
+        if not each.change.kind.endswith("demonstration")
+        and not (each.effect is not None and each.effect.lost)
+    ]
     if found:
         return f"It would have been read as {analysis.expected!r} {found[0].change.words}."
     tried = analysis.counterfactuals.tried
-    return f"None of {tried} changes tried would have turned it right." if tried else ""
+    return (
+        ""
+        if analysis.counterfactuals.found or not tried
+        else (f"None of {tried} changes tried would have turned it right.")
+    )

@@ -44,6 +44,7 @@ const APPLY = {
   salient: (change) => changed(change, { salient: change.salient }),
   switch: (change) => changed(change, { [change.switch]: change.position }),
   demonstration: (change) => changed(change, { demonstration: rangeOf() }),
+  further_demonstration: (change) => changed(change, { demonstration: rangeOf(), further: true }),
 };
 
 /** Changes of how the whole language is recognised. */

@@ -67,9 +67,38 @@ function query() {
     : { clip_id: state.clip, start, end };
 }
 
+/** @type {Set<string>} */
+const intoSample = new Set(); // Sample languages into which the user chose to save.
+
+/** Whether there is a language to save into; for a sample, a language of one's own is offered. */
+async function hasLanguage() {
+  const { gestures, language } = state;
+  if (!language) return Boolean(await newLanguage());
+  if (!gestures?.sample || intoSample.has(language)) return true;
+  let sample = false;
+  const choice = h(
+    "button",
+    {
+      type: "button",
+      className: "link",
+      onclick: () => {
+        sample = true;
+        intoSample.add(language);
+        byId("dialog").close();
+      },
+    },
+    `Save into the sample \u201c${gestures.name}\u201d instead`,
+  );
+  const made = await newLanguage({
+    text: `\u201c${gestures.name}\u201d is a sample. Name a language of your own: the gesture is saved there.`,
+    preview: choice,
+  });
+  return Boolean(made) || sample;
+}
+
 /** Make a gesture of what is selected, in its own view. */
 async function saveGesture() {
-  if (!state.language && !(await newLanguage())) return;
+  if (!(await hasLanguage())) return;
   await go("gesture", { gesture: null });
 }
 

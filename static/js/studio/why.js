@@ -2,11 +2,16 @@
 
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
-import { readable } from "../core/format.js";
+import { moment, readable } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
+import { seek } from "./playback.js";
+import { lessonOf, offeredOf } from "./remedies.js";
+
+/** @import { Recognition } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -95,23 +100,20 @@ export function drawCosts({ why, timeline }) {
 }
 
 /** The side effect of an intervention on the other gestures, in words. */
-function effectOf(effect) {
-  if (!effect) return null;
-  if (effect.right_after < effect.right_before) {
-    const [shown, are] =
-      effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
-    return h(
-      "small",
-      { className: "expected" },
-      `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`,
-    );
-  }
-  return h(
-    "small",
-    { className: "dim" },
-    `the others stay right (${effect.right_after} of ${effect.takes})`,
-  );
-}
+const effectOf = (effect) =>
+  effect
+    ? h(
+        "small",
+        { className: "dim" },
+        `the others stay right (${effect.right_after} of ${effect.takes})`,
+      )
+    : null;
+
+/** The result of an intervention; a take is recognised by its own demonstration by construction. */
+const resultOf = ({ change, label, confidence }) =>
+  change.kind.endsWith("demonstration")
+    ? null
+    : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
 
 function remedy(found) {
   return h(
@@ -122,7 +124,7 @@ function remedy(found) {
       { type: "button", onclick: () => tryOut(found) },
       h("span", {}, found.change.words),
     ),
-    h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
+    resultOf(found),
     effectOf(found.effect),
   );
 }
@@ -154,18 +156,39 @@ const shares = (result, why) =>
 
 const note = (text) => h("p", { className: "dim" }, text);
 
-/** What would have helped, as buttons that try it out; a note where nothing would. */
+/** What to show differently the next time, with its moment. */
+function lesson(why) {
+  const found = lessonOf(why);
+  if (!found) return null;
+  const { words, start } = found;
+  const to = () => {
+    if (state.timeline && start !== null) seek(nearestFrame(state.timeline.time, start));
+  };
+  return h(
+    "p",
+    { className: "lesson" },
+    h("b", {}, "Show it again: "),
+    `in this take ${words}. `,
+    start === null
+      ? null
+      : h("button", { type: "button", className: "link", onclick: to }, `Go to ${moment(start)}`),
+  );
+}
+
+/** What would have helped, as buttons that try it out; what to show differently stands first. */
 function remediesOf(why) {
   if (why.right) return null;
-  if (!why.counterfactuals.length)
-    return note(
-      `None of the ${why.tried} changes that were tried would help: the gesture has to be demonstrated again.`,
-    );
+  const offered = offeredOf(why, /** @type {Recognition} */ (state.result));
   return h(
     "div",
     { className: "remedies" },
-    h("h2", {}, `It would have been recognised as ${why.expected}`),
-    h("ul", {}, why.counterfactuals.map(remedy)),
+    lesson(why),
+    offered.length
+      ? [
+          h("h2", {}, `It would have been recognised as ${why.expected}`),
+          h("ul", {}, offered.map(remedy)),
+        ]
+      : note(`None of the ${why.tried} changes that were tried helps without harm.`),
   );
 }
 
