@@ -35,7 +35,7 @@ import { offerTour, startTour } from "./studio/tour.js";
 import { drawFlat, drawRatio } from "./studio/stage-view.js";
 import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
-import { drawWelcome } from "./studio/welcome.js";
+import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
 import { acceptFiles, drawUploads } from "./upload/upload-list.js";
@@ -135,7 +135,7 @@ async function start() {
   listenToKeys();
   byId("copy-link").append(icon("link"));
   byId("copy-link").onclick = copyLink;
-  bindKeyList({ loadAll: loadViews, startTour });
+  bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });
   bindUndo();
   acceptFiles();

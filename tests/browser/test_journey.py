@@ -106,6 +106,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     # A clip is dropped, its poses arrive, its take is seen, and becomes a gesture.
     upload(page, clips / "circle-demonstration.mp4")
     page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_role("button", name="Save into the sample").click()
     page.get_by_label("Label").fill("our circle")
     page.get_by_label("Command").fill("Hold your depth")
     expect(page.get_by_text("Missed: recognised as")).to_be_visible(timeout=EXTRACTION_MS)

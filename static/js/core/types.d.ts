@@ -320,6 +320,7 @@ export interface Binding {
 export interface KeyListActions {
   loadAll: () => Promise<unknown>;
   startTour: () => void;
+  showExample: () => void;
 }
 
 /** A command of a menu, or a file to download. */
