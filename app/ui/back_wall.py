@@ -14,14 +14,14 @@ from app.ui.geometry import CubeGeometry
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A trajectory image and where it hangs.
+    """A trajectory image and its position.
 
     Attributes
     ----------
     image
         As the recogniser draws it.
     centre
-        x and y of its middle, in heights of the video.
+        x and y, in heights of the video.
     side
         Its width and height, in the same unit.
 
@@ -32,24 +32,23 @@ class Wall:
     side: float
 
     @classmethod
-    def behind(
+    def from_drawing(
         cls, cube: CubeGeometry, poses: PoseSequence, salient: tuple[str, ...], drawing: Drawing
     ) -> Wall:
-        """Hang `drawing` behind the trails of the salient landmarks, as large as they are.
+        """Centre `drawing` on the trails of the salient landmarks, at their scale.
 
-        The drawing knows torso lengths and not where the diver was, since both are taken out
-        before anything is compared; the recording still has them.
+        A drawing is normalised, without position and scale; both come from the recording.
 
         Parameters
         ----------
         cube
             The recording's layout.
         poses
-            The recording, for the length of its torso.
+            The recording, for its torso length.
         salient
             Landmarks that the drawing shows; each is seen at least once.
         drawing
-            What hangs there; not empty.
+            The trajectory image; not empty.
 
         """
         paths = cube.points[:, [cube.landmarks.index(name) for name in salient], :2]

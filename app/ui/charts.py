@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -23,11 +23,12 @@ MAX_CHART_POINTS = 400
 
 
 def verdict(recognition: Recognition, expected: str | None) -> str:
-    """Return a card with the recognised label, the expected label and the votes for it."""
-    label, votes = recognition.label, recognition.counted
-    count = sum(vote == recognition.nearest for vote in votes.values())
-    confidence = f"confidence {100 * recognition.confidence:.0f} %"
-    support = f"{count} of {len(votes)} voters, {confidence}" if votes else confidence
+    """Return a card with the recognised label, the expected label and the support for it."""
+    label = recognition.label
+    share = recognition.support.get(recognition.nearest, 0.0)
+    support = (
+        f"confidence {percent(recognition.confidence)}, voters with {percent(share)} of the weight"
+    )
     if label is None:
         badge, kind = "?", "expected"
         text = f"Not recognised. Nearest is <b>{escape(recognition.nearest)}</b>"
@@ -56,36 +57,24 @@ def hint(title: str, text: str) -> str:
     )
 
 
-def vote_sentence(votes: Mapping[str, str | None]) -> str:
-    """List the voters of each gesture, the gesture with most votes first."""
-    parties: dict[str, list[str]] = {}
-    for voter, label in votes.items():
-        parties.setdefault(label or "no one", []).append(humanize(voter))
-    ordered = sorted(parties.items(), key=lambda party: -len(party[1]))
-    sentences = [
-        f"<b>{escape(label)}</b>: {escape(', '.join(voters))}." for label, voters in ordered
-    ]
-    return _block(f"<h3>Who voted for what</h3><p>{'<br>'.join(sentences)}</p>")
-
-
 def vote_table(recognition: Recognition, expected: str | None) -> str:
     """Return a table of every voter's distance to every gesture, with each voter's vote marked.
 
     One row per voter, by descending weight; rows of weight 0 are faint. One column per gesture,
-    most votes first. Each voter has its own unit, so shades are comparable within a row only: the
-    stronger, the nearer. A vote has a dot and a frame, the expected and the chosen gesture have a
-    tag, so that no meaning depends on colour alone.
+    that with the largest weight of its voters first. Each voter has its own unit, so shades are
+    comparable within a row only: the stronger, the nearer. A vote has a dot and a frame, the
+    expected and the chosen gesture have a tag, so that no meaning depends on colour alone.
     """
-    counts = {label: 0 for label in recognition.gestures}
-    for label in recognition.counted.values():
-        if label in counts:
-            counts[label] += 1
+    support = recognition.support
     nearness = _nearness(recognition.distances)
     weights = np.array([recognition.weights[voter] for voter in recognition.voters])
     near = weights @ nearness if len(nearness) else np.zeros(len(recognition.gestures))
     columns = sorted(
         range(len(recognition.gestures)),
-        key=lambda column: (-counts[recognition.gestures[column]], -float(near[column])),
+        key=lambda column: (
+            -support.get(recognition.gestures[column], 0.0),
+            -float(near[column]),
+        ),
     )
     hidden = len(columns) - MAX_COLUMNS
     columns = columns[:MAX_COLUMNS]
@@ -95,17 +84,19 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
         for row in np.argsort(-weights, kind="stable")
     )
     totals = "".join(
-        f"<td class='votes'>{counts[recognition.gestures[column]]}</td>" for column in columns
+        f"<td class='votes'>{percent(support.get(recognition.gestures[column], 0.0))}</td>"
+        for column in columns
     )
     rest = f"<p class='dim'>{hidden} farther gestures are not shown.</p>" if hidden > 0 else ""
     return _block(
         "<h3>Distance to every gesture, as each voter measures it</h3><div class='scroll'>"
         f"<table aria-label='Votes'><thead><tr><th scope='col'>voter</th>"
-        f"<th scope='col'>share</th>{heads}</tr></thead><tbody>{rows}</tbody>"
-        f"<tfoot><tr><th scope='row' colspan='2'>votes</th>{totals}</tr></tfoot></table></div>"
+        f"<th scope='col'>weight</th>{heads}</tr></thead><tbody>{rows}</tbody>"
+        f"<tfoot><tr><th scope='row' colspan='2'>weight of its voters</th>{totals}</tr></tfoot>"
+        "</table></div>"
         "<p class='dim'>\N{BLACK CIRCLE} a voter\N{RIGHT SINGLE QUOTATION MARK}s choice. "
-        "The stronger the shade, the nearer, within a row. Voters without a share cannot tell "
-        "these gestures apart.</p>" + rest
+        "The stronger the shade, the nearer, within a row. Voters of weight 0 do not separate "
+        "these gestures.</p>" + rest
     )
 
 
@@ -130,7 +121,6 @@ def _vote_row(
 ) -> str:
     voter = recognition.voters[row]
     weight = recognition.weights[voter]
-    share = f"{weight:.0%}" if weight >= 0.005 or weight == 0 else "<1%"
     choice = recognition.votes.get(voter)
     cells = "".join(
         _vote_cell(
@@ -143,8 +133,13 @@ def _vote_row(
     mute = "" if weight > 0 else " class='mute'"
     return (
         f"<tr{mute}><th scope='row'>{escape(humanize(voter))}</th>"
-        f"<td class='share'>{escape(share)}</td>{cells}</tr>"
+        f"<td class='share'>{escape(percent(weight))}</td>{cells}</tr>"
     )
+
+
+def percent(share: float) -> str:
+    """Format a share in [0, 1] as the page does."""
+    return "<1 %" if 0 < share < 0.005 else f"{100 * share:.0f} %"
 
 
 def _vote_cell(distance: float, nearness: float, chosen: bool) -> str:
@@ -168,7 +163,7 @@ def _nearness(distances: FloatArray) -> FloatArray:
 def image_row(images: Sequence[tuple[str, npt.NDArray[np.uint8]]]) -> str:
     """Return trajectory images side by side, each ``(H, W)`` grey or ``(H, W, 3)`` RGB."""
     figures = "".join(
-        f"<figure><img alt='trajectory image: {escape(caption)}' src='{_data_url(image)}'>"
+        f"<figure><img alt='trajectory image: {escape(caption)}' src='{data_url(image)}'>"
         f"<figcaption>{escape(caption)}</figcaption></figure>"
         for caption, image in images
     )
@@ -302,10 +297,16 @@ def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
-def _data_url(image: npt.NDArray[np.uint8]) -> str:
+def data_url(image: npt.NDArray[np.uint8]) -> str:
+    """Return an image as data URI of a PNG."""
+    return "data:image/png;base64," + base64.b64encode(png(image)).decode("ascii")
+
+
+def png(image: npt.NDArray[np.uint8]) -> bytes:
+    """Encode an image, ``(H, W)`` grey or ``(H, W, 3)`` RGB, as PNG."""
     pixels = image[..., ::-1] if image.ndim == 3 else image
     encoded = cv2.imencode(".png", np.ascontiguousarray(pixels))[1]
-    return "data:image/png;base64," + base64.b64encode(encoded.tobytes()).decode("ascii")
+    return encoded.tobytes()
 
 
 def _block(content: str) -> str:

@@ -16,25 +16,25 @@ from app.recognition.recording.video import read_frames
 
 Image = npt.NDArray[np.uint8]
 
-MAX_WIDTH = 480
-"""Pixels. Shown about 600 wide and at an angle; every step up costs playback its frame rate."""
+MAX_WIDTH = 640
+"""Pixels. Larger pictures reduce the frame rate of playback."""
 
 MAX_FRAMES = 1800
-"""Frames kept: a minute at 30 a second, 45 MB as JPEG; of longer ranges every n-th."""
+"""Most frames kept: a minute at 30 a second; of longer ranges every n-th frame."""
 
 JPEG_QUALITY = 82
-"""Below 80 rings show around a bright diver on dark water; above 85 only the size grows."""
+"""Below 80, compression artefacts surround a bright diver on dark water."""
 
 
 class Filmstrip:
-    """Decoder of a range of a clip, in the background; returns the frame nearest to a given one.
+    """Background decoder of a range of a clip; returns the picture nearest to a given frame.
 
     Parameters
     ----------
     video
         The clip.
     first, last
-        Frames to keep, both included, counted from 0 over all decoded frames.
+        Frame indices of the range, both included, counted from 0 over all decoded frames.
     on_frame
         Called from the decoding thread with the index of every frame that was added.
 
@@ -56,7 +56,7 @@ class Filmstrip:
         self.error: str | None = None
 
     def start(self) -> None:
-        """Begin to decode."""
+        """Start decoding."""
         self._thread.start()
 
     def close(self) -> None:
@@ -66,7 +66,7 @@ class Filmstrip:
             self._thread.join()
 
     def wait(self, timeout: float) -> bool:
-        """Wait until every frame is decoded; False when `timeout` seconds pass before."""
+        """Wait until every frame is decoded; False after `timeout` seconds."""
         return self._complete.wait(timeout)
 
     def __len__(self) -> int:
@@ -74,7 +74,7 @@ class Filmstrip:
         return len(self._indices)
 
     def kept(self, frame: int) -> int:
-        """Return which of the frames that will be kept is nearest to `frame`."""
+        """Return the index nearest to `frame` among the frames that will be kept."""
         kept = (self._last - self._first) // self._stride
         below = min(max((frame - self._first) // self._stride, 0), kept)
         above = min(below + 1, kept)

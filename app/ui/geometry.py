@@ -6,7 +6,7 @@ Axes as a camera has them: x right, y down, z forward, and z is time. The height
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -27,16 +27,15 @@ UNMARKED: Final = frozenset(name for names in LANDMARK_GROUPS.values() for name 
     "left_wrist",
     "right_wrist",
 }
-"""Drawn without a dot: eleven on a mask hide the face, three on a hand hide the fingers."""
-
+"""Drawn without a dot: eleven dots on a mask hide the face, three on a hand hide the fingers."""
 
 MAX_TRAIL_SEGMENTS = 600
-"""Segments of one trail, which is sent again for every frame: a long clip's is thinned out."""
+"""Most segments of one trail, which is sent again for every frame; longer ones are decimated."""
 
 
 @dataclass(frozen=True, eq=False)
 class CubeGeometry:
-    """A recording laid out in space and time.
+    """Positions of a recording in space and time.
 
     Attributes
     ----------
@@ -47,7 +46,7 @@ class CubeGeometry:
     depth
         ``(T,)`` z of every moment, from 0.
     aspect
-        Width of the video over its height.
+        Aspect ratio of the video, width / height.
     seconds
         Duration.
 
@@ -61,7 +60,7 @@ class CubeGeometry:
 
     @classmethod
     def from_poses(cls, poses: PoseSequence) -> CubeGeometry:
-        """Lay out `poses`; at least one frame."""
+        """Compute the positions of `poses`; at least one frame."""
         width, height = poses.frame_size
         elapsed = poses.time - poses.time[0]
         seconds = float(elapsed[-1])
@@ -72,17 +71,22 @@ class CubeGeometry:
         points = np.concatenate([flat, z], axis=2).astype(np.float32)
         return cls(poses.landmarks, points, depth, width / height, seconds)
 
+    def flattened(self, share: float) -> CubeGeometry:
+        """Return the same positions with their depth multiplied by `share`; 0: in one plane."""
+        points = self.points * np.array([1, 1, share], np.float32)
+        return replace(self, points=points, depth=self.depth * np.float32(share))
+
     @property
     def back(self) -> float:
         """The z of the back wall."""
         return float(self.depth[-1]) if len(self.depth) > 1 else DEPTH_LIMITS[0]
 
-    def at_time(self, seconds: float) -> float:
+    def depth_at(self, seconds: float) -> float:
         """Return the z of a moment, `seconds` after the first."""
         return self.back * seconds / self.seconds if self.seconds else 0.0
 
     def place_frame(self, poses: PoseSequence, frame: int, depth: float) -> Points:
-        """Return ``(K, 3)`` one frame of the clip at a depth of the cube's choice."""
+        """Return ``(K, 3)`` the positions of one frame of the clip at depth `depth`."""
         flat = _flat(poses.xy[frame], poses.frame_size)
         return np.column_stack([flat, np.full(len(flat), depth)]).astype(np.float32)
 
@@ -93,7 +97,7 @@ class CubeGeometry:
         return _without_gaps(self._in_view(points)[np.array(pairs, dtype=int).reshape(-1, 2)])
 
     def joints(self, points: Points) -> Points:
-        """Return ``(N, 3)`` those of ``(K, 3)`` points in view, but face and fingers."""
+        """Return ``(N, 3)`` those of ``(K, 3)`` points in view, without face and fingers."""
         shown = [column for column, name in enumerate(self.landmarks) if name not in UNMARKED]
         visible = self._in_view(points[shown])
         return visible[np.isfinite(visible).all(axis=1)]
@@ -109,7 +113,7 @@ class CubeGeometry:
         path = self.points[self.trail_frames(stop), self.landmarks.index(landmark)]
         return np.stack([path[:-1], path[1:]], axis=1)
 
-    def quiet_trails(self, salient: tuple[str, ...]) -> Points:
+    def other_trails(self, salient: tuple[str, ...]) -> Points:
         """Return ``(N, 2, 3)`` the paths of arms, trunk and legs, where they are in view."""
         rest = [name for name in self.landmarks if name not in UNMARKED and name not in salient]
         trails = [_without_gaps(self._in_view(self.trail(name))) for name in rest]

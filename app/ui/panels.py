@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import Final
+
 import viser
 
-from app.recognition import Recognition
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.wording import humanize
 from app.ui import charts
-from app.ui.style import PANEL_STYLE
+from app.ui.style import PANEL_STYLE, SHEET_HIDDEN
+
+PANEL_WIDTH: Final = 320
+"""Pixels; the cube is beside it."""
 
 
 class TimeCursor:
@@ -32,52 +34,25 @@ class TimeCursor:
 
 
 class Inspector:
-    """Panel at the right with the decision, its votes, and the paths of the landmarks."""
+    """Panel beside the space-time cube with the paths of the landmarks over time.
+
+    The page, not viser, shows the decision and its votes.
+    """
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        self._panel = gui.add_panel()
-        with self._panel.add_tab("Decision", viser.Icon.SCALE):
-            self._verdict = gui.add_html("")
-            self._table = gui.add_html("")
-            self._images = gui.add_html("")
-            self._sentence = gui.add_html("")
+        self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Tracks", viser.Icon.CHART_LINE):
             self._tracks = gui.add_html("")
             self._salute = gui.add_html("")
         self._panel.dock_right()
-        self._panel.set_width(392)
-        self.show_nothing()
+        self._style = gui.add_html(SHEET_HIDDEN)
+        self._panel.set_width(PANEL_WIDTH)
+        self._panel.minimize()
 
-    def show_nothing(self) -> None:
-        """Show the first step to take."""
-        self._verdict.content = charts.hint(
-            "Nothing selected yet",
-            "Drop a clip of a diver anywhere in this window, or try a sample clip on the left.",
-        )
-        for part in (self._table, self._images, self._sentence, self._tracks, self._salute):
-            part.content = ""
-
-    def show_undecided(self) -> None:
-        """Show how to get a decision for the take on display."""
-        self._verdict.content = charts.hint(
-            "No decision yet",
-            "Press Recognise above to see every voter's vote on this take, "
-            "or Save as gesture to add it to the language.",
-        )
-        for part in (self._table, self._images, self._sentence):
-            part.content = ""
-
-    def show_decision(
-        self,
-        recognition: Recognition,
-        expected: str | None,
-        images: list[tuple[str, npt.NDArray[np.uint8]]],
-    ) -> None:
-        """Show a recognition, with the trajectory images to compare."""
-        self._verdict.content = charts.verdict(recognition, expected)
-        self._table.content = charts.vote_table(recognition, expected)
-        self._images.content = charts.image_row(images)
-        self._sentence.content = charts.vote_sentence(recognition.counted)
+    def set_visible(self, visible: bool) -> None:
+        """Show the panel, or leave the room to the picture."""
+        self._panel.visible = visible
+        self._style.content = "" if visible else SHEET_HIDDEN
 
     def show_tracks(
         self, trajectory: Trajectory | None, start: float, salute: tuple[FloatArray, FloatArray]

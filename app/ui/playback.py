@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from threading import Condition, Thread
 
 END_REST_SECONDS = 0.6
-"""How long the last frame stands before playback starts again: long enough to see the end."""
+"""Pause on the last frame before playback repeats, so that the end is visible."""
 
 SPEEDS = (0.25, 16.0)
-"""Slowest and fastest, either way: below, pictures stand; above, no screen keeps up."""
+"""Least and largest speed in either direction; displays do not keep up with higher ones."""
 
 
 @dataclass(frozen=True)
 class Position:
-    """Where playback stands.
+    """State of playback.
 
     Attributes
     ----------
@@ -26,14 +26,14 @@ class Position:
     time
         Seconds in the clip, by its container.
     playing
-        Whether the clock runs.
+        Whether it plays.
     speed
-        Times as fast as the camera saw it; negative is backwards.
+        Factor on real time; negative is backwards.
     loop
-        Whether the range on display is played over and over.
+        Whether the range on display repeats.
     picture
-        Index of the frame whose picture is on display: of a long clip, or while it is still
-        decoded, another one's than `frame`. None while there is no picture.
+        Index of the frame whose picture is on display. It differs from `frame` for a long clip,
+        of which not all pictures are kept, and during decoding. None without a picture.
 
     """
 
@@ -55,7 +55,7 @@ class Playback:
     Parameters
     ----------
     show
-        Draws a frame, and returns whose picture that shows, None without one; called from the
+        Draws a frame and returns the index of its picture, None without one; called from the
         playback's own thread.
 
     """
@@ -72,7 +72,7 @@ class Playback:
         self._loop = True
         self._playing = False
         self._pending = False
-        self._untouched = True
+        self._unplayed = True
         self._closed = False
         self._anchor = (0.0, 0.0)
         self._thread = Thread(target=self._run, name="playback", daemon=True)
@@ -80,42 +80,45 @@ class Playback:
 
     @property
     def frame(self) -> int:
-        """The frame asked for last."""
+        """The frame requested last."""
         return self._frame
 
     @property
     def playing(self) -> bool:
-        """Whether the clock runs."""
+        """Whether it plays."""
         return self._playing
 
     @property
     def position(self) -> Position:
-        """Where it stands."""
+        """The current state."""
         with self._changed:
             return self._position()
 
     def listen(self, listener: Callable[[Position], None]) -> Callable[[], None]:
-        """Call `listener` after every frame drawn, from the playback's thread; return the end."""
+        """Call `listener` after every frame drawn, from the playback's thread.
+
+        Returns a function that removes the listener.
+        """
         with self._changed:
             self._listeners.append(listener)
 
-        def end() -> None:
+        def remove() -> None:
             with self._changed:
                 self._listeners.remove(listener)
 
-        return end
+        return remove
 
     def load(
         self, times: Sequence[float], frame: int = 0, span: tuple[int, int] | None = None
     ) -> None:
-        """Take over another clip and stop at `frame`; playing begins at the range's start even so.
+        """Load another clip and stop at `frame`; the first play starts at the range's start.
 
         Parameters
         ----------
         times
             Seconds, increasing, one per frame.
         frame
-            Where to stand until someone plays or seeks.
+            Shown until the first play or seek.
         span
             First and last frame of the range on display, which a loop repeats; None for all.
 
@@ -126,31 +129,31 @@ class Playback:
             first, end = span or (0, last)
             self._span = (min(max(first, 0), last), min(max(end, 0), last))
             self._playing = False
-            self._untouched = True
+            self._unplayed = True
             self._set(frame)
 
     def seek(self, frame: int) -> None:
-        """Show `frame`, or the nearest there is, and go on from there if playing."""
+        """Show `frame`, limited to the clip, and continue from there if playing."""
         with self._changed:
-            self._untouched = False
+            self._unplayed = False
             self._set(frame)
 
     def step(self, frames: int) -> None:
-        """Pause, and go so many frames on or, if negative, back."""
+        """Pause and move by `frames`; negative is backwards."""
         with self._changed:
             self._playing = False
-            self._untouched = False
+            self._unplayed = False
             self._set(self._frame + frames)
 
     def redraw(self, frame: int) -> None:
-        """Draw again if `frame` is the one on display: its picture has arrived."""
+        """Redraw if `frame` is on display, because its picture has been decoded."""
         with self._changed:
             if frame == self._frame:
                 self._pending = True
                 self._changed.notify()
 
     def play(self, speed: float) -> None:
-        """Play `speed` times as fast as the camera saw it; backwards if negative, 0 pauses."""
+        """Play at `speed` times real time; negative is backwards, 0 pauses."""
         with self._changed:
             if speed:
                 slowest, fastest = SPEEDS
@@ -159,7 +162,7 @@ class Playback:
             self._play(speed != 0)
 
     def set_loop(self, loop: bool) -> None:
-        """Repeat the range on display, or play on to the end of the clip."""
+        """Repeat the range on display, or play to the end of the clip."""
         with self._changed:
             self._loop = loop
             self._set(self._frame)
@@ -187,15 +190,15 @@ class Playback:
         self._playing = playing and len(self._times) > 1 and self._span[0] < self._span[1]
         first, last = self._bounds()
         begin, end = (first, last) if self._speed > 0 else (last, first)
-        if self._playing and (self._untouched or self._frame == end):
+        if self._playing and (self._unplayed or self._frame == end):
             self._frame = begin
-        self._untouched = False
+        self._unplayed = False
         self._set(self._frame)
 
     def _bounds(self) -> tuple[int, int]:
         """First and last frame to play: the range on display if it loops and holds the frame."""
         first, last = self._span
-        if self._loop and (self._untouched or first <= self._frame <= last):
+        if self._loop and (self._unplayed or first <= self._frame <= last):
             return first, last
         return 0, len(self._times) - 1
 
@@ -227,12 +230,12 @@ class Playback:
         return None
 
     def _now(self) -> float:
-        """Seconds in the clip that the clock has reached."""
+        """Return the current playback time, in seconds of the clip."""
         started, moment = self._anchor
         return moment + (clock.monotonic() - started) * self._speed
 
     def _advance(self) -> None:
-        """Move to the frame that the clock says is due; frames that come late are left out."""
+        """Move to the frame due by the clock; late frames are skipped."""
         first, last = self._bounds()
         now, forward = self._now(), self._speed > 0
         beyond = now - self._times[last] if forward else self._times[first] - now
@@ -248,7 +251,7 @@ class Playback:
                 self._pending = True
 
     def _until_next(self) -> float | None:
-        """Seconds until the clock has something new to show; None when it stands still."""
+        """Return the seconds until the next frame is due; None when paused."""
         if not self._playing:
             return None
         first, last = self._bounds()

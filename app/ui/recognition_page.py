@@ -25,36 +25,36 @@ from app.ui.style import alias_chart_colours
 from app.ui.workspace import Range, WorkspaceView, compared_images
 
 MAX_WIDTH = 400
-"""Pixels of a picture in the file; half a laptop's screen shows it a little enlarged."""
+"""Width of a picture in the file, in pixels."""
 
 MAX_PICTURES = 120
-"""Pictures in the file, 2 MB; of longer takes every n-th frame."""
+"""Most pictures in the file, about 2 MB; of longer takes every n-th frame."""
 
 JPEG_QUALITY = 72
-"""A file of two megabytes travels as an attachment; at 82 it would be three."""
+"""Keeps the file near 2 MB, small enough for an e-mail; at 82 it is 3 MB."""
 
 DIGITS = 4
-"""Of landmarks as shares of the picture: a tenth of a pixel."""
+"""Decimals of landmark coordinates as fractions of the picture: a tenth of a pixel."""
 
 POLICY: Final = (
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 )
-"""The file carries all it needs, and may fetch nothing from anywhere."""
+"""The file is self-contained and may make no request."""
 
 
 def analysis_page(
     view: WorkspaceView, recognition: Recognition, explanation: Explanation | None
 ) -> str:
-    """Write a recognition, what it compared and why, as HTML.
+    """Return a recognition, the compared images and its explanation as HTML.
 
     Parameters
     ----------
     view
         The take that was recognised.
     recognition
-        What came out.
+        Its result.
     explanation
-        Why; None where nobody said what was meant.
+        The explanation; None without an expected label.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def analysis_page(
         )
     )
     folder = static_dir() / "analysis"
-    # A script element ends at the first "</", whatever it says.
+    # A script element ends at the first "</", even inside a JSON string.
     embedded = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     style = "\n".join(
         (read_tokens(), alias_chart_colours(), (folder / "analysis.css").read_text("utf-8"))
@@ -121,7 +121,7 @@ def _why(explanation: Explanation | None) -> str:
 
 
 def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:
-    """Return what the script plays: pictures, their moments, poses, bones and trails."""
+    """Return what the script plays: pictures, timestamps, poses, bones and trails."""
     poses = shown.poses
     stride = max(1, -(-len(poses) // MAX_PICTURES))
     kept = range(shown.first, shown.first + len(poses), stride)
@@ -132,7 +132,7 @@ def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:
         "frames": [url for url, _ in pictures],
         "size": pictures[0][1] if pictures else list(poses.frame_size),
         "times": [round(float(poses.time[index]), 3) for index in chosen],
-        "poses": [_shares(poses.xy[index], poses.frame_size) for index in chosen],
+        "poses": [_fractions(poses.xy[index], poses.frame_size) for index in chosen],
         "bones": [[names[a], names[b]] for a, b in SKELETON if a in names and b in names],
         "trails": [names[name] for name in _salient(poses)],
     }
@@ -157,9 +157,13 @@ def _picture(image: npt.NDArray[np.uint8]) -> tuple[str, list[int]]:
     return "data:image/jpeg;base64," + base64.b64encode(encoded).decode("ascii"), size
 
 
-def _shares(xy: npt.NDArray[np.float64], frame_size: tuple[int, int]) -> list[list[float] | None]:
-    shares = np.round(xy / frame_size, DIGITS)
-    return [[float(x), float(y)] if np.isfinite([x, y]).all() else None for x, y in shares.tolist()]
+def _fractions(
+    xy: npt.NDArray[np.float64], frame_size: tuple[int, int]
+) -> list[list[float] | None]:
+    fractions = np.round(xy / frame_size, DIGITS)
+    return [
+        [float(x), float(y)] if np.isfinite([x, y]).all() else None for x, y in fractions.tolist()
+    ]
 
 
 def _salient(poses: PoseSequence) -> tuple[str, ...]:

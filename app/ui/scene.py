@@ -18,15 +18,11 @@ from app.ui.theme import Theme, map_time_colours, to_linear
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""
 
-LAYERS: Final = {"rim": 0.002, "trail": 0.004, "bones": 0.006, "joints": 0.009}
+LAYERS: Final = {"rim": 0.002, "ahead": 0.003, "trail": 0.004, "bones": 0.006, "joints": 0.009}
 """How far in front of the video plane things are drawn, so that they do not flicker into it."""
 
 DIM = 0.5
 """Brightness of the part of a trail that is still to come."""
-
-CAMERA_POSITION: Final = (-2.75, -1.15, -1.85)
-CAMERA_TARGET: Final = (0.0, 0.28, 0.66)
-"""Left of the video and above it: frame, trails and back wall are all seen, none edge-on."""
 
 
 class SpaceTimeCube:
@@ -44,13 +40,12 @@ class SpaceTimeCube:
     def __init__(self, server: viser.ViserServer, theme: Theme) -> None:
         self._server = server
         self._theme = theme
+        self._whole: CubeGeometry | None = None
         self._cube: CubeGeometry | None = None
+        self._depth = 0.0
+        self._frame = 0
         self._salient: tuple[str, ...] = ()
         self._colours: npt.NDArray[np.uint8] = np.zeros((0, 3), np.uint8)
-        server.initial_camera.position = CAMERA_POSITION
-        server.initial_camera.look_at = CAMERA_TARGET
-        server.initial_camera.up = (0.0, -1.0, 0.0)
-        server.initial_camera.fov = 0.57
         self.clear()
 
     def clear(self) -> None:
@@ -60,7 +55,7 @@ class SpaceTimeCube:
         scene.set_up_direction("-y")
         scene.world_axes.visible = False
         scene.set_background_image(np.full((2, 2, 3), self._theme.background, np.uint8))
-        self._cube = None
+        self._whole = self._cube = None
 
     def recolour(self, theme: Theme) -> None:
         """Use another theme from the next `show` or `clear` on."""
@@ -79,11 +74,11 @@ class SpaceTimeCube:
         Parameters
         ----------
         cube
-            The range laid out.
+            The range's positions.
         salient
             Landmarks whose trails stand out.
         wall
-            What hangs behind it, if anything.
+            The back wall; None without a trajectory image.
         poses
             The whole clip's.
         first
@@ -92,7 +87,7 @@ class SpaceTimeCube:
         """
         with self._server.atomic():
             self.clear()
-            self._cube, self._salient = cube, salient
+            self._whole, self._salient, self._frame = cube, salient, first
             self._poses, self._first = poses, first
             share = cube.depth / cube.back if len(cube.depth) > 1 else np.zeros(1)
             self._colours = map_time_colours(np.asarray(share, dtype=np.float64))
@@ -101,14 +96,32 @@ class SpaceTimeCube:
             if wall is not None:
                 self._draw_wall(cube, wall)
             self._draw_moving_parts(cube)
-        self._server.flush()
+        self.set_depth(self._depth)
+
+    def set_depth(self, share: float) -> None:
+        """Show the cube with `share` of its depth: 0 is the flat picture, 1 the whole cube.
+
+        Edges, ticks, the other trails and the back wall belong to the whole cube only.
+        """
+        self._depth = share
+        if self._whole is None:
+            return
+        self._cube = cube = self._whole.flattened(share)
+        with self._server.atomic():
+            for part in self._cube_only:
+                part.visible = share == 1
+            self._rim.visible = share > 0
+            for name, ahead in self._ahead.items():
+                whole = cube.trail(name)
+                ahead.points = in_front(whole[find_complete(whole)], "ahead")
+        self.seek(self._frame, None)
 
     def seek(self, frame: int, image: npt.NDArray[np.uint8] | None) -> None:
         """Move the video plane, the skeleton and the bright trails to a frame of the clip.
 
         Before the range the plane stands at the cube's front, after it at its back.
         """
-        cube = self._cube
+        cube, self._frame = self._cube, frame
         if cube is None:
             return
         inside = min(max(frame - self._first, 0), len(cube.depth) - 1)
@@ -129,48 +142,51 @@ class SpaceTimeCube:
 
     def _draw_cube(self, cube: CubeGeometry) -> None:
         scene, theme = self._server.scene, self._theme
-        scene.add_line_segments(
+        edges = scene.add_line_segments(
             "/cube/edges", cube.edges(), theme.line, thickness=1.0, thickness_units="screen"
         )
         x, y = cube.aspect / 2, 0.5
         ticks = cube.ticks()
-        marks = [((-x, y, cube.at_time(t)), (-x - 0.025, y, cube.at_time(t))) for t in ticks]
-        scene.add_line_segments(
+        marks = [((-x, y, cube.depth_at(t)), (-x - 0.025, y, cube.depth_at(t))) for t in ticks]
+        lines = scene.add_line_segments(
             "/cube/ticks",
             np.array(marks, np.float32),
             theme.line,
             thickness=1.0,
             thickness_units="screen",
         )
+        self._cube_only: list[viser.SceneNodeHandle] = [edges, lines]
         for second in ticks[:: max(1, len(ticks) // 4)]:
             text = text_image(f"{second:g} s", theme.ink)
             height = 0.048
             width = height * text.shape[1] / text.shape[0]
-            scene.add_image(
+            label = scene.add_image(
                 f"/cube/seconds/{second:g}",
                 text,
                 width,
                 height,
                 format="png",
-                position=(-x - 0.04 - width / 2, y, cube.at_time(second)),
+                position=(-x - 0.04 - width / 2, y, cube.depth_at(second)),
                 cast_shadow=False,
                 receive_shadow=False,
             )
+            self._cube_only.append(label)
 
     def _draw_trails(self, cube: CubeGeometry) -> None:
         scene = self._server.scene
-        quiet = cube.quiet_trails(self._salient)
+        quiet = cube.other_trails(self._salient)
         if len(quiet):
-            scene.add_line_segments(
-                "/trails/quiet", quiet, self._theme.quiet, thickness=1.0, thickness_units="screen"
+            others = scene.add_line_segments(
+                "/trails/others", quiet, self._theme.quiet, thickness=1.0, thickness_units="screen"
             )
-        self._past = {}
+            self._cube_only.append(others)
+        self._past, self._ahead = {}, {}
         for name in self._salient:
             whole = cube.trail(name)
             known = find_complete(whole)
             colours = self._segment_colours(cube.trail_frames())[known]
             ahead = DIM * colours + (1 - DIM) * np.array(self._theme.background)
-            scene.add_line_segments(
+            self._ahead[name] = scene.add_line_segments(
                 f"/trails/{name}/ahead",
                 whole[known],
                 to_linear(ahead.astype(np.uint8)),
@@ -198,7 +214,7 @@ class SpaceTimeCube:
     def _draw_wall(self, cube: CubeGeometry, wall: Wall) -> None:
         scene, theme = self._server.scene, self._theme
         z = cube.back + WALL_GAP
-        scene.add_image(
+        plane = scene.add_image(
             "/wall/plane",
             np.full((2, 2, 3), theme.wall, np.uint8),
             cube.aspect,
@@ -211,7 +227,7 @@ class SpaceTimeCube:
         ink = np.empty((*wall.image.shape, 4), np.uint8)
         ink[..., :3] = theme.ink
         ink[..., 3] = wall.image
-        scene.add_image(
+        image = scene.add_image(
             "/wall/image",
             ink,
             wall.side,
@@ -221,6 +237,7 @@ class SpaceTimeCube:
             cast_shadow=False,
             receive_shadow=False,
         )
+        self._cube_only += [plane, image]
 
     def _draw_moving_parts(self, cube: CubeGeometry) -> None:
         scene, theme = self._server.scene, self._theme

@@ -98,7 +98,7 @@ _RULES: Final = """
 .osg .mute { opacity: .45; }
 .osg td.share { background: none; padding-right: 4px; text-align: right; }
 .osg tfoot th { text-align: left; font-weight: 500; color: var(--osg-dim); }
-.osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 13px; }
+.osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 11px; }
 .osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
 .osg figure { margin: 0; }
 .osg figure img { width: 100%; display: block; border-radius: 8px; background: var(--osg-picture); }
@@ -122,6 +122,11 @@ _RULES: Final = """
 /* The sheet that takes the panels' place on a phone is as wide as the phone. */
 div[style*="width: 20em"] { width: 100% !important; }
 """
+
+SHEET_HIDDEN: Final = (
+    "<style>.mantine-Paper-root[style*='position: fixed'] { display: none !important; }</style>"
+)
+"""Hides the sheet at the bottom of a phone, which would cover the flat picture."""
 
 PANEL_STYLE: Final = f"<style>\n{_define_schemes()}{_RULES}</style>"
 """Markup for viser's `add_html`, whose style sheet applies to the whole page of viser.

@@ -20,6 +20,8 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
 from app.ui.back_wall import Wall
+from app.ui.camera import CUBE, FLAT, CameraPose, ease
+from app.ui.direction_marks import mark_direction, mark_gesture
 from app.ui.filmstrip import MAX_FRAMES, Filmstrip
 from app.ui.geometry import CubeGeometry
 from app.ui.loopback_server import quiet, start_server
@@ -28,9 +30,13 @@ from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
 from app.ui.theme import DARK, LIGHT
 
-FIRST_LOOK = 0.45
-"""Share of a range at which it is first shown: half of the trail is behind it, half ahead, and
-the back wall is still in view."""
+TRANSITION_SECONDS = 0.45
+TRANSITION_STEPS = 12
+"""Of the way between the flat picture and the cube: long enough to follow, short enough to wait."""
+
+INITIAL_SHARE = 0.45
+"""Share of a range at which it is first shown: half of the trail is past, half is to come, and
+the back wall is visible."""
 
 
 @dataclass(frozen=True)
@@ -42,17 +48,17 @@ class WorkspaceView:
     title
         Name of the clip.
     video, recording
-        The clip's file and what was found in it.
+        The clip's file and its landmark recording.
     start, end
         Seconds of the range on display; None is the clip's own start or end.
     recognition
-        How the range was recognised, if it was.
+        Of the range; None before it is recognised.
     expected
-        The label that was meant, if known.
+        The expected label, if known.
     language
-        The revision it was recognised with, for its gestures' images.
+        The revision used for the recognition, for its gestures' images.
     salient
-        Landmarks whose trails are drawn; None proposes those that move.
+        Landmarks whose trails are drawn; None: those that move.
 
     """
 
@@ -111,7 +117,7 @@ class Range:
 
 
 class Workspace:
-    """A viser server with the space-time cube and the inspector, and the clock of both.
+    """A viser server with the space-time cube, the inspector, and their playback.
 
     Parameters
     ----------
@@ -128,10 +134,12 @@ class Workspace:
         self._view: WorkspaceView | None = None
         self._filmstrip: Filmstrip | None = None
         self._shown: Range | None = None
-        self._painted = -1
+        self._picture_frame = -1
         self._server = start_server()
         self._configure_theme()
         self._scene = SpaceTimeCube(self._server, self._theme)
+        self._flat = True
+        FLAT.start_with(self._server)
         self.playback = Playback(self._draw)
         self._cursor = TimeCursor(self._server.gui)
         self._inspector = Inspector(self._server.gui)
@@ -165,7 +173,6 @@ class Workspace:
             before, self._view = self._view, view
             if before is None or _frames_of(before) != _frames_of(view):
                 self._load(before, view, shown)
-            self._inspect(view, shown)
 
     def set_dark(self, dark: bool) -> None:
         """Change to dark or light colours."""
@@ -182,6 +189,27 @@ class Workspace:
             self._draw_scene(self._view, Range.of(self._view))
             self.playback.redraw(self.playback.frame)
 
+    def set_flat(self, flat: bool, *, animate: bool = True) -> None:
+        """Show the picture flat, or the space-time cube; browsers see the way between them."""
+        with self._lock:
+            if flat == self._flat:
+                return
+            self._flat = flat
+            pose = FLAT if flat else CUBE
+            pose.start_with(self._server)
+            self._inspector.set_visible(False)
+            clients = list(self._server.get_clients().values())
+            starts = [CameraPose.of(client.camera) for client in clients]
+            steps = TRANSITION_STEPS if animate and clients else 1
+            for step in range(1, steps + 1):
+                share = ease(step / steps)
+                self._scene.set_depth(1 - share if flat else share)
+                for client, start in zip(clients, starts, strict=True):
+                    start.blend(pose, share).apply(client)
+                if step < steps:
+                    clock.sleep(TRANSITION_SECONDS / steps)
+            self._inspector.set_visible(not flat)
+
     def close(self) -> None:
         """Stop playback, decoding and the server."""
         self.playback.close()
@@ -192,13 +220,13 @@ class Workspace:
                 self._server.stop()
 
     def _load(self, before: WorkspaceView | None, view: WorkspaceView, shown: Range) -> None:
-        """Show other frames: scene, clock and charts at once, pictures as they are decoded."""
+        """Show other frames: scene, playback and charts at once, pictures as they are decoded."""
         first, times = shown.first, shown.poses.time
         last = first + len(times) - 1
         trajectory = self._draw_scene(view, shown)
         self._shown = shown
         self.playback.load(
-            view.recording.poses.time.tolist(), first + first_look(len(times)), (first, last)
+            view.recording.poses.time.tolist(), first + initial_frame(len(times)), (first, last)
         )
         self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.salute))
         if before is None or _pictures_of(before) != _pictures_of(view):
@@ -214,7 +242,7 @@ class Workspace:
         self._filmstrip.start()
 
     def _picture_arrived(self, index: int) -> None:
-        """Draw again if this is as near as pictures will come to the frame on display."""
+        """Redraw if no nearer picture of the frame on display will be decoded."""
         frame = self.playback.frame
         if self._filmstrip is not None and index == self._filmstrip.kept(frame):
             self.playback.redraw(frame)
@@ -225,34 +253,26 @@ class Workspace:
         trajectory, salient = _salient_motion(view, shown.poses)
         wall = None
         if trajectory is not None and not (drawing := draw(trajectory)).empty:
-            wall = Wall.behind(cube, shown.poses, salient, drawing)
+            wall = Wall.from_drawing(cube, shown.poses, salient, drawing)
         self._scene.show(cube, salient, wall, view.recording.poses, shown.first)
-        self._painted = -1
+        self._picture_frame = -1
         return trajectory
 
-    def _inspect(self, view: WorkspaceView, shown: Range) -> None:
-        recognition = view.recognition
-        if recognition is None:
-            self._inspector.show_undecided()
-            return
-        images = compared_images(view, recognition, shown.poses)
-        self._inspector.show_decision(recognition, view.expected, images)
-
     def _draw(self, frame: int) -> int | None:
-        """Draw a frame, and return whose picture is shown; called by the playback alone."""
+        """Draw a frame and return the index of its picture; called by the playback only."""
         with self._lock:
             if self._view is not None and self._shown is not None:
-                # A frame that was due before another view was shown may lie beyond its end.
+                # A frame due before the view changed may be beyond the new clip's end.
                 times = self._view.recording.poses.time
                 self._draw_locked(min(frame, len(times) - 1), self._shown, times)
-            return None if self._painted < 0 else self._painted
+            return None if self._picture_frame < 0 else self._picture_frame
 
     def _draw_locked(self, frame: int, shown: Range, times: FloatArray) -> None:
         image = None
         if self._filmstrip is not None:
             nearest = self._filmstrip.nearest(frame)
-            if nearest is not None and nearest[0] != self._painted:
-                self._painted, image = nearest
+            if nearest is not None and nearest[0] != self._picture_frame:
+                self._picture_frame, image = nearest
         self._scene.seek(frame, image)
         start, end = float(shown.poses.time[0]), float(shown.poses.time[-1])
         self._cursor.show((float(times[frame]) - start) / (end - start) if end > start else 0.0)
@@ -266,9 +286,9 @@ class Workspace:
         )
 
 
-def first_look(frames: int) -> int:
-    """Return the frame to stand at first: past and future trails are both seen from there."""
-    return round(FIRST_LOOK * (frames - 1))
+def initial_frame(frames: int) -> int:
+    """Return the frame that is shown first: past and future trails are both visible there."""
+    return round(INITIAL_SHARE * (frames - 1))
 
 
 def _salient_motion(
@@ -289,7 +309,7 @@ def compared_images(
     """Return what a recognition compared, with captions.
 
     The take is drawn as the recogniser drew it: with the salient landmarks of the gesture it is
-    held against. Where the expected and the chosen gesture differ in them, there are two drawings.
+    compared with. Where the expected and the chosen gesture differ in them, there are two drawings.
     """
     chosen, expected = recognition.nearest, view.expected
     known = {gesture.label: gesture for gesture in view.language.gestures} if view.language else {}
@@ -302,7 +322,7 @@ def compared_images(
     sets = dict.fromkeys(gesture.salient for _, gesture in shown)
     takes = [(_take_caption(names, sets), _drawn(poses, names)) for names in sets]
     images = [(caption, image) for caption, image in takes if image is not None]
-    return images + [(caption, gesture.image) for caption, gesture in shown]
+    return images + [(caption, mark_gesture(gesture)) for caption, gesture in shown]
 
 
 def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
@@ -312,7 +332,8 @@ def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
     """Draw a take's paths of the named landmarks; None when it has no such landmark."""
     try:
-        return draw(Trajectory.from_poses(poses).select(names)).image
+        trajectory = Trajectory.from_poses(poses).select(names)
+        return mark_direction(draw(trajectory).image, trajectory)
     except PoseError:
         return None
 

@@ -1,5 +1,6 @@
 // The start of the page: loads the data, registers the views, and binds drawing to the state.
 
+import { drawBatch } from "./clips/batch-card.js";
 import { drawClips, findClips } from "./clips/clip-list.js";
 import { followJob, reloadClip, reloadClips } from "./clips/clip-store.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
@@ -31,8 +32,10 @@ import {
 } from "./studio/stage.js";
 import { drawNow } from "./studio/timeline.js";
 import { offerTour, startTour } from "./studio/tour.js";
+import { drawFlat, drawRatio } from "./studio/stage-view.js";
 import { drawTransport } from "./studio/transport.js";
-import { drawWelcome } from "./studio/welcome.js";
+import { drawVotes } from "./studio/votes.js";
+import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
 import { acceptFiles, drawUploads } from "./upload/upload-list.js";
@@ -60,19 +63,23 @@ function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
+  follow(["clips", "jobs"], drawBatch);
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
-  follow(["gestures", "result", "clip"], drawGestures);
+  follow(["gestures", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
+  follow(["clips", "clip"], drawRatio);
+  follow(["position", "clips", "clip", "takes", "take", "start", "end"], drawFlat);
+  follow(["result", "clips", "clip", "gestures"], drawVotes);
   follow(["position"], showMoment);
   follow(["joint"], showJoint);
   follow(["result"], drawOutcome);
-  follow(["why", "result", "trial"], drawWhy);
+  follow(["why", "result", "trial", "clips", "clip"], drawWhy);
   follow(["why", "timeline"], drawCosts);
 }
 
@@ -128,7 +135,7 @@ async function start() {
   listenToKeys();
   byId("copy-link").append(icon("link"));
   byId("copy-link").onclick = copyLink;
-  bindKeyList({ loadAll: loadViews, startTour });
+  bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });
   bindUndo();
   acceptFiles();

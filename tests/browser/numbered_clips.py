@@ -34,6 +34,8 @@ GAPS = (3003, 1501, 4504, 9009, 2999, 1801)
 
 Picture = npt.NDArray[np.uint8]
 
+Marks = list[tuple[float, float]]
+
 
 def numbered_clip(path: Path, frames: int) -> list[float]:
     """Write a clip as phones do, H.264 with frames out of order; return its frames' seconds."""
@@ -65,17 +67,40 @@ def numbered(number: int) -> Picture:
 
 def number_on(screen: bytes) -> int | None:
     """Read the number off a screenshot, however the picture lies in space; None without one."""
-    decoded = cv2.imdecode(np.frombuffer(screen, np.uint8), cv2.IMREAD_COLOR_RGB)
-    shown = np.asarray(decoded, np.uint8)
-    found = [_middle(shown, colour) for colour in CORNERS]
-    places = [place for place in found if place is not None]
-    if len(places) < len(CORNERS):
+    shown = _decoded(screen)
+    places = _marks(shown)
+    if places is None:
         return None
     painted = np.array(_corners(CORNER // 2), np.float32)
     onto = cv2.getPerspectiveTransform(painted, np.array(places, np.float32))
     blocks = cv2.perspectiveTransform(np.array([_blocks()], np.float32), onto)[0]
     lit = [shown[round(float(y)), round(float(x))].mean() > 128 for x, y in blocks]
     return sum(1 << bit for bit, on in enumerate(lit) if on)
+
+
+def corners_on(screen: bytes) -> Marks | None:
+    """Return the marks' places as shares of a screenshot, in the order of `CORNERS`."""
+    shown = _decoded(screen)
+    height, width = shown.shape[:2]
+    places = _marks(shown)
+    return None if places is None else [(x / width, y / height) for x, y in places]
+
+
+def painted_corners() -> Marks:
+    """Return the marks' places as shares of the picture."""
+    return [(x / WIDTH, y / HEIGHT) for x, y in _corners(CORNER // 2)]
+
+
+def _decoded(screen: bytes) -> Picture:
+    decoded = cv2.imdecode(np.frombuffer(screen, np.uint8), cv2.IMREAD_COLOR_RGB)
+    return np.asarray(decoded, np.uint8)
+
+
+def _marks(shown: Picture) -> Marks | None:
+    """Return the middles of the marks in pixels; None unless all are seen."""
+    found = [_middle(shown, colour) for colour in CORNERS]
+    places = [place for place in found if place is not None]
+    return places if len(places) == len(CORNERS) else None
 
 
 def _corners(inside: int) -> list[tuple[int, int]]:

@@ -99,6 +99,7 @@ def test_number_and_seconds_are_those_of_the_picture_on_the_screen(
 
     # The editor's pictures are decoded by the browser, which has a clock of its own.
     page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_role("button", name="Save into the sample").click()
     told = page.locator(".take-panel .scrub output")
     video = Screen(page.locator(".take-panel .figure"), told, times)
     video.shows(0)

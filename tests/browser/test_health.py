@@ -44,7 +44,7 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     expect(page.get_by_role("heading", name="circle and line")).to_be_focused()
     expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("0")
     assert faults(page) == []
-    expect(page.get_by_text("circle differs from line in this")).to_be_visible()
+    expect(page.get_by_text("circle differs from line by")).to_be_visible()
     circle = page.get_by_role("img", name="The movement of circle")
     dots = circle.locator(".dots")
     before = dots.get_attribute("d")
@@ -151,6 +151,33 @@ def test_labelled_clips_are_tested_corrected_and_opened(
     assert file.read_text().count("circle-9.mp4") == 2
     grid.get_by_role("gridcell", name="1 take of circle read as circle").click()
     expect(page.locator("#outcome")).to_contain_text("as expected")
+
+
+def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
+    open_page: OpenPage, server: Running
+) -> None:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        library = library_of(server, client, "test set")
+        add_clip(server, "circle", name="circle-other.mp4")
+        library.recognise("circle")  # of the demonstration itself
+        page = open_page(health_of(library), scene=False)
+        page.get_by_role("button", name="Test with clips").click()
+        expect(page.get_by_role("heading", name="Test with clips")).to_be_in_viewport()
+        expect(page.get_by_text("1 take of the list is a demonstration")).to_be_visible()
+        page.get_by_text("Choose from the").click()
+        chosen = page.locator(".library-boxes input:checked")
+        while chosen.count():
+            chosen.first.uncheck()
+        page.get_by_role("checkbox", name="circle-other.mp4").check()
+        page.get_by_role("button", name="Test the chosen clips").click()
+        section = page.get_by_role("region", name="Test with clips")
+        expect(section).to_contain_text("1 of 1 recognised as labelled, 100 % (21 to 100)")
+        rates = page.get_by_role("list", name="Rate of each gesture")
+        expect(rates).to_contain_text("circle 1 of 1")
+        # A wrong result differs from a right one by more than the shade.
+        page.get_by_label("What circle-other.mp4 shows").select_option("line")
+        wrong = page.get_by_role("gridcell", name="1 take of line read as circle")
+        expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
 
 
 def test_a_dropped_clip_is_labelled_by_its_name(

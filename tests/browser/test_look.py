@@ -29,6 +29,14 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     for name in ("Save as gesture", "Recognise", "New language"):
         expect(page.get_by_role("button", name=name)).to_be_in_viewport()
     expect(page.locator("#outcome")).to_contain_text("as expected")
+    # Clips and the place to drop them stand above the picture, and nothing lies over the flat one.
+    for part in (page.locator(".drop label"), page.locator("#clips .chosen")):
+        expect(part).to_be_in_viewport()
+    picture = page.locator("#lab-box").bounding_box()
+    clips = page.locator("#clips").bounding_box()
+    assert picture is not None
+    assert clips is not None
+    assert clips["y"] + clips["height"] <= picture["y"]
     page.get_by_role("list", name="Gestures").scroll_into_view_if_needed()
     expect(page.get_by_role("button", name="Delete circle", exact=True)).to_be_in_viewport()
     page.get_by_role("button", name="Change circle", exact=True).click()

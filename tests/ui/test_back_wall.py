@@ -23,7 +23,7 @@ def assert_covers_the_trail(poses: PoseSequence) -> None:
     """Check that the drawing on the wall lies exactly behind the wrist's trail."""
     cube = CubeGeometry.from_poses(poses)
     drawing = draw(Trajectory.from_poses(poses).select(SALIENT))
-    wall = Wall.behind(cube, poses, SALIENT, drawing)
+    wall = Wall.from_drawing(cube, poses, SALIENT, drawing)
     wrist = cube.trail("right_wrist")[..., :2]
     low, high = wrist.min(axis=(0, 1)), wrist.max(axis=(0, 1))
     np.testing.assert_allclose(wall.centre, (low + high) / 2, atol=1e-3)

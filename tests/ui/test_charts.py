@@ -81,28 +81,28 @@ def test_the_verdict_says_in_words_what_came_out(
 ) -> None:
     text = Elements(charts.verdict(recognition(label=label), expected)).text
     assert words in text
-    assert "2 of 3 voters, confidence 62 %" in text
+    assert "confidence 62 %, voters with 67 % of the weight" in text
 
 
-def test_the_vote_table_has_a_row_per_voter_and_the_most_votes_come_first() -> None:
+def test_the_vote_table_has_a_row_per_voter_and_the_largest_weight_comes_first() -> None:
     head, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
-    assert head == ["voter", "share", "wedgechosen", "circleexpected", "line"]
+    assert head == ["voter", "weight", "wedgechosen", "circleexpected", "line"]
     assert rows == [
-        ["hu", "33%", ".25", "1.00", "1.00"],
-        ["aspect ratio", "33%", ".004", "1.00", "1.00"],
-        ["solidity", "33%", "1.00", ".50", "1.00"],
-        ["votes", "2", "1", "0"],
+        ["hu", "33 %", ".25", "1.00", "1.00"],
+        ["aspect ratio", "33 %", ".004", "1.00", "1.00"],
+        ["solidity", "33 %", "1.00", ".50", "1.00"],
+        ["weight of its voters", "67 %", "33 %", "0 %"],
     ]
 
 
-def test_voters_that_have_no_share_come_last_and_do_not_count() -> None:
+def test_voters_of_weight_zero_come_last_and_do_not_count() -> None:
     told = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
     table = Elements(charts.vote_table(told, None))
     assert [row[:2] for row in table.rows[1:]] == [
-        ["solidity", "70%"],
-        ["aspect ratio", "30%"],
-        ["hu", "0%"],
-        ["votes", "1"],
+        ["solidity", "70 %"],
+        ["aspect ratio", "30 %"],
+        ["hu", "0 %"],
+        ["weight of its voters", "70 %"],
     ]
     assert [row.get("class") for row in table.named("tr")].count("mute") == 1
 
@@ -114,19 +114,13 @@ def test_each_voters_choice_is_marked_once_and_not_by_colour_alone() -> None:
     assert "a voter\N{RIGHT SINGLE QUOTATION MARK}s choice" in charts.vote_table(recognition(), "x")
 
 
-def test_the_votes_are_also_told_as_sentences() -> None:
-    text = Elements(charts.vote_sentence(recognition().counted)).text
-    assert "wedge: hu, aspect ratio." in text
-    assert "circle: solidity." in text
-
-
 def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
     plain = recognition()
     distances = plain.distances.copy()
     distances[:, 2] = np.inf
     uncomparable = replace(plain, distances=distances)
     rows = Elements(charts.vote_table(uncomparable, None)).rows
-    assert [row[-1] for row in rows] == ["line", *["\N{INFINITY}"] * 3, "0"]
+    assert [row[-1] for row in rows] == ["line", *["\N{INFINITY}"] * 3, "0 %"]
 
 
 def test_a_large_language_shows_its_nearest_gestures_and_counts_the_rest() -> None:
@@ -151,7 +145,6 @@ def test_captions_hints_and_legends_are_escaped() -> None:
         charts.hint(MARKUP, MARKUP),
         charts.image_row([(MARKUP, np.zeros((4, 4), np.uint8))]),
         charts.line_chart(MARKUP, moments, [charts.Curve(MARKUP, moments, "red")]),
-        charts.vote_sentence({MARKUP: MARKUP}),
     ):
         elements = Elements(html)
         assert MARKUP in elements.text

@@ -43,7 +43,7 @@ def test_time_runs_away_from_the_viewer_at_an_even_pace() -> None:
     assert cube.depth[0] == 0.0
     assert cube.back == pytest.approx(2.5 * DEPTH_PER_SECOND, rel=1e-5)
     np.testing.assert_allclose(np.diff(cube.depth), cube.back / 10, rtol=1e-4)
-    assert cube.at_time(1.25) == pytest.approx(cube.back / 2)
+    assert cube.depth_at(1.25) == pytest.approx(cube.back / 2)
 
 
 @given(st.floats(0.05, 900))
@@ -96,7 +96,7 @@ def test_landmarks_beside_the_video_are_guesses_and_not_drawn() -> None:
     inside = CubeGeometry.from_poses(poses)
     assert len(beside.joints(beside.points[0])) == len(inside.joints(inside.points[0])) - 1
     assert len(beside.bones(beside.points[0])) == len(inside.bones(inside.points[0])) - 2
-    assert len(beside.quiet_trails(())) < len(inside.quiet_trails(()))
+    assert len(beside.other_trails(())) < len(inside.other_trails(()))
 
 
 def test_a_gap_in_a_landmarks_path_is_a_gap_in_its_trail() -> None:
@@ -109,9 +109,9 @@ def test_a_gap_in_a_landmarks_path_is_a_gap_in_its_trail() -> None:
     np.testing.assert_array_equal(np.flatnonzero(~find_complete(cube.trail("right_wrist"))), [2, 3])
 
 
-def test_quiet_trails_leave_out_what_is_salient() -> None:
+def test_other_trails_leave_out_what_is_salient() -> None:
     cube = CubeGeometry.from_poses(recording_of("circle").poses)
     frames = len(cube.depth)
-    everything = cube.quiet_trails(())
+    everything = cube.other_trails(())
     assert len(everything) == 6 * (frames - 1)
-    assert len(cube.quiet_trails(("right_wrist",))) == 5 * (frames - 1)
+    assert len(cube.other_trails(("right_wrist",))) == 5 * (frames - 1)

@@ -35,11 +35,12 @@ def shown(tmp_path: Path) -> Range:
 
 def wall_behind(shown: Range) -> Wall:
     drawing = draw(Trajectory.from_poses(shown.poses).select(SALIENT))
-    return Wall.behind(CubeGeometry.from_poses(shown.poses), shown.poses, SALIENT, drawing)
+    return Wall.from_drawing(CubeGeometry.from_poses(shown.poses), shown.poses, SALIENT, drawing)
 
 
 def test_the_parts_of_the_scene_follow_the_frame(server: viser.ViserServer, shown: Range) -> None:
     scene = SpaceTimeCube(server, DARK)
+    scene.set_depth(1.0)
     cube = CubeGeometry.from_poses(shown.poses)
     scene.show(cube, SALIENT, wall_behind(shown), shown.poses, 0)
     image = np.full((12, 16, 3), 200, np.uint8)
@@ -62,6 +63,7 @@ def test_outside_the_range_the_plane_stands_at_its_ends(
     view = view_in(tmp_path)
     shown = Range.of(view)
     scene = SpaceTimeCube(server, DARK)
+    scene.set_depth(1.0)
     cube = CubeGeometry.from_poses(shown.poses)
     scene.show(cube, SALIENT, None, view.recording.poses, shown.first)
     video = server.scene.get_handle_by_name("/video")
@@ -80,6 +82,7 @@ def test_another_recording_leaves_nothing_of_the_last_one(
     server: viser.ViserServer, shown: Range
 ) -> None:
     scene = SpaceTimeCube(server, DARK)
+    scene.set_depth(1.0)
     cube = CubeGeometry.from_poses(shown.poses)
     scene.show(cube, SALIENT, wall_behind(shown), shown.poses, 0)
     scene.show(cube, ("nose",), None, shown.poses, 0)
@@ -96,3 +99,33 @@ def test_text_has_ink_and_nothing_around_it() -> None:
     border = np.concatenate([image[0, :, 3], image[-1, :, 3], image[:, 0, 3], image[:, -1, 3]])
     assert not border.any()
     assert image[..., 3].max() == 255
+
+
+def test_flat_everything_lies_before_the_picture_and_the_cube_is_hidden(
+    server: viser.ViserServer, shown: Range
+) -> None:
+    scene = SpaceTimeCube(server, DARK)
+    cube = CubeGeometry.from_poses(shown.poses)
+    scene.show(cube, SALIENT, wall_behind(shown), shown.poses, 0)
+    scene.seek(10, np.full((12, 16, 3), 200, np.uint8))
+    handles = {
+        name: server.scene.get_handle_by_name(name)
+        for name in ("/video", "/trails/right_wrist/past", "/trails/right_wrist/ahead")
+    }
+    video, past, ahead = handles.values()
+    assert isinstance(video, viser.ImageHandle)
+    assert isinstance(past, viser.LineSegmentsHandle)
+    assert isinstance(ahead, viser.LineSegmentsHandle)
+    assert video.position[2] == 0
+    for trail in (past, ahead):
+        assert (trail.points[..., 2] < 0).all()
+        assert np.ptp(trail.points[..., 2]) < 1e-6
+    for name in ("/cube/edges", "/wall/image", "/trails/others"):
+        part = server.scene.get_handle_by_name(name)
+        assert part is not None
+        assert not part.visible
+    scene.set_depth(1.0)
+    assert np.ptp(ahead.points[..., 2]) == pytest.approx(cube.back, rel=0.1)
+    edges = server.scene.get_handle_by_name("/cube/edges")
+    assert edges is not None
+    assert edges.visible

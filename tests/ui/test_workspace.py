@@ -11,9 +11,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import viser
 
 from app.recognition import PoseError
-from app.ui.workspace import Range, Workspace, compared_images, first_look
+from app.ui.camera import CUBE, FLAT
+from app.ui.workspace import Range, Workspace, compared_images, initial_frame
 from tests.api.recordings import recording_of
 from tests.api.running import until
 from tests.recognition.damaged_clips import write_clip
@@ -61,8 +63,8 @@ def test_showing_a_view_stands_where_past_and_future_are_seen(
     shown = Range.of(view)
     frames = len(shown.poses)
     assert workspace.view == view
-    assert workspace.playback.frame == shown.first + first_look(frames)
-    assert 0 < first_look(frames) < frames - 1
+    assert workspace.playback.frame == shown.first + initial_frame(frames)
+    assert 0 < initial_frame(frames) < frames - 1
     assert workspace.playback.position.frames == len(view.recording.poses)
 
 
@@ -174,3 +176,20 @@ def test_views_in_quick_succession_end_with_the_last(workspace: Workspace, tmp_p
     assert workspace.view.end == 2.0
     workspace.playback.seek(1)
     until(lambda: workspace.playback.frame >= 1)
+
+
+def test_the_first_view_is_flat_and_the_cube_is_there_and_back(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    workspace.show(view_in(tmp_path))
+    initial = workspace._server.initial_camera
+    video = workspace._server.scene.get_handle_by_name("/video")
+    assert isinstance(video, viser.ImageHandle)
+    workspace.playback.seek(workspace.playback.frame + 10)
+    assert tuple(initial.look_at) == FLAT.target
+    workspace.set_flat(False)
+    assert tuple(initial.position) == pytest.approx(CUBE.position)
+    until(lambda: video.position[2] > 0)
+    workspace.set_flat(True)
+    assert tuple(initial.position) == pytest.approx(FLAT.position)
+    assert video.position[2] == 0

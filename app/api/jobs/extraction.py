@@ -12,6 +12,7 @@ from app.api.extraction.messages import Failed, Finished, Progressed
 from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
 from app.api.jobs.persistence import persist
+from app.api.jobs.time_left import TimeLeft
 from app.clip_sources import ReadOptions, source_named
 from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound
 
@@ -62,13 +63,12 @@ class ExtractionJob:
             options_of(clip),
             files_of(self._clips, clip.id),
         )
-        started: float | None = None
+        left = TimeLeft()
         end: Finished | Failed | None = None
         async with aclosing(messages) as steps:
             async for message in steps:
                 if isinstance(message, Progressed):
-                    started = started or time.monotonic()
-                    report(_with_eta(message, time.monotonic() - started))
+                    report(_progress(message, left))
                 else:
                     end = message
         # After the worker has ended: storing may have to wait for the database.
@@ -104,8 +104,7 @@ def files_of(clips: ClipStore, clip_id: str) -> ClipFiles:
     )
 
 
-def _with_eta(message: Progressed, elapsed: float) -> Progress:
-    """Add the time left, from the rate so far; `elapsed` seconds since the first report."""
-    left = message.total - message.done
-    eta = round(elapsed / message.done * left, 1) if message.done and elapsed > 0 else None
+def _progress(message: Progressed, left: TimeLeft) -> Progress:
+    """Add the time left, from the rate so far."""
+    eta = left.estimate(message.done, message.total, time.monotonic())
     return Progress(message.stage, message.done, message.total, eta, message.time, message.pose)

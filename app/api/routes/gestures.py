@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Query, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
@@ -28,6 +29,8 @@ from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.features.png import encode_png
+from app.ui.charts import png
+from app.ui.direction_marks import mark_gesture
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
 
@@ -117,11 +120,16 @@ def remove_gesture(
 @router.get("/image", response_class=Response, responses=_IMAGE)
 @router.get("/{label:path}/image", response_class=Response, responses=_IMAGE)
 def get_gesture_image(
-    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
+    language_id: str,
+    label: str,
+    studio: CurrentStudio,
+    revision: Revision = None,
+    marks: Annotated[bool, Query(description="With start dot and arrow, for people")] = False,
 ) -> Response:
     """Send a gesture's trajectory image."""
     language = studio.language(studio.languages.get(language_id, revision))
-    image = encode_png(gesture_in(language, label).image)
+    gesture = gesture_in(language, label)
+    image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
     # A revision never changes, so its pictures can be kept.
     headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
     return Response(image, media_type="image/png", headers=headers)

@@ -1,19 +1,42 @@
-"""Route that exports a recognition as one HTML file, which needs no server."""
+"""Routes of what a recognition compared: its images, and an HTML file that needs no server."""
 
 from __future__ import annotations
 
 from urllib.parse import quote
 
 from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.services.stored_recognitions import load_recognition, load_situation
 from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.views import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
+from app.ui.charts import data_url
 from app.ui.recognition_page import analysis_page
+from app.ui.workspace import Range, compared_images
 
 router = APIRouter(prefix="/recognitions", tags=["recognitions"])
+
+
+class ComparedImage(BaseModel):
+    """A trajectory image that a recognition compared."""
+
+    caption: str
+    image: str = Field(description="A data URI of a PNG")
+
+
+@router.get("/{recognition_id}/images", responses=problem_responses(404, 409))
+def get_compared_images(
+    recognition_id: str, studio: CurrentStudio, response: Response
+) -> list[ComparedImage]:
+    """Return the trajectory images of the take, the expected and the nearest gesture."""
+    record = studio.recognitions.get(recognition_id)
+    view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
+    images = compared_images(view, load_recognition(record), Range.of(view).poses)
+    # A recognition never changes, nor does the revision that it was made with.
+    response.headers["Cache-Control"] = "private, max-age=86400"
+    return [ComparedImage(caption=caption, image=data_url(image)) for caption, image in images]
 
 
 @router.get(

@@ -13,9 +13,10 @@ from app.api.http.schemas.recognitions import ExplanationView, RecognitionReques
 from app.api.http.schemas.values import Label
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_views import shows_pictures
+from app.api.services.explanation_notes import write_notes
 from app.api.services.stored_recognitions import (
     load_situation,
-    tune_recognizer,
+    make_recognizer,
     view_recognition,
 )
 from app.api.services.studio import CurrentStudio
@@ -39,10 +40,12 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
     profile = request.profile or language.profile
     require_landmarks_of(studio.clips.get(request.clip_id).clip, recording.poses, language)
     demonstration = demonstration_in(recording, request.start, request.end)
-    recognizer = tune_recognizer(studio.recognizer(state, profile), request.tuning)
+    recognizer = make_recognizer(studio, state, profile, request.tuning, request.trial)
     result = recognizer.recognize(demonstration.poses).to_dict()
     if request.tuning is not None:
         result["tuning"] = request.tuning.model_dump()
+    if request.trial is not None:
+        result["trial"] = request.trial.model_dump(exclude_unset=True)
     record = studio.recognitions.add(
         RecognitionRecord(
             clip_id=request.clip_id,
@@ -97,7 +100,9 @@ def explain_recognition(
     situation = load_situation(record, studio)
     # A recognition never changes, nor does the revision that it was made with.
     response.headers["Cache-Control"] = "private, max-age=86400"
-    return ExplanationView(id=record.id, **explain(situation, meant).to_dict())
+    explanation = explain(situation, meant)
+    notes = write_notes(studio, record, situation.language, meant, explanation.nearest)
+    return ExplanationView(id=record.id, **explanation.to_dict(), notes=notes)
 
 
 def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:

@@ -7,6 +7,7 @@ import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.clip_ranges import Demonstration
+from app.api.services.salute_ranges import count_salutes_in_clip
 from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
@@ -51,12 +52,14 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
     }
     known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
     return {
-        label: [
-            SourceView(**known[key].model_dump(exclude={"trajectory"})) if key in known else None
-            for key in row
-        ]
+        label: [_view(studio, known[key]) if key in known else None for key in row]
         for label, row in keys.items()
     }
+
+
+def _view(studio: Studio, source: DemonstrationSource) -> SourceView:
+    salutes = count_salutes_in_clip(studio, source.clip_id, source.start, source.end)
+    return SourceView(**source.model_dump(exclude={"trajectory"}), salutes=salutes)
 
 
 def _key(gesture: Gesture) -> str | None:

@@ -28,6 +28,10 @@ class WorkspaceOptions(BaseModel):
 
     dark: bool = True
     """Dark colours rather than light ones."""
+    flat: bool = True
+    """The picture square to the camera rather than the space-time cube."""
+    animate: bool = True
+    """Move between the two, for people who do not mind moving pictures."""
 
 
 class OpenedWorkspace(BaseModel):
@@ -64,8 +68,12 @@ def find_workspace(workspace_id: WorkspaceId, workspaces: CurrentWorkspaces) -> 
 def change_workspace(
     workspace_id: WorkspaceId, options: WorkspaceOptions, workspaces: CurrentWorkspaces
 ) -> Response:
-    """Change how a workspace looks."""
-    find(workspaces, workspace_id).set_dark(options.dark)
+    """Change how a workspace looks; what is left out stays."""
+    workspace = find(workspaces, workspace_id)
+    if "dark" in options.model_fields_set:
+        workspace.set_dark(options.dark)
+    if "flat" in options.model_fields_set:
+        workspace.set_flat(options.flat, animate=options.animate)
     return Response(status_code=204)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.services.stored_recognitions import load_recognition
+from app.api.services.stored_recognitions import load_language, load_recognition
 from app.api.services.studio import Studio
 from app.recognition import Language
 from app.store import RecognitionRecord
@@ -61,7 +61,7 @@ def _language(
     studio: Studio, request: ViewRequest, record: RecognitionRecord | None
 ) -> Language | None:
     if record is not None:
-        return studio.language(studio.languages.get(record.language_id, record.revision))
+        return load_language(record, studio)
     if request.language_id:
         return studio.language(studio.languages.get(request.language_id))
     return None

@@ -94,6 +94,19 @@ class Recognition:
         return {voter: label for voter, label in self.votes.items() if self.weights[voter] > 0}
 
     @property
+    def support(self) -> dict[str, float]:
+        """By label the weight of the voters that chose it, largest first; the sum is 1.
+
+        Voters that cannot compare this take have no vote, and their weight does not count.
+        """
+        totals: dict[str, float] = {}
+        for voter, label in self.counted.items():
+            totals[label] = totals.get(label, 0.0) + self.weights[voter]
+        whole = sum(totals.values())
+        ordered = sorted(totals.items(), key=lambda each: -each[1])
+        return {label: total / whole for label, total in ordered}
+
+    @property
     def margin(self) -> float:
         """How much nearer `nearest` is than every other gesture, in the unit of `scores`.
 

@@ -36,6 +36,8 @@ class Analysis:
         Why the poses are too poor to recognise; None: they are not.
     votes
         By label the number of voters with weight that voted for it.
+    support
+        By label the total weight of these voters.
     verdicts
         The breakdown by voter, those most against the expected gesture first.
     turned
@@ -62,6 +64,7 @@ class Analysis:
     novelty: float
     fault: str | None
     votes: Mapping[str, int]
+    support: Mapping[str, float]
     verdicts: tuple[VoterBreakdown, ...]
     turned: float
     alignments: tuple[Alignment, ...]

@@ -56,6 +56,7 @@ class Explanation(Analysis):
             "novelty": _finite(self.novelty),
             "fault": self.fault,
             "votes": dict(self.votes),
+            "support": dict(self.support),
             "verdicts": [verdict.to_dict() for verdict in self.verdicts],
             "turned": _finite(self.turned),
             "alignments": [alignment.to_dict() for alignment in self.alignments],
@@ -110,6 +111,7 @@ def explain(
         novelty=float(table.novelty[at]),
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
+        support=result.support,
         verdicts=break_down_votes(
             table, result, context.language.gestures[at].thresholds, at, other
         ),

@@ -8,12 +8,6 @@ from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.differences import Difference
 from app.recognition.text.wording import humanize_all, join_words
 
-NUMBERS = (
-    "none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
-    "eleven", "twelve",
-)  # fmt: skip
-"""Numbers that are spelt out in sentences."""
-
 MOST_VOTERS_NAMED = 3
 """Voters named in a sentence; the table has all."""
 
@@ -61,12 +55,7 @@ def _outcome(analysis: Analysis) -> str:
 
 
 def _voters(analysis: Analysis, label: str) -> str:
-    count, total = analysis.votes.get(label, 0), sum(analysis.votes.values())
-    return f"{_number(count)} of {_number(total)} voters".capitalize()
-
-
-def _number(count: int) -> str:
-    return NUMBERS[count] if count < len(NUMBERS) else str(count)
+    return f"Voters with {100 * analysis.support.get(label, 0.0):.0f} % of the weight"
 
 
 def _reason(analysis: Analysis) -> str:
@@ -112,8 +101,18 @@ def _cause(analysis: Analysis) -> Difference | None:
 
 
 def _remedy(analysis: Analysis) -> str:
-    found = analysis.counterfactuals.found
+    # A take is recognised by its own demonstration by construction, which is no remedy to name.
+    found = [
+        each
+        for each in analysis.counterfactuals.found
+        if not each.change.kind.endswith("demonstration")
+        and not (each.effect is not None and each.effect.lost)
+    ]
     if found:
         return f"It would have been read as {analysis.expected!r} {found[0].change.words}."
     tried = analysis.counterfactuals.tried
-    return f"None of {tried} changes tried would have turned it right." if tried else ""
+    return (
+        ""
+        if analysis.counterfactuals.found or not tried
+        else (f"None of {tried} changes tried would have turned it right.")
+    )

@@ -5,7 +5,8 @@ import { byId, h, iconButton, reconcile } from "../core/dom.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
-import { BUSY, needsTopic, reloadClips, select, statusText } from "./clip-store.js";
+import { BUSY } from "./busy.js";
+import { needsTopic, reloadClips, select, statusText } from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
 
 /** @import { Clip, Job, State } from "../core/types.d.ts" */
@@ -63,6 +64,16 @@ function buttons(clip) {
 }
 
 /**
+ * Whether a clip has a picture, which its job makes with the first frames.
+ *
+ * @param {Clip} clip
+ */
+const hasPoster = (clip) =>
+  clip.status === "running"
+    ? Boolean(state.jobs.get(clip.job_id)?.done)
+    : clip.status !== "queued" && clip.status !== "cancelled";
+
+/**
  * The clip's picture; once made it is kept, since progress redraws the rest often.
  *
  * @param {Clip} clip
@@ -71,6 +82,7 @@ function buttons(clip) {
 function posterOf(clip, element) {
   const known = element?.querySelector(".poster:not(.blank)");
   if (known) return known;
+  if (!hasPoster(clip)) return h("div", { className: "poster blank" });
   const poster = h("img", {
     className: "poster",
     src: api.clips.poster(clip.id),
@@ -102,7 +114,8 @@ function advance(element, clip, job) {
     clip,
     job,
   );
-  Object.assign(/** @type {HTMLElement} */ (element.querySelector("progress")), lengthOf(job));
+  const bar = element.querySelector("progress");
+  if (bar) Object.assign(bar, lengthOf(job));
 }
 
 /**
@@ -131,7 +144,7 @@ function draw(clip, element) {
   const signature = JSON.stringify([clip, job, chosen]);
   if (element?.dataset.signature === signature) return element;
   // Progress comes ten times a second: a button must not be replaced under the pointer.
-  const shape = JSON.stringify([{ ...clip, status: busy }, chosen]);
+  const shape = JSON.stringify([clip, chosen, hasPoster(clip)]);
   if (busy && element?.dataset.shape === shape) {
     element.dataset.signature = signature;
     advance(element, clip, job);
@@ -159,7 +172,9 @@ function draw(clip, element) {
         { className: "clip-text" },
         h("b", {}, clip.name),
         h("span", { className: "stage-text" }, statusText(clip, job)),
-        busy ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...lengthOf(job) }) : null,
+        clip.status === "running"
+          ? h("progress", { "aria-label": `Poses of ${clip.name}`, ...lengthOf(job) })
+          : null,
       ),
     ),
     h("div", { className: "clip-buttons" }, buttons(clip)),

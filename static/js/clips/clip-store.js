@@ -6,10 +6,11 @@ import { refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { registerUndo } from "../core/undo.js";
+import { placeInQueue } from "./batch-card.js";
+import { BUSY } from "./busy.js";
 
 /** @import { Clip, Job } from "../core/types.d.ts" */
 
-export const BUSY = new Set(["queued", "running"]);
 /** @type {Record<string, string>} */
 const STAGES = {
   queued: "Waiting in the queue",
@@ -38,11 +39,12 @@ export const reloadClip = (id) =>
   });
 
 /**
- * Show another clip.
+ * Show another clip; the clip on display keeps its take, range and recognition.
  *
  * @param {string | null} id
  */
 export function select(id) {
+  if (id === state.clip) return;
   update({ clip: id, take: null, start: null, end: null, frame: null, recognition: null });
 }
 
@@ -69,6 +71,7 @@ export const needsTopic = (clip) => clip.error_code === "topic_needed";
  * @param {Job} [job]
  */
 function progressText(clip, job) {
+  if (clip.status === "queued") return placeInQueue(state.clips, clip);
   const stage = STAGES[job?.stage ?? ""] ?? STAGES[clip.status] ?? "Working";
   if (!job?.total || job.stage !== "poses") return stage;
   const left = job.eta_s === null ? "" : `, ${timeLeft(job.eta_s)}`;

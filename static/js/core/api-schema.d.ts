@@ -110,6 +110,19 @@ export interface components {
             created: string;
         };
         /**
+         * ComparedImage
+         * @description A trajectory image that a recognition compared.
+         */
+        ComparedImage: {
+            /** Caption */
+            caption: string;
+            /**
+             * Image
+             * @description A data URI of a PNG
+             */
+            image: string;
+        };
+        /**
          * ContrastView
          * @description Two gestures of a language, and in what they differ.
          */
@@ -276,6 +289,11 @@ export interface components {
             }[];
             /** Tried */
             tried: number;
+            /**
+             * Notes
+             * @description What is wrong with the demonstrations or the range, in sentences
+             */
+            notes?: string[];
         } & {
             [key: string]: unknown;
         };
@@ -446,6 +464,15 @@ export interface components {
             command?: string | {
                 [key: string]: unknown;
             } | null;
+        };
+        /**
+         * GestureTrial
+         * @description A changed gesture to recognise with, on a copy of the language.
+         */
+        GestureTrial: {
+            /** Label */
+            label: string;
+            change: components["schemas"]["GestureChange"];
         };
         /**
          * GestureView
@@ -1140,6 +1167,8 @@ export interface components {
             tuning?: components["schemas"]["TuningEntry"] | null;
             /** Expected */
             expected?: string | null;
+            /** @description Recognise with this change; the language is not edited */
+            trial?: components["schemas"]["GestureTrial"] | null;
         };
         /**
          * RecognitionView
@@ -1162,6 +1191,8 @@ export interface components {
             profile: string;
             /** @description Null: as the language says */
             tuning?: components["schemas"]["TuningEntry"] | null;
+            /** @description The change it was recognised with; null: none */
+            trial?: components["schemas"]["GestureTrial"] | null;
             /** Expected */
             expected: string | null;
             /**
@@ -1374,6 +1405,12 @@ export interface components {
             end: number;
             /** Keep Transit */
             keep_transit: boolean;
+            /**
+             * Salutes
+             * @description Vulcan salutes in the demonstration, which should have none
+             * @default 0
+             */
+            salutes: number;
         };
         /**
          * SwitchView
@@ -1541,6 +1578,16 @@ export interface components {
              * @default true
              */
             dark: boolean;
+            /**
+             * Flat
+             * @default true
+             */
+            flat: boolean;
+            /**
+             * Animate
+             * @default true
+             */
+            animate: boolean;
         };
         /**
          * Fault

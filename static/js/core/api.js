@@ -180,7 +180,7 @@ export const languages = {
     ),
   /** @type {(language: string, label: string, revision: number) => string} */
   image: (language, label, revision) =>
-    `${BASE}${gestureAt({ id: language }, label, "/image")}&revision=${revision}`,
+    `${BASE}${gestureAt({ id: language }, label, "/image")}&revision=${revision}&marks=true`,
   /** @type {(language: string) => Promise<Language>} */
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
   /** @type {(language: { id: string, revision?: number }) => Promise<any>} */
@@ -234,6 +234,8 @@ export const recognitions = {
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
   /** @type {(recognition: string) => string} */
   analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
+  /** @type {(recognition: string) => Promise<{ caption: string, image: string }[]>} */
+  images: (recognition) => request("GET", `/recognitions/${id(recognition)}/images`),
   /** @type {(recognition: string) => Promise<Explanation>} */
   explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
 };
@@ -243,8 +245,8 @@ export const workspaces = {
   open: (dark) => request("POST", "/workspaces", { body: { dark } }),
   /** @type {(workspace: string) => Promise<Workspace>} */
   find: (workspace) => request("GET", `/workspaces/${id(workspace)}`),
-  /** @type {(workspace: string, dark: boolean) => Promise<any>} */
-  change: (workspace, dark) => request("PATCH", `/workspaces/${id(workspace)}`, { body: { dark } }),
+  /** @type {(workspace: string, look: { dark?: boolean, flat?: boolean, animate?: boolean }) => Promise<any>} */
+  change: (workspace, look) => request("PATCH", `/workspaces/${id(workspace)}`, { body: look }),
   /** @type {(workspace: string, view: object) => Promise<any>} */
   show: (workspace, view) => request("PUT", `/workspaces/${id(workspace)}/view`, { body: view }),
 };

@@ -31,6 +31,16 @@ export function duration(seconds) {
 }
 
 /**
+ * A duration that is an estimate of many parts: in whole minutes, or in tens of seconds.
+ *
+ * @param {number} seconds
+ */
+export const about = (seconds) =>
+  seconds < 55
+    ? `about ${Math.max(10, 10 * Math.round(seconds / 10))} s`
+    : `about ${Math.round(seconds / 60)} min`;
+
+/**
  * @param {number} seconds
  * @returns {string}
  */
@@ -81,3 +91,11 @@ export const readable = (identifier) => identifier.replaceAll("_", " ");
  * @param {string} noun
  */
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+
+/**
+ * A share in [0, 1] as a percentage; "<1 %" is not nothing.
+ *
+ * @param {number} share
+ */
+export const percent = (share) =>
+  share > 0 && share < 0.005 ? "<1 %" : `${(100 * share).toFixed(0)} %`;

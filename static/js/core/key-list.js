@@ -40,7 +40,7 @@ function drawKeys(list) {
  *
  * @param {KeyListActions} actions
  */
-function showKeys({ loadAll, startTour }) {
+function showKeys({ loadAll, startTour, showExample }) {
   const dialog = byId("dialog");
   const list = h("div", { className: "key-groups" });
   drawKeys(list);
@@ -64,6 +64,17 @@ function showKeys({ loadAll, startTour }) {
             },
           },
           "Tour",
+        ),
+        h(
+          "button",
+          {
+            type: "button",
+            onclick: () => {
+              dialog.close();
+              showExample();
+            },
+          },
+          "Example",
         ),
         h(
           "button",

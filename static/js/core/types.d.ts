@@ -101,11 +101,15 @@ export interface Recognition {
   end: number;
   profile: Language["profile"];
   tuning: Tuning | null;
+  trial: Schemas["GestureTrial"] | null;
   expected: string | null;
   created: string;
   label: string | null;
   nearest: string | null;
   confidence: number;
+  voters: string[];
+  gestures: string[];
+  distances: (number | null)[][];
   votes: Record<string, string | null>;
   weights: Record<string, number>;
   fault: string | null;
@@ -173,6 +177,16 @@ export interface HealthState {
   away?: boolean;
 }
 
+/** The clips whose poses are found one after the other, and how many frames are done. */
+export interface Batch {
+  members: string[];
+  /** The first frames that were reported, and when, in milliseconds. */
+  began: { frames: number; at: number } | null;
+  frames: number;
+  left: number;
+  at: number;
+}
+
 /** A file on its way to the server. */
 export interface Upload {
   key: string;
@@ -201,11 +215,10 @@ export interface Position {
   picture: number | null;
 }
 
-/** A counterfactual that is applied and not kept yet. */
+/** A counterfactual that was recognised with, on a copy of the language, and is not kept yet. */
 export interface Trial {
   change: Counterfactual["change"];
   base: Partial<State>;
-  edited: boolean;
   result: string;
 }
 
@@ -307,6 +320,7 @@ export interface Binding {
 export interface KeyListActions {
   loadAll: () => Promise<unknown>;
   startTour: () => void;
+  showExample: () => void;
 }
 
 /** A command of a menu, or a file to download. */

@@ -5,11 +5,12 @@ import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { nearestFrame } from "../core/frame-times.js";
+import { salutesIn, saluteWarning } from "../core/salutes.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 import { change, draft, saved } from "./gesture-draft.js";
-import { figure } from "./pose-picture.js";
+import { figure } from "../studio/pose-picture.js";
 import { chosenIn } from "./salient-keypoints.js";
 
 const BY_HAND = "by hand";
@@ -72,6 +73,7 @@ export function take({ language, gesture, drawn, pick }) {
     ),
   );
   const note = h("p", { className: "dim" });
+  const salutes = h("p", { className: "salute-warning", role: "alert", hidden: true });
   const played = h(
     "div",
     { className: "scrub" },
@@ -228,6 +230,11 @@ export function take({ language, gesture, drawn, pick }) {
     range.style.left = `${share(frames[0])}%`;
     range.style.width = `${share(frames[1]) - share(frames[0])}%`;
     const own = takeOf(draft().clip, source.takes);
+    const warning = saluteWarning(
+      own ? [] : salutesIn(source.timeline, time[frames[0]], time[frames[1]]),
+    );
+    salutes.textContent = warning;
+    salutes.hidden = !warning;
     transit.disabled = !own;
     transit.checked = Boolean(own) && !draft().clip.keep_transit;
     transitText.textContent = own
@@ -305,6 +312,7 @@ export function take({ language, gesture, drawn, pick }) {
     picture.element,
     played,
     note,
+    salutes,
     trim,
   );
   return {

@@ -58,6 +58,14 @@ function subject() {
 const isThere = (where) =>
   Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
 
+/** The demonstration of a source as the API takes it. */
+const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
+  clip_id,
+  start,
+  end,
+  keep_transit,
+});
+
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
@@ -82,7 +90,7 @@ function valuesOf({ language, gesture }) {
     direction,
     tempo,
     mirror,
-    clip: isThere(source) ? source : null,
+    clip: isThere(source) ? demonstrationOf(source) : null,
   };
 }
 

@@ -6,9 +6,11 @@ import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
-import { csvOf, testedOf } from "./clip-test-results.js";
+import { csvOf, intervalOf, ratesOf, testedOf } from "./clip-test-results.js";
 import {
+  addLibraryClips,
   addTestClips,
+  candidates,
   correct,
   leaveOut,
   leaveWaiting,
@@ -20,6 +22,7 @@ import {
 } from "./clip-test.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
+import { rateText } from "./rates.js";
 
 const REFUSED = "refused";
 const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.
@@ -177,7 +180,7 @@ function takeRow(take, takes) {
   const place = placeOf(take, takes);
   return h(
     "tr",
-    { className: take.right ? "" : "wrong" },
+    { className: take.demonstration ? "demonstration" : take.right ? "" : "wrong" },
     h(
       "td",
       {},
@@ -206,6 +209,7 @@ function takeRow(take, takes) {
       ),
       h("span", {}, take.right ? "right: " : "wrong: "),
       h("b", {}, readAs(take)),
+      take.demonstration ? h("small", { className: "dim" }, ", a demonstration") : null,
       take.label === null ? h("small", { className: "dim" }, `, nearest ${take.nearest}`) : null,
     ),
     h("td", { className: "num" }, `${Math.round(100 * take.confidence)} %`),
@@ -236,7 +240,7 @@ function matrix(takes) {
     return {
       text: found.length ? `${found.length}${right ? " \u2713" : ""}` : "\u00b7",
       amount: found.length / meant.length,
-      className: right ? "diagonal" : found.length ? "over" : "",
+      className: right ? "diagonal" : found.length ? "wrong" : "",
       open: found.length ? open : null,
       label: `${plural(found.length, "take")} of ${rows[row]} read as ${columns[column]}`,
     };
@@ -256,6 +260,57 @@ function download(takes) {
   setTimeout(() => URL.revokeObjectURL(url), SAVED_BY);
 }
 
+/** The rates of the gestures, the lowest first. */
+const rates = (takes) =>
+  h(
+    "ul",
+    { className: "test-rates", "aria-label": "Rate of each gesture" },
+    ratesOf(takes).map(({ label, right, count, ...rate }) =>
+      h("li", {}, h("b", {}, label), ` ${right} of ${count}, ${rateText(rate)}`),
+    ),
+  );
+
+/** What is said of takes that count nothing. */
+const leftOutNote = (count) =>
+  count
+    ? h(
+        "p",
+        { className: "dim" },
+        `${plural(count, "take")} of the list ${count > 1 ? "are demonstrations" : "is a demonstration"} of the language and ${count > 1 ? "do" : "does"} not count.`,
+      )
+    : null;
+
+/** The clips of the library that can be tested, to be chosen. */
+function libraryChoice() {
+  const clips = candidates();
+  if (!clips.length) return null;
+  const boxes = clips.map(({ clip, expected }) => {
+    const box = h("input", { type: "checkbox", value: clip.id, checked: Boolean(expected) });
+    return { box, row: h("label", { className: "check" }, box, h("span", {}, clip.name)) };
+  });
+  const add = h(
+    "button",
+    {
+      type: "button",
+      className: "primary",
+      onclick: () =>
+        addLibraryClips(boxes.filter(({ box }) => box.checked).map(({ box }) => box.value)),
+    },
+    "Test the chosen clips",
+  );
+  return h(
+    "details",
+    { className: "library-choice" },
+    h("summary", {}, `Choose from the ${plural(clips.length, "clip")} of this studio`),
+    h(
+      "div",
+      { className: "library-boxes" },
+      boxes.map(({ row }) => row),
+    ),
+    add,
+  );
+}
+
 function summary(takes) {
   const right = takes.filter((take) => take.right).length;
   const old = takes.filter(({ revision }) => revision !== currentLanguage().revision).length;
@@ -273,7 +328,7 @@ function summary(takes) {
       "p",
       {},
       h("b", { className: "num" }, `${right} of ${takes.length}`),
-      " read as meant",
+      ` recognised as labelled, ${rateText(intervalOf(right, takes.length))}`,
       old ? h("span", { className: "dim" }, `, ${old} by an older revision of the language`) : null,
     ),
     h("span", { className: "spacer" }),
@@ -335,23 +390,38 @@ function list(takes, uploads) {
 /** Make the section, and keep it in step. */
 export function batchSection() {
   const content = h("div", { className: "test-content" });
+  const choice = h("div");
   const stages = () =>
     uploadsHere()
       .map(({ key, status }) => `${key} ${status}`)
       .join();
   let drawn = "";
+  let offered = "";
+  /** Offer the clips of the library; what is chosen among them stays while they are the same. */
+  const drawChoice = () => {
+    const now = candidates()
+      .map(({ clip }) => clip.id)
+      .join();
+    if (now === offered) return;
+    offered = now;
+    choice.replaceChildren(libraryChoice() ?? "");
+  };
   const draw = () => {
     /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
-    const takes = testedOf(state.tested, state.clips, state.gestures?.profile);
+    const { tested, clips, gestures } = state;
+    const takes = testedOf(tested, clips, gestures?.profile, gestures?.gestures);
+    const counted = takes.filter(({ demonstration }) => !demonstration);
+    drawChoice();
     const uploads = uploadsHere();
     const empty = !takes.length && !waitingClips().length && !uploads.length;
     content.replaceChildren(
       ...(empty || !state.gestures
         ? []
         : [
-            ...(takes.length ? [summary(takes), matrix(takes)] : []),
-            ...list(takes, uploads).filter((each) => each !== null),
-          ]),
+            ...(counted.length ? [summary(counted), matrix(counted), rates(counted)] : []),
+            leftOutNote(takes.length - counted.length),
+            ...list(takes, uploads),
+          ].filter((each) => each !== null)),
     );
     drawn = stages();
     advance(content);
@@ -371,7 +441,7 @@ export function batchSection() {
     h(
       "div",
       { className: "section-head" },
-      h("h2", { id: "test-title" }, "Test with clips"),
+      h("h2", { id: "test-title", tabIndex: -1 }, "Test with clips"),
       h(
         "p",
         { className: "dim" },
@@ -379,6 +449,7 @@ export function batchSection() {
       ),
     ),
     drop(),
+    choice,
     content,
   );
 }

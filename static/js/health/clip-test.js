@@ -4,7 +4,7 @@
 // same for everybody, survives reloads, and is repeated whenever the language has changed.
 
 import { labelInName } from "../clips/clip-label.js";
-import { BUSY } from "../clips/clip-store.js";
+import { BUSY } from "../clips/busy.js";
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
@@ -55,6 +55,25 @@ export function addTestClips(files) {
   addFiles(files, (id) =>
     setPending([...state.pending, { clip: id, language: state.language, expected: null }]),
   );
+}
+
+/** Take clips of the library into the test. */
+export const addLibraryClips = (ids) =>
+  setPending([
+    ...state.pending,
+    ...ids.map((clip) => ({ clip, language: state.language, expected: null })),
+  ]);
+
+/** The clips of the library that are not in the test, with the label that their name suggests. */
+export function candidates() {
+  const taken = new Set([
+    ...(state.tested ?? []).filter(({ expected }) => expected !== null).map((each) => each.clip_id),
+    ...state.pending.filter(({ language }) => language === state.language).map(({ clip }) => clip),
+    ...(state.gestures?.gestures ?? []).map(({ source }) => source?.clip_id),
+  ]);
+  return state.clips
+    .filter(({ id, status }) => status === "done" && !taken.has(id))
+    .map((clip) => ({ clip, expected: labelInName(clip.name, state.gestures?.labels ?? []) }));
 }
 
 /** The expected label of a pending clip: as chosen, or as its name suggests. */

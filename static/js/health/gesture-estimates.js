@@ -3,12 +3,12 @@
 import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
 import { editLink } from "./finding-links.js";
-import { percent, rateText } from "./rates.js";
+import { intervalText, percent, rateText } from "./rates.js";
 
-/** A rate with its bar and interval; above the threshold it is also marked by a sign. */
-function rate(estimate, bar) {
+/** A rate with its interval; above the threshold it is also marked by a sign. */
+function rate(estimate, threshold) {
   if (!estimate) return h("td", { className: "dim" }, "not known");
-  const over = bar !== null && estimate.rate > bar;
+  const over = threshold !== null && estimate.rate > threshold;
   return h(
     "td",
     { className: `rate${over ? " over" : ""}`, title: rateText(estimate) },
@@ -16,14 +16,14 @@ function rate(estimate, bar) {
       "span",
       { className: "num" },
       `${percent(estimate.rate)} %`,
-      over ? h("b", { title: `above the threshold of ${percent(bar)} %` }, " !") : null,
+      over ? h("b", { title: `above the threshold of ${percent(threshold)} %` }, " !") : null,
     ),
     h("span", {
       className: "rate-bar",
       "aria-hidden": "true",
       style: { "--share": `${100 * estimate.rate}%` },
     }),
-    h("small", { className: "dim num" }, `${percent(estimate.low)} to ${percent(estimate.high)}`),
+    h("small", { className: "dim num" }, intervalText(estimate)),
   );
 }
 
@@ -42,7 +42,7 @@ function seen(landmarks) {
   );
 }
 
-function row(gesture, image, bar) {
+function row(gesture, image, thresholds) {
   const {
     label,
     seconds,
@@ -74,7 +74,7 @@ function row(gesture, image, bar) {
         ),
       ),
     ),
-    rate(missed, bar.missed),
+    rate(missed, thresholds.missed),
     rate(refused, null),
     rate(alarms, null),
     h(
@@ -88,7 +88,7 @@ function row(gesture, image, bar) {
 }
 
 /** Draw the table of all gestures. */
-export function estimateTable({ gestures, bar }, imageOf) {
+export function estimateTable({ gestures, bar: thresholds }, imageOf) {
   const heads = [
     "Gesture",
     "Missed",
@@ -117,7 +117,7 @@ export function estimateTable({ gestures, bar }, imageOf) {
       h(
         "tbody",
         {},
-        gestures.map((gesture) => row(gesture, imageOf(gesture.label), bar)),
+        gestures.map((gesture) => row(gesture, imageOf(gesture.label), thresholds)),
       ),
     ),
   );

@@ -158,7 +158,7 @@ function drawReport(report) {
   const worst = report.pairs.filter(
     ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
   );
-  const bar = percent(report.bar.confusion);
+  const threshold = percent(report.bar.confusion);
   return [
     warningsList(report.warnings),
     alone
@@ -177,12 +177,12 @@ function drawReport(report) {
           { className: "health-columns" },
           section(
             "Estimated confusions",
-            `Of a hundred simulated trials of the gesture at the left, how many are nearer to the one above. Framed: above the threshold of ${bar} %. Choose a cell to see the two side by side.`,
+            `Per cent of simulated trials of the gesture on the left that are nearest to the gesture above. Framed: above the threshold of ${threshold} %. Choose a cell to compare the two.`,
             matrix(report),
           ),
           section(
             "Map",
-            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${bar} %.` : ""}`,
+            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${threshold} %.` : ""}`,
             languageMap({
               points: report.map,
               worst,
@@ -225,6 +225,13 @@ function nothing() {
 const reportOf = ({ gestures, health }) =>
   health && health.id === gestures?.id ? health.report : null;
 
+/** Go to the test with clips, which stands below the report. */
+function showTest() {
+  const title = document.getElementById("test-title");
+  title?.scrollIntoView({ block: "start" });
+  title?.focus({ preventScroll: true });
+}
+
 function overview() {
   const name = h("h1");
   const about = h("small", { className: "dim" });
@@ -262,7 +269,13 @@ function overview() {
   return h(
     "div",
     { className: "health-page" },
-    h("div", { className: "health-head" }, h("div", {}, name, about), says),
+    h(
+      "div",
+      { className: "health-head" },
+      h("div", {}, name, about),
+      says,
+      h("button", { type: "button", onclick: showTest }, "Test with clips"),
+    ),
     bar,
     body,
     batchSection(),

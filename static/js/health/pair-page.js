@@ -41,7 +41,7 @@ function rateLines(report, one, other) {
           "li",
           {},
           h("b", { className: "num" }, rateText(estimate)),
-          ` of all trials of ${from} would be nearer to ${to}.`,
+          ` of simulated trials of ${from} are nearest to ${to}.`,
         )
       : null;
   return rates
@@ -51,7 +51,7 @@ function rateLines(report, one, other) {
 
 function sentences([one, other], { differs, alignment }) {
   const difference = (words, from, to) =>
-    words ? h("li", {}, `${from} differs from ${to} in this: ${words}.`) : null;
+    words ? h("li", {}, `${from} differs from ${to} by: ${words}.`) : null;
   return h(
     "ul",
     { className: "pair-words" },

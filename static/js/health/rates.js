@@ -2,7 +2,7 @@
 
 /**
  * An estimated rate in per cent, rounded half to even, as in the texts of the findings. A rate
- * even number. What is hardly ever is rateText apart from never.
+ * above 0 is never written as 0.
  */
 export function percent(rate) {
   const hundredths = 100 * rate;
@@ -11,6 +11,12 @@ export function percent(rate) {
   return rate > 0 && rounded === 0 ? "<1" : String(rounded);
 }
 
-/** A estimate in words, with its interval. */
-export const rateText = ({ rate, low, high }) =>
-  `${percent(rate)} % (${percent(low)} to ${percent(high)})`;
+/** The interval of an estimate in words; empty where both of its ends read the same. */
+export const intervalText = ({ low, high }) =>
+  percent(low) === percent(high) ? "" : `${percent(low)} to ${percent(high)}`;
+
+/** An estimate in words, with its interval. */
+export function rateText(estimate) {
+  const interval = intervalText(estimate);
+  return `${percent(estimate.rate)} %${interval && ` (${interval})`}`;
+}

@@ -17,5 +17,5 @@ export function drawPicker({ languages, language }) {
 /** Bind what the header offers. */
 export function bindPicker() {
   byId("language").onchange = (event) => choose(event.target.value);
-  byId("new-language").onclick = newLanguage;
+  byId("new-language").onclick = () => newLanguage();
 }

@@ -86,11 +86,19 @@ export async function begin(language, title, words) {
   showDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
 }
 
-/** Ask for a name and make an empty language; resolves to it, or null. */
-export function newLanguage() {
+/**
+ * Ask for a name and make an empty language; resolves to it, or null.
+ *
+ * @param {{ text?: string, preview?: HTMLElement | null }} [question]
+ */
+export function newLanguage({
+  text = "A language is a set of gestures that one robot understands.",
+  preview = null,
+} = {}) {
   return ask({
     title: "New language",
-    text: "A language is a set of gestures that one robot understands.",
+    text,
+    preview,
     fields: [{ name: "name", label: "Name", required: true, most: 80, value: "My gestures" }],
     action: "Create",
     submit: async ({ name }) => {

@@ -96,7 +96,7 @@ function library() {
       importButton(),
       h(
         "button",
-        { type: "button", className: "primary", onclick: newLanguage },
+        { type: "button", className: "primary", onclick: () => newLanguage() },
         icon("plus"),
         "New language",
       ),

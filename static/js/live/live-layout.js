@@ -80,6 +80,7 @@ export function panel() {
     h(
       "section",
       { className: "live-stage", "aria-label": "Live picture" },
+      h("h1", {}, "Live recognition"),
       picture(),
       h(
         "div",

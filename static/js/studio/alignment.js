@@ -4,31 +4,19 @@ import { h, svg } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../core/frame-times.js";
 import { state, update } from "../core/state.js";
+import { chooseJoint, partsOf, roleOf, sum } from "./alignment-parts.js";
 import { seek } from "./playback.js";
 
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it
 
 const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
-const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
 
 let follower = null; // Moves the cursor of the drawings on display.
+let shown = null; // The joint that was drawn last: another recognition of the take keeps it.
 
 /** The alignments of the paths, that with the expected gesture first. */
 const pathsOf = (why) => why.alignments.filter(({ voter, query }) => voter === "path" && query);
-
-/** The joints that were compared, those that differ most from what was expected first. */
-function partsOf({ parts, costs }) {
-  const totals = parts.map((name, part) => ({
-    name,
-    part,
-    cost: sum(costs.map((step) => step[part])),
-  }));
-  const whole = sum(totals.map(({ cost }) => cost)) || 1;
-  return totals
-    .sort((one, other) => other.cost - one.cost)
-    .map((each) => ({ ...each, share: each.cost / whole }));
-}
 
 /** The box around a joint's paths in all the drawings, so that all have one scale. */
 function boxOf(alignments, part) {
@@ -121,10 +109,8 @@ const asCompared = ({ mirrored, backward }) =>
 function figure(alignment, part, box, why) {
   const { label, pairs, time, gesture_time: theirs, query, gesture, parts } = alignment;
   const shares = sharesOf(alignment, part);
-  const [kind, role] =
-    label === why.expected
-      ? ["expected", "expected"]
-      : ["chosen", why.right ? "runner-up" : "nearest"];
+  const role = roleOf(label, why);
+  const kind = role === "expected" ? "expected" : "chosen";
   const most = shares.indexOf(Math.max(...shares));
   const [link, mine, other] = ["now-link", "now-mine", `now-${kind}`].map((name) =>
     svg("path", { class: name, d: "" }),
@@ -193,7 +179,8 @@ export function alignmentsOf(why) {
   const box = h("section", { className: "alignments", "aria-label": "Which moments correspond" });
   const draw = () => {
     const parts = partsOf(alignments[0]);
-    const chosen = parts.find(({ name }) => name === state.joint) ?? parts[0];
+    const chosen = chooseJoint(parts, alignments, state.joint, shown);
+    shown = chosen.name;
     const around = boxOf(alignments, chosen.part);
     const figures = around ? alignments.map((each) => figure(each, chosen.part, around, why)) : [];
     box.replaceChildren(

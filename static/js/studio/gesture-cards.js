@@ -3,7 +3,7 @@
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile } from "../core/dom.js";
-import { readable } from "../core/format.js";
+import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -26,8 +26,10 @@ async function remove(gesture) {
   }
 }
 
+/** The address of a trajectory image with start dot and arrow. */
+const withMarks = (thumbnail) => `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
+
 function draw(gesture, element) {
-  const { revision } = currentLanguage();
   const mark =
     state.result &&
     (gesture.label === state.result.label
@@ -37,13 +39,13 @@ function draw(gesture, element) {
         : null);
   const signature = JSON.stringify([gesture, mark]);
   if (element?.dataset.signature === signature) return element;
-  const image = `${gesture.thumbnail}${gesture.thumbnail.includes("revision=") ? "" : `?revision=${revision}`}`;
+  const image = withMarks(gesture.thumbnail);
   const card = h(
     "li",
     { className: `card${mark ? ` ${mark}` : ""}` },
     h("img", {
       src: image,
-      alt: `Trajectory of ${gesture.label}`,
+      alt: `Trajectory of ${gesture.label}, from the dot along the arrow`,
       loading: "lazy",
       width: 112,
       height: 112,
@@ -54,6 +56,13 @@ function draw(gesture, element) {
       h("b", { title: gesture.label }, gesture.label),
       h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
       mark ? h("span", { className: `tag ${mark}` }, mark) : null,
+      gesture.source?.salutes
+        ? h(
+            "span",
+            { className: "tag fault", title: "Save it again from a take, without the salutes." },
+            `contains ${plural(gesture.source.salutes, "salute")}`,
+          )
+        : null,
     ),
     h(
       "div",

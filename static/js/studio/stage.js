@@ -2,11 +2,13 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
+import { percent } from "../core/format.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { frameShown } from "./playback.js";
+import { supportOf } from "./support.js";
 import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
@@ -65,9 +67,38 @@ function query() {
     : { clip_id: state.clip, start, end };
 }
 
+/** @type {Set<string>} */
+const intoSample = new Set(); // Sample languages into which the user chose to save.
+
+/** Whether there is a language to save into; for a sample, a language of one's own is offered. */
+async function hasLanguage() {
+  const { gestures, language } = state;
+  if (!language) return Boolean(await newLanguage());
+  if (!gestures?.sample || intoSample.has(language)) return true;
+  let sample = false;
+  const choice = h(
+    "button",
+    {
+      type: "button",
+      className: "link",
+      onclick: () => {
+        sample = true;
+        intoSample.add(language);
+        byId("dialog").close();
+      },
+    },
+    `Save into the sample \u201c${gestures.name}\u201d instead`,
+  );
+  const made = await newLanguage({
+    text: `\u201c${gestures.name}\u201d is a sample. Name a language of your own: the gesture is saved there.`,
+    preview: choice,
+  });
+  return Boolean(made) || sample;
+}
+
 /** Make a gesture of what is selected, in its own view. */
 async function saveGesture() {
-  if (!state.language && !(await newLanguage())) return;
+  if (!(await hasLanguage())) return;
   await go("gesture", { gesture: null });
 }
 
@@ -126,15 +157,21 @@ export async function loadResult() {
   }
 }
 
-/** Show what was recognised; the votes are in the workspace. */
+/** The confidence, the weight of the voters that chose the nearest gesture, and a trial. */
+const supportWords = (result) =>
+  [
+    `confidence ${percent(result.confidence)}`,
+    `voters with ${percent(supportOf(result).get(result.nearest) ?? 0)} of the weight`,
+    result.trial ? "on trial, not saved" : "",
+  ]
+    .filter(Boolean)
+    .join(", ");
+
+/** Show what was recognised. */
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, nearest, expected, votes, weights, fault } = result;
-  const voters = Object.keys(votes)
-    .filter((voter) => weights[voter] !== 0)
-    .map((voter) => votes[voter]);
-  const count = voters.filter((vote) => vote === nearest).length;
+  const { label, nearest, expected, fault } = result;
   const wrong = label === null || (expected !== null && expected !== label);
   const parts =
     label === null
@@ -157,7 +194,7 @@ export function drawOutcome({ result }) {
   box.className = `outcome ${wrong ? "wrong" : "right"}`;
   return box.replaceChildren(
     h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
-    h("span", {}, ...parts, h("small", {}, `${count} of ${voters.length} voters`)),
+    h("span", {}, ...parts, h("small", {}, supportWords(result))),
   );
 }
 

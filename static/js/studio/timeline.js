@@ -4,6 +4,7 @@ import { filmstrip } from "../clips/filmstrip.js";
 import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
+import { salutesIn, saluteWarning } from "../core/salutes.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
@@ -205,10 +206,14 @@ export function drawTimeline() {
   });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
   const salutes = state.takes.flatMap((take) => saluteMarks(take, duration));
+  const warning = range.take
+    ? ""
+    : saluteWarning(salutesIn(state.timeline, range.start, range.end));
   const note = h(
     "p",
     { className: "range-text" },
     h("span", { role: "status" }, summary(range, state.takes)),
+    warning ? h("span", { className: "salute-warning", role: "alert" }, warning) : null,
     state.take === null && state.takes.length
       ? h(
           "button",

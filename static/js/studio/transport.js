@@ -5,7 +5,9 @@ import { moment } from "../core/format.js";
 import { bind } from "../core/keys.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
+import { cubeButton, followChoice } from "./stage-view.js";
 import { setEnd, setStart } from "./timeline.js";
+import { showFlat } from "./workspace.js";
 
 const SPEEDS = [0.25, 0.5, 1, 2];
 const FASTEST = 16;
@@ -99,7 +101,9 @@ export function buildTransport() {
         "End here",
       ),
     ),
+    cubeButton(),
   );
+  followChoice({ changed: showFlat, play: toggle });
   const when = () =>
     selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
   const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });

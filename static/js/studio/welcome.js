@@ -1,19 +1,28 @@
 // The panel in the middle while there is nothing to show: how to begin, or the progress.
 
-import { BUSY, needsTopic, statusText } from "../clips/clip-store.js";
+import { BUSY } from "../clips/busy.js";
+import { needsTopic, select, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, icon } from "../core/dom.js";
 import { firstMoment } from "../core/frame-times.js";
 import { drawPose, skeleton } from "../core/skeleton.js";
 import { selectedClip, state, update } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
 import { choose } from "../languages/language-store.js";
 
 const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
-  ["Save", "Save the take between the salutes as a gesture. One demonstration is enough."],
-  ["Ask why", "Recognise another clip, and see every voter\u2019s distance to every gesture."],
+  [
+    "Save",
+    "Save the take, what lies between the salutes, as a gesture. One demonstration is enough.",
+  ],
+  [
+    "Ask why",
+    "Recognise another clip, and see how far each voter, one way to compare movements, finds it from every gesture.",
+  ],
   ["Export", "Export the language for the robot as one JSON file."],
 ];
 
@@ -32,6 +41,20 @@ function offered(samples) {
   return [...kinds.values()];
 }
 
+/** The salute, for people who have never seen one. */
+const salutePicture = () =>
+  h(
+    "figure",
+    { className: "salute-picture" },
+    h("div", { role: "img", "aria-label": "Hand in a Vulcan salute" }, icon("salute")),
+    h(
+      "figcaption",
+      {},
+      h("b", {}, "Vulcan salute"),
+      " Raise a hand with the palm forward, fingers parted two by two, thumb out, and hold it for half a second. It opens a take and ends it.",
+    ),
+  );
+
 /** The sample that is recognised wrongly, with its expected label. */
 const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
 
@@ -39,11 +62,8 @@ const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "
  * A button that shows why the misread sample is misread; null where it, or its language, is gone.
  */
 function question(samples, languages) {
-  const sample = samples.find(({ name }) => name === MISREAD.name);
-  const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
-  const language =
-    languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
-  if (!sample || !language) return null;
+  const found = exampleOf(samples, languages);
+  if (!found) return null;
   const button = h(
     "button",
     { type: "button", className: "question" },
@@ -54,12 +74,36 @@ function question(samples, languages) {
       "This sample clip is recognised wrongly. See which voters were wrong, where, and which change would have helped.",
     ),
   );
-  button.onclick = async () => {
-    await choose(language.id);
-    const clip = await addSampleClip(sample, button);
-    if (clip) update({ question: { clip, expected: MISREAD.expected } });
-  };
+  button.onclick = () => ask(found, button);
   return button;
+}
+
+/** The misread sample and a language that misreads it; null where one of them is gone. */
+function exampleOf(samples, languages) {
+  const sample = samples.find(({ name }) => name === MISREAD.name);
+  const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
+  const language =
+    languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
+  return sample && language ? { sample, language } : null;
+}
+
+async function ask({ sample, language }, button) {
+  await choose(language.id);
+  const known = state.clips.find(({ name, status }) => name === sample.name && status === "done");
+  if (known) select(known.id);
+  const clip = known?.id ?? (await addSampleClip(sample, button));
+  if (clip) update({ question: { clip, expected: MISREAD.expected } });
+}
+
+/** Show the misread sample, from wherever the user is. */
+export async function showExample() {
+  const found = exampleOf(state.samples, state.languages);
+  if (!found) {
+    toast("There is no example", "Its sample clip or its sample language was deleted.");
+    return;
+  }
+  await go("studio");
+  await ask(found, h("button"));
 }
 
 function welcome(samples, languages) {
@@ -70,6 +114,7 @@ function welcome(samples, languages) {
       { className: "steps" },
       STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
     ),
+    salutePicture(),
     question(samples, languages),
     h(
       "div",
@@ -133,10 +178,14 @@ function showPose(panel, clip, { time, pose }) {
     !video.error &&
     (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
-  // A seek that is cut short by the next shows nothing, so the next waits.
-  if (playable && !video.seeking && video.dataset.start)
-    video.currentTime = Number(video.dataset.start) + time;
-  drawPose(panel.querySelector(".skeleton"), pose);
+  const skeletonDrawing = panel.querySelector(".skeleton");
+  if (!playable) return drawPose(skeletonDrawing, pose);
+  // A seek that is cut short by the next shows nothing, so the next waits; the pose is drawn with
+  // its own frame.
+  if (video.seeking || !video.dataset.start) return undefined;
+  video.onseeked = () => drawPose(skeletonDrawing, pose);
+  video.currentTime = Number(video.dataset.start) + time;
+  return undefined;
 }
 
 /** Change what moves in the panel, and keep the rest: the video would be loaded anew. */

@@ -2,11 +2,16 @@
 
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
-import { readable } from "../core/format.js";
-import { state, update } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
+import { moment, readable } from "../core/format.js";
+import { nearestFrame } from "../core/frame-times.js";
+import { selectedClip, state, update } from "../core/state.js";
+import { attempt, toast } from "../core/toasts.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
+import { seek } from "./playback.js";
+import { lessonOf, offeredOf } from "./remedies.js";
+
+/** @import { Recognition } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -95,23 +100,20 @@ export function drawCosts({ why, timeline }) {
 }
 
 /** The side effect of an intervention on the other gestures, in words. */
-function effectOf(effect) {
-  if (!effect) return null;
-  if (effect.right_after < effect.right_before) {
-    const [shown, are] =
-      effect.lost.length > 1 ? ["demonstrations", "are"] : ["demonstration", "is"];
-    return h(
-      "small",
-      { className: "expected" },
-      `but then the present ${shown} of ${effect.lost.map((label) => `\u201c${label}\u201d`).join(", ")} ${are} misread`,
-    );
-  }
-  return h(
-    "small",
-    { className: "dim" },
-    `the others stay right (${effect.right_after} of ${effect.takes})`,
-  );
-}
+const effectOf = (effect) =>
+  effect
+    ? h(
+        "small",
+        { className: "dim" },
+        `the others stay right (${effect.right_after} of ${effect.takes})`,
+      )
+    : null;
+
+/** The result of an intervention; a take is recognised by its own demonstration by construction. */
+const resultOf = ({ change, label, confidence }) =>
+  change.kind.endsWith("demonstration")
+    ? null
+    : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
 
 function remedy(found) {
   return h(
@@ -122,16 +124,16 @@ function remedy(found) {
       { type: "button", onclick: () => tryOut(found) },
       h("span", {}, found.change.words),
     ),
-    h("small", { className: "dim num" }, `${found.label}, ${Math.round(100 * found.confidence)} %`),
+    resultOf(found),
     effectOf(found.effect),
   );
 }
 
-const shared = (href, title, note) =>
+const shared = (href, title, note, onclick = () => {}) =>
   h(
     "span",
     {},
-    h("a", { href, download: "" }, title),
+    h("a", { href, download: "", onclick }, title),
     h("small", { className: "dim" }, ` ${note}`),
   );
 
@@ -147,27 +149,66 @@ const shares = (result, why) =>
           "plays without a server",
         )
       : null,
-    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove"),
+    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove", () => {
+      toast("The session is being written", "The download starts by itself, in half a minute.");
+    }),
   );
 
 const note = (text) => h("p", { className: "dim" }, text);
 
-/** What would have helped, as buttons that try it out; a note where nothing would. */
-function remediesOf(why) {
-  if (why.right) return null;
-  if (!why.counterfactuals.length)
-    return note(
-      `None of the ${why.tried} changes that were tried would help: the gesture has to be demonstrated again.`,
-    );
+/** What to show differently the next time, with its moment. */
+function lesson(why) {
+  const found = lessonOf(why);
+  if (!found) return null;
+  const { words, start } = found;
+  const to = () => {
+    if (state.timeline && start !== null) seek(nearestFrame(state.timeline.time, start));
+  };
   return h(
-    "div",
-    { className: "remedies" },
-    h("h2", {}, `It would have been recognised as ${why.expected}`),
-    h("ul", {}, why.counterfactuals.map(remedy)),
+    "p",
+    { className: "lesson" },
+    h("b", {}, "Show it again: "),
+    `in this take ${words}. `,
+    start === null
+      ? null
+      : h("button", { type: "button", className: "link", onclick: to }, `Go to ${moment(start)}`),
   );
 }
 
-const reasons = (why) => [h("p", { className: "why-sentence" }, why.sentence), remediesOf(why)];
+/** What would have helped, as buttons that try it out; what to show differently stands first. */
+function remediesOf(why) {
+  if (why.right) return null;
+  const offered = offeredOf(why, /** @type {Recognition} */ (state.result));
+  return h(
+    "div",
+    { className: "remedies" },
+    lesson(why),
+    offered.length
+      ? [
+          h("h2", {}, `It would have been recognised as ${why.expected}`),
+          h("ul", {}, offered.map(remedy)),
+        ]
+      : note(`None of the ${why.tried} changes that were tried helps without harm.`),
+  );
+}
+
+const notesOf = ({ notes }) =>
+  notes.length
+    ? h(
+        "ul",
+        { className: "why-notes" },
+        notes.map((text) => h("li", {}, text)),
+      )
+    : null;
+
+const reasons = (why) => [
+  h("p", { className: "why-sentence" }, why.sentence),
+  notesOf(why),
+  remediesOf(why),
+];
+
+const ASK_RECOGNITION =
+  "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
 
 const ASK_EXPECTED =
   "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";
@@ -177,8 +218,10 @@ export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
   const asks = result !== null && result.expected === null && !trying;
-  box.hidden = !result || !(why || asks || trying);
+  box.hidden = selectedClip()?.status !== "done";
+  byId("reasons").hidden = selectedClip()?.status !== "done";
   if (box.hidden) return box.replaceChildren();
+  if (!result) return box.replaceChildren(note(ASK_RECOGNITION));
   const words = asks
     ? [note(ASK_EXPECTED), shares(result, null)]
     : [trying, ...(why ? reasons(why) : []), shares(result, why)];

@@ -6,10 +6,13 @@ import { listenToKeys } from "../core/keys.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame } from "./playback.js";
+import { drawByPage, drawByViser, isFlat } from "./stage-view.js";
 
 const KEY = "osg-studio.workspace"; // sessionStorage: each tab has a workspace of its own.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.
 
+const hasWebgl = Boolean(document.createElement("canvas").getContext("webgl2"));
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");
 let opened = null; // promise of the workspace's id
 let wanted = null; // the view to show
@@ -37,23 +40,22 @@ const remembered = async () =>
 
 async function open() {
   let workspace = await remembered();
-  if (workspace) await api.workspaces.change(workspace.id, prefersDark.matches);
+  if (workspace) await api.workspaces.change(workspace.id, { dark: prefersDark.matches });
   else workspace = await api.workspaces.open(prefersDark.matches);
   mine = workspace.id;
   followClock(mine);
-  loadFrame(workspace.url);
+  await api.workspaces.change(workspace.id, { flat: isFlat(), animate: false });
+  if (hasWebgl) loadFrame(workspace.url);
   return workspace.id;
 }
 
 function loadFrame(url) {
   const frame = byId("lab");
-  explain(null);
+  drawByViser();
+  byId("lab-loading").hidden = false;
   const late = setTimeout(
     () =>
-      explain(
-        "The 3D view is taking long",
-        "It has not answered yet. The rest of the page works without it.",
-      ),
+      instead("The 3D view has not answered yet; this is the page\u2019s own picture.", restart),
     LOADING_LIMIT,
   );
   frame.onload = () => watch(frame, late);
@@ -65,17 +67,15 @@ function watch(frame, late) {
   const page = frame.contentDocument;
   if (!page?.querySelector("#root")) {
     clearTimeout(late);
-    explain(
-      "The 3D view did not load",
-      "The server no longer knows this workspace, or something between it and the browser is in the way.",
-    );
+    instead("The 3D view did not load; this is the page\u2019s own picture.", restart);
     return;
   }
   const drawn = () => {
     if (!page.querySelector("canvas")) return;
     observer.disconnect();
     clearTimeout(late);
-    explain(null);
+    byId("lab-loading").hidden = true;
+    drawByViser();
     listenToKeys(frame.contentWindow); // They mean the same while the 3D view has the focus.
   };
   const observer = new MutationObserver(drawn);
@@ -94,14 +94,20 @@ function explain(title, text) {
   );
 }
 
-/** Open the tab's workspace. */
+/** Draw the picture by the page, with the reason, and a button that tries viser again. */
+function instead(reason, /** @type {(() => unknown) | null} */ retry = null) {
+  byId("lab-loading").hidden = true;
+  explain(null);
+  drawByPage(reason, retry);
+}
+
+/** Open the tab's workspace, whose clock the page follows even where viser cannot draw. */
 export function openWorkspace() {
-  if (!document.createElement("canvas").getContext("webgl2")) {
-    explain(
-      "No 3D view here",
-      "This browser offers no WebGL 2. Clips, takes, gestures and recognition work without it.",
+  explain(null);
+  if (!hasWebgl)
+    instead(
+      "No space-time cube: this browser offers no WebGL 2. The flat picture is the page\u2019s.",
     );
-  }
   opened = open();
   opened.catch(() => explain("The 3D view did not load", "The server did not open a workspace."));
   return opened;
@@ -138,11 +144,24 @@ async function send(view, again = true) {
   }
 }
 
+/**
+ * Show the picture flat, or the space-time cube.
+ *
+ * @param {boolean} flat
+ */
+export async function showFlat(flat) {
+  try {
+    await api.workspaces.change(await opened, { flat, animate: !calm.matches });
+  } catch (error) {
+    complain(error, "Changing the view");
+  }
+}
+
 /** Follow the system between dark and light. */
 export function followTheme() {
   prefersDark.addEventListener("change", async () => {
     try {
-      await api.workspaces.change(await opened, prefersDark.matches);
+      await api.workspaces.change(await opened, { dark: prefersDark.matches });
     } catch (error) {
       complain(error, "Changing the colours");
     }

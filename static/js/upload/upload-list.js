@@ -100,7 +100,9 @@ async function start(upload) {
   /** @type {(loaded: number, away: boolean) => void} */
   const advanced = (loaded, away) => {
     began = away ? null : (began ?? { loaded, at: performance.now() });
-    change(upload.key, { loaded, away, began });
+    // How much of the last part an absent server kept is not known: what was sent counts.
+    const sent = state.uploads.find(({ key }) => key === upload.key)?.loaded ?? 0;
+    change(upload.key, { loaded: away ? Math.max(loaded, sent) : loaded, away, began });
   };
   const call = send(upload.file, upload.fields, advanced);
   change(upload.key, {

@@ -157,3 +157,30 @@ def test_a_tuning_that_the_language_keeps_changes_every_recognition(
     again = client.patch(place, json={"profile": "full", "tuning": None}).json()
     assert (again["profile"], again["tuning"]) == ("full", None)
     assert again["tuning_words"] == "as the profile does"
+
+
+def test_a_trial_recognises_with_a_changed_gesture_and_edits_nothing(
+    client: httpx.Client, studio: Studio, spoken: str
+) -> None:
+    strict = client.patch(f"{LANGUAGES}/{spoken}/gestures/circle", json={"direction": "on"})
+    revision = strict.json()["revision"]
+    clip_id = add_recorded_clip(studio, recording_of("circle backwards"))
+    body = {"clip_id": clip_id, "language_id": spoken, "expected": "circle"}
+    assert client.post(RECOGNITIONS, json=body).json()["label"] is None
+    trial = {"label": "circle", "change": {"direction": "off"}}
+    tried = client.post(RECOGNITIONS, json=body | {"trial": trial}).json()
+    assert (tried["label"], tried["revision"]) == ("circle", revision)
+    assert tried["trial"]["change"]["direction"] == "off"
+    # The explanation is of the trial, and the language has no other revision.
+    why = client.get(f"{RECOGNITIONS}/{tried['id']}/explanation").json()
+    assert why["right"]
+    assert client.get(f"{LANGUAGES}/{spoken}").json()["revision"] == revision
+    assert client.post(RECOGNITIONS, json=body).json()["label"] is None
+
+
+def test_a_trial_of_a_gesture_that_is_not_there_is_refused(
+    client: httpx.Client, spoken: str, circle_clip: str
+) -> None:
+    trial = {"label": "square", "change": {"direction": "off"}}
+    body = {"clip_id": circle_clip, "language_id": spoken, "trial": trial}
+    assert_problem(client.post(RECOGNITIONS, json=body), 404, "not_found")

@@ -209,7 +209,9 @@ def test_votes_without_weight_are_not_counted() -> None:
     silent = Recognizer(LANGUAGE, "paper", tuning=tuning)
     explanation = explain(context(recording(circle, jitter=0.01), silent), "circle")
     assert sum(explanation.votes.values()) == 5
-    assert "of five voters" in explanation.sentence
+    assert sum(explanation.support.values()) == pytest.approx(1)
+    share = f"{100 * explanation.support['circle']:.0f} %"
+    assert explanation.sentence.startswith(f"Voters with {share} of the weight chose 'circle'")
     assert not any(each.wrong for each in explanation.verdicts if each.voter in tuning.weights)
 
 

@@ -80,6 +80,9 @@ class SourceView(BaseModel):
     start: float = Field(description="Seconds in the clip")
     end: float
     keep_transit: bool
+    salutes: int = Field(
+        default=0, description="Vulcan salutes in the demonstration, which should have none"
+    )
 
 
 class DemonstrationView(BaseModel):

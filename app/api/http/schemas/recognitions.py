@@ -7,8 +7,16 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.api.http.schemas.gestures import GestureChange
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
 from app.recognition.language.schema import TuningEntry
+
+
+class GestureTrial(Body):
+    """A changed gesture to recognise with, on a copy of the language."""
+
+    label: Label
+    change: GestureChange
 
 
 class RecognitionRequest(Body):
@@ -23,6 +31,9 @@ class RecognitionRequest(Body):
     )
     tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
     expected: Label | None = None
+    trial: GestureTrial | None = Field(
+        default=None, description="Recognise with this change; the language is not edited"
+    )
 
 
 class RecognitionView(BaseModel):
@@ -38,6 +49,9 @@ class RecognitionView(BaseModel):
     end: float
     profile: str
     tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
+    trial: GestureTrial | None = Field(
+        default=None, description="The change it was recognised with; null: none"
+    )
     expected: str | None
     created: datetime
     label: str | None = Field(description="None when rejected")
@@ -77,3 +91,7 @@ class ExplanationView(BaseModel):
     differences: list[dict[str, Any]]
     counterfactuals: list[dict[str, Any]] = Field(description="Verified, the smallest first")
     tried: int
+    notes: list[str] = Field(
+        default_factory=list,
+        description="What is wrong with the demonstrations or the range, in sentences",
+    )

@@ -1,0 +1,57 @@
+"""Explanation notes: faults of the demonstrations and the range behind a recognition."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.api.services.demonstration_sources import sources_in
+from app.api.services.salute_ranges import count_salutes_in_clip
+from app.api.services.studio import Studio
+from app.recognition import Language
+from app.store import RecognitionRecord
+
+
+def write_notes(
+    studio: Studio, record: RecognitionRecord, language: Language, *labels: str
+) -> list[str]:
+    """Return a sentence for the range and for each demonstration that contains salutes.
+
+    Parameters
+    ----------
+    studio
+        For the clips.
+    record
+        The recognition.
+    language
+        The revision used.
+    labels
+        The gestures whose demonstrations matter: the expected and the nearest one.
+
+    """
+    return [*_describe_range(studio, record), *_describe_demonstrations(studio, language, labels)]
+
+
+def _describe_range(studio: Studio, record: RecognitionRecord) -> Iterator[str]:
+    count = count_salutes_in_clip(studio, record.clip_id, record.start, record.end)
+    if count:
+        yield (
+            f"The range that was recognised contains {_salutes(count)}; choose a take, or a range "
+            "between the salutes."
+        )
+
+
+def _describe_demonstrations(
+    studio: Studio, language: Language, labels: tuple[str, ...]
+) -> Iterator[str]:
+    sources = sources_in(studio, language)
+    for label in dict.fromkeys(labels):
+        for source in sources.get(label, []):
+            if source is not None and source.salutes:
+                yield (
+                    f"The demonstration of {label!r}, {source.start:.2f}-{source.end:.2f} s of its "
+                    f"clip, contains {_salutes(source.salutes)}; save it again from a take."
+                )
+
+
+def _salutes(count: int) -> str:
+    return "a Vulcan salute" if count == 1 else f"{count} Vulcan salutes"

@@ -1,0 +1,70 @@
+// The card above the clips while several wait: how many are done, which one runs, the time left.
+
+import { byId, h } from "../core/dom.js";
+import { about, plural } from "../core/format.js";
+import { follow, queueOf, secondsLeft } from "./batch.js";
+import { BUSY } from "./busy.js";
+
+/** @import { Batch, Clip, Job, State } from "../core/types.d.ts" */
+
+/** @type {Batch | null} */
+let batch = null;
+
+/**
+ * What the card says; null where at most one clip is busy.
+ *
+ * @param {Batch} current
+ * @param {Clip[]} clips
+ * @param {Map<string, Job>} jobs
+ */
+function wordsOf(current, clips, jobs) {
+  const known = clips.filter(({ id }) => current.members.includes(id));
+  const done = known.filter(({ status }) => !BUSY.has(status)).length;
+  const left = secondsLeft(current);
+  const running = known.find(({ status }) => status === "running");
+  const job = running && jobs.get(running.job_id);
+  return {
+    total: known.length,
+    done,
+    title: `${done} of ${plural(known.length, "clip")} done${left === null ? "" : `, ${about(left)} left`}`,
+    now: running
+      ? `${running.name}${job?.total ? `: ${job.done} of ${job.total} frames` : ""}`
+      : "",
+  };
+}
+
+/** @param {State} state */
+export function drawBatch({ clips, jobs }) {
+  const box = byId("batch");
+  batch = follow(batch, clips, jobs, performance.now());
+  box.hidden = !batch || batch.members.length < 2;
+  if (!batch || box.hidden) return box.replaceChildren();
+  const { total, done, title, now } = wordsOf(batch, clips, jobs);
+  if (!box.firstChild)
+    box.replaceChildren(
+      h("b", { role: "status" }),
+      h("progress", { "aria-label": "Progress of all clips" }),
+      h("span", { className: "dim" }),
+    );
+  box.querySelector("b").textContent = title;
+  box.querySelector("span").textContent = now;
+  const { frames, left } = batch;
+  Object.assign(box.querySelector("progress"), {
+    max: frames + left || total,
+    value: frames || done,
+  });
+  return undefined;
+}
+
+/**
+ * The place of a waiting clip in the queue, in words.
+ *
+ * @param {Clip[]} clips
+ * @param {Clip} clip
+ */
+export function placeInQueue(clips, clip) {
+  const queue = queueOf(clips);
+  const place = queue.findIndex(({ id }) => id === clip.id) + 1;
+  if (!place) return "Waiting in the queue";
+  return place === 1 ? "Next in the queue" : `Number ${place} of ${queue.length} in the queue`;
+}

@@ -1,0 +1,41 @@
+// Salutes along a clip: runs of frames whose salute score is above the threshold.
+
+import { plural } from "./format.js";
+import { SALUTE } from "./salute-threshold.js";
+
+const HOLD = 0.3; // s that a salute is held at least: `HOLD_SECONDS` in recording/salute.py.
+const OVERLAP = 0.1; // s; less of a salute in a range is the edge of the take.
+
+/**
+ * The salutes of which a range contains a part: `[start, end]` in seconds of the clip.
+ *
+ * @param {{ time: number[], salute: number[] }} timeline
+ * @param {number} start
+ * @param {number} end
+ * @returns {[number, number][]}
+ */
+export function salutesIn({ time, salute }, start, end) {
+  /** @type {[number, number][]} */
+  const runs = [];
+  let first = -1;
+  for (let frame = 0; frame <= time.length; frame += 1) {
+    const held = frame < time.length && salute[frame] >= SALUTE;
+    if (held && first < 0) first = frame;
+    if (held || first < 0) continue;
+    runs.push([time[first], time[frame - 1]]);
+    first = -1;
+  }
+  return runs.filter(
+    ([from, to]) => to - from >= HOLD && Math.min(to, end) - Math.max(from, start) >= OVERLAP,
+  );
+}
+
+/**
+ * A warning about the salutes in a range; empty without any.
+ *
+ * @param {[number, number][]} salutes
+ */
+export const saluteWarning = (salutes) =>
+  salutes.length
+    ? `This range contains ${plural(salutes.length, "Vulcan salute")}, which would become part of the gesture. Choose a take, or a range between the salutes.`
+    : "";

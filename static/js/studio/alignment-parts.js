@@ -1,0 +1,48 @@
+// What of an alignment is drawn: the role of its gesture, and the joint.
+
+const AT_REST = 0.2; // Share of the largest joint's extent below which a joint rests.
+
+export const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
+
+/** The joints that were compared, those that differ most from what was expected first. */
+export function partsOf({ parts, costs }) {
+  const totals = parts.map((name, part) => ({
+    name,
+    part,
+    cost: sum(costs.map((step) => step[part])),
+  }));
+  const whole = sum(totals.map(({ cost }) => cost)) || 1;
+  return totals
+    .sort((one, other) => other.cost - one.cost)
+    .map((each) => ({ ...each, share: each.cost / whole }));
+}
+
+/** How far a joint moves in the take, in the alignment's unit. */
+function extentOf({ query }, part) {
+  const places = query.map((step) => step[part]).filter(Boolean);
+  const spread = (axis) => {
+    const values = places.map((place) => place[axis]);
+    return values.length ? Math.max(...values) - Math.min(...values) : 0;
+  };
+  return Math.max(spread(0), spread(1));
+}
+
+/**
+ * The joint to draw: the one chosen, or the one drawn before, or the one that differs most. A joint
+ * at rest is drawn only when it is chosen: enlarged, its tremor looks like a movement.
+ */
+export function chooseJoint(parts, alignments, chosen, before) {
+  const named = parts.find(({ name }) => name === chosen);
+  if (named) return named;
+  const extents = parts.map(({ part }) =>
+    Math.max(...alignments.map((each) => extentOf(each, part))),
+  );
+  const moves = parts.filter((_, index) => extents[index] >= AT_REST * Math.max(...extents));
+  return moves.find(({ name }) => name === before) ?? moves[0] ?? parts[0];
+}
+
+/** The role of a gesture in an explanation: a rejected take may be nearest to the expected one. */
+export function roleOf(label, { expected, nearest }) {
+  if (label === expected) return "expected";
+  return label === nearest ? "nearest" : "runner-up";
+}

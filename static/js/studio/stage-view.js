@@ -1,0 +1,157 @@
+// The picture of the clip: flat or as a space-time cube by viser, or without it by the page itself.
+
+import { figure } from "./pose-picture.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { nearestFrame } from "../core/frame-times.js";
+import { bind } from "../core/keys.js";
+import { selectedClip, selectedRange, state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+
+const KEY = "osg-studio.cube"; // localStorage: the cube was shown last.
+const STILL = 0.5; // Share of the larger wrist's path below which a wrist is no part of the stroke.
+const WRISTS = ["left_wrist", "right_wrist"];
+
+let cube = localStorage.getItem(KEY) !== null;
+let own = false; // whether the page draws the picture itself
+/** @type {(flat: boolean) => void} */
+let send = () => {};
+
+export const isFlat = () => own || !cube;
+
+/** Show the view that is chosen, and the button that changes it. */
+function draw() {
+  byId("lab-area").classList.toggle("is-flat", isFlat());
+  byId("lab").hidden = own;
+  byId("flat").hidden = !own;
+  const button = document.getElementById("do-cube");
+  if (!button) return;
+  button.hidden = own;
+  button.setAttribute("aria-pressed", String(!isFlat()));
+}
+
+/** Change between the flat picture and the space-time cube. */
+export function toggleCube() {
+  if (own) return;
+  cube = !cube;
+  if (cube) localStorage.setItem(KEY, "shown");
+  else localStorage.removeItem(KEY);
+  draw();
+  send(!cube);
+}
+
+/** The button in the transport bar. */
+export const cubeButton = () =>
+  h(
+    "button",
+    {
+      type: "button",
+      id: "do-cube",
+      title: "Show time as depth, or the flat picture (V)",
+      onclick: toggleCube,
+    },
+    "Space-time cube",
+  );
+
+/**
+ * Follow the choice: `changed(flat)` tells the workspace; `play()` is called by a click on the
+ * flat picture.
+ *
+ * @param {{ changed: (flat: boolean) => void, play: () => void }} options
+ */
+export function followChoice({ changed, play }) {
+  send = changed;
+  byId("lab-box").onclick = () => {
+    if (isFlat()) play();
+  };
+  bind({
+    keys: ["V"],
+    text: "Space-time cube, or the flat picture",
+    group: "Playback",
+    run: toggleCube,
+    when: () => selectedClip()?.status === "done" && !byId("view-studio").hidden,
+  });
+  draw();
+}
+
+/** Give the box of the picture the clip's aspect ratio. */
+export function drawRatio() {
+  const clip = selectedClip();
+  if (clip?.width && clip.height)
+    byId("lab-area").style.setProperty("--ratio", String(clip.width / clip.height));
+}
+
+/** @type {{ clip: string, poses: any, picture: any } | null} */
+let shown = null;
+/** @type {string | null} */
+let loading = null;
+
+/** Draw the flat picture by the page, and say why; `retry` tries viser again where it may help. */
+export function drawByPage(reason, /** @type {(() => unknown) | null} */ retry = null) {
+  own = true;
+  byId("flat").replaceChildren(
+    h("div", { className: "flat-picture" }),
+    h(
+      "p",
+      { className: "flat-note", role: retry ? "alert" : "status" },
+      reason,
+      retry ? h("button", { type: "button", onclick: retry }, "Try again") : null,
+    ),
+  );
+  shown = loading = null;
+  draw();
+  drawFlat();
+}
+
+/** Let viser draw again. */
+export function drawByViser() {
+  own = false;
+  draw();
+}
+
+/** Load the poses of a clip and build its picture; null when another clip is wanted by now. */
+async function load(clip) {
+  if (loading === clip.id) return null;
+  loading = clip.id;
+  const poses = await attempt("Loading the poses", () => api.clips.poses(clip.id));
+  if (!poses || loading !== clip.id) return null;
+  const picture = figure(() => {});
+  picture.show(poses, clip.id);
+  byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
+  return { clip: clip.id, poses, picture };
+}
+
+/** Draw the frame on display, where the page draws it. */
+export async function drawFlat() {
+  const clip = selectedClip();
+  if (!own || clip?.status !== "done") return;
+  if (shown?.clip !== clip.id) {
+    const loaded = await load(clip);
+    if (!loaded) return;
+    shown = loaded;
+  }
+  const { poses, picture } = shown;
+  const range = selectedRange()?.shown ?? [0, poses.time.at(-1)];
+  /** @type {[number, number]} */
+  const frames = [nearestFrame(poses.time, range[0]), nearestFrame(poses.time, range[1])];
+  const frame = Math.min(state.position?.frame ?? frames[0], poses.time.length - 1);
+  picture.draw(frame, frames, movingWrists(poses, frames));
+}
+
+/** The wrists that move in a range of frames. */
+function movingWrists({ landmarks, xy }, [first, last]) {
+  const extents = WRISTS.map((name) => {
+    const at = landmarks.indexOf(name);
+    const places = xy
+      .slice(first, last + 1)
+      .map((points) => points[at])
+      .filter((place) => place && place[0] !== null);
+    const spread = (axis) => {
+      const values = places.map((place) => place[axis]);
+      return values.length ? Math.max(...values) - Math.min(...values) : 0;
+    };
+    return Math.max(spread(0), spread(1));
+  });
+  const most = Math.max(...extents);
+  return WRISTS.filter((_, index) => extents[index] > 0 && extents[index] >= STILL * most);
+}

@@ -1,0 +1,64 @@
+// The order and the numbers of the vote table: pure functions of a recognition.
+
+import { supportOf } from "./support.js";
+
+/** @import { Recognition } from "../core/types.d.ts" */
+
+/** Gestures in the table; farther gestures of a larger language explain nothing. */
+export const MOST_COLUMNS = 40;
+
+/**
+ * Distances of one voter as nearness: 1 for the nearest gesture, 0 for the farthest.
+ *
+ * @param {(number | null)[]} distances
+ * @returns {number[]}
+ */
+export function nearnessOf(distances) {
+  const finite = /** @type {number[]} */ (distances.filter((each) => each !== null));
+  const [low, high] = [Math.min(...finite), Math.max(...finite)];
+  return distances.map((each) =>
+    each === null ? 0 : high > low ? (high - each) / (high - low) : 1,
+  );
+}
+
+/**
+ * Rows by descending weight, columns by descending weight of their voters, then by nearness.
+ *
+ * @param {Pick<Recognition, "voters" | "gestures" | "distances" | "votes" | "weights">} result
+ * @returns {{ rows: number[], columns: number[] }}
+ */
+export function orderOf(result) {
+  const { voters, gestures, distances, weights } = result;
+  const support = supportOf(result);
+  const near = gestures.map((_, column) =>
+    voters.reduce(
+      (sum, voter, row) => sum + (weights[voter] ?? 0) * nearnessOf(distances[row])[column],
+      0,
+    ),
+  );
+  const byWeight = (one, other) => (weights[voters[other]] ?? 0) - (weights[voters[one]] ?? 0);
+  const bySupport = (one, other) =>
+    (support.get(gestures[other]) ?? 0) - (support.get(gestures[one]) ?? 0) ||
+    near[other] - near[one];
+  return {
+    rows: voters.map((_, row) => row).sort(byWeight),
+    columns: gestures
+      .map((_, column) => column)
+      .sort(bySupport)
+      .slice(0, MOST_COLUMNS),
+  };
+}
+
+/**
+ * A distance in at most four characters, or as many as its size needs.
+ *
+ * @param {number | null} value
+ */
+export function shortNumber(value) {
+  if (value === null) return "\u221e";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size < 0.001) return value.toExponential(0);
+  const decimals = size < 0.1 ? 3 : size < 10 ? 2 : size < 100 ? 1 : 0;
+  return value.toFixed(decimals).replace(/^0/, "");
+}

@@ -1,0 +1,190 @@
+// The decision beside the picture: the compared images, and every voter's distance to every
+// gesture, with the voters' weights, which can be tried out there.
+
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { percent, readable } from "../core/format.js";
+import { selectedClip, state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { tryOut } from "./intervention-trial.js";
+import { supportOf } from "./support.js";
+import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber } from "./vote-order.js";
+
+/** @import { Recognition } from "../core/types.d.ts" */
+
+const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
+
+/** @type {(factor: number) => string} */
+const factorText = (factor) =>
+  factor === 0 ? "off" : `${{ 0.25: "\u00bc", 0.5: "\u00bd" }[factor] ?? factor} \u00d7`;
+
+const wordsOf = (voter, factor) =>
+  factor === 0
+    ? `without the voter ${readable(voter)}`
+    : `with ${factor} times the weight on the voter ${readable(voter)}`;
+
+/** The weight factor of a voter in the recognition on display. */
+const factorOf = (result, voter) =>
+  (result.tuning ?? state.gestures?.tuning)?.weights?.[voter] ?? 1;
+
+/** The weight of a voter, over which lies the choice of another weight factor. */
+function weightCell(result, voter) {
+  const factor = factorOf(result, voter);
+  const weight = result.weights[voter] ?? 0;
+  const factors = FACTORS.includes(factor) ? FACTORS : [...FACTORS, factor].sort((a, b) => a - b);
+  const select = h(
+    "select",
+    {
+      "aria-label": `Weight of ${readable(voter)}: ${percent(weight)}`,
+      title: "Try another weight factor; only Keep saves it",
+      onchange: () =>
+        tryOut({
+          change: {
+            kind: "weight_factor",
+            voter,
+            factor: Number(select.value),
+            words: wordsOf(voter, Number(select.value)),
+          },
+        }),
+    },
+    factors.map((each) => h("option", { value: each }, factorText(each))),
+  );
+  select.value = String(factor);
+  return h(
+    "td",
+    { className: "weight" },
+    percent(weight),
+    factor === 1 ? null : h("b", {}, ` ${factorText(factor)}`),
+    select,
+  );
+}
+
+function row(result, at, columns) {
+  const voter = result.voters[at];
+  const nearness = nearnessOf(result.distances[at]);
+  const cells = columns.map((column) => {
+    const share = (4 + 42 * nearness[column] ** 2).toFixed(0);
+    const choice = result.votes[voter] === result.gestures[column];
+    return h(
+      "td",
+      {
+        className: choice ? "choice" : "",
+        style: { background: `color-mix(in srgb, var(--accent) ${share}%, transparent)` },
+      },
+      shortNumber(result.distances[at][column]),
+    );
+  });
+  return h(
+    "tr",
+    { className: result.weights[voter] ? "" : "mute" },
+    h("th", { scope: "row" }, readable(voter)),
+    weightCell(result, voter),
+    cells,
+  );
+}
+
+function head({ gestures, label, expected }, column) {
+  const name = gestures[column];
+  const kind = name === label ? "chosen" : name === expected ? "expected" : "";
+  const roles = [name === label ? "chosen" : "", name === expected ? "expected" : ""]
+    .filter(Boolean)
+    .join(", ");
+  return h(
+    "th",
+    { scope: "col", className: `gesture ${kind}`, title: roles ? `${name}: ${roles}` : name },
+    h("span", {}, name),
+    roles ? h("span", { className: "visually-hidden" }, roles) : null,
+  );
+}
+
+/** @param {Recognition} result */
+function table(result) {
+  const { rows, columns } = orderOf(result);
+  const support = supportOf(result);
+  return h(
+    "div",
+    { className: "vote-scroll", tabIndex: 0, role: "group", "aria-label": "Votes, scrollable" },
+    h(
+      "table",
+      { className: "vote-table", "aria-label": "Votes" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          h("th", { scope: "col" }, "voter"),
+          h("th", { scope: "col" }, "weight"),
+          columns.map((column) => head(result, column)),
+        ),
+      ),
+      h(
+        "tbody",
+        {},
+        rows.map((at) => row(result, at, columns)),
+      ),
+      h(
+        "tfoot",
+        {},
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row", colSpan: 2 }, "weight of its voters"),
+          columns.map((column) =>
+            h("td", { className: "votes-for" }, percent(support.get(result.gestures[column]) ?? 0)),
+          ),
+        ),
+      ),
+    ),
+  );
+}
+
+/** Load the images that were compared into a box. */
+async function loadImages(box, result) {
+  const images = await attempt("Loading the images", () => api.recognitions.images(result.id));
+  box.replaceChildren(
+    ...(images ?? []).map(({ caption, image }) =>
+      h(
+        "figure",
+        {},
+        h("img", { src: image, alt: `Trajectory image: ${caption}`, width: 64, height: 64 }),
+        h("figcaption", {}, caption),
+      ),
+    ),
+  );
+}
+
+const undecided = () =>
+  h(
+    "div",
+    { className: "undecided" },
+    h("h2", {}, "No decision yet"),
+    h(
+      "p",
+      { className: "dim" },
+      "Recognise the take to see every voter\u2019s distance to every gesture, or save it as a gesture.",
+    ),
+  );
+
+/** @type {string | null} */
+let drawn = null;
+
+/** Draw the decision of the recognition on display. */
+export function drawVotes({ result }) {
+  const box = byId("votes");
+  const clip = selectedClip();
+  box.hidden = clip?.status !== "done";
+  const key = result
+    ? `${result.id} ${JSON.stringify(state.gestures?.tuning ?? null)}`
+    : `undecided ${state.gestures?.labels.length}`;
+  if (box.hidden || key === drawn) return;
+  drawn = key;
+  // As wide before the decision as with it, so that the picture stays where it is.
+  const columns = (result?.gestures ?? state.gestures?.labels ?? []).length;
+  box.style.setProperty("--columns", String(Math.min(columns, MOST_COLUMNS)));
+  if (!result) return box.replaceChildren(undecided());
+  const images = h("div", { className: "vote-images" });
+  box.replaceChildren(images, table(result));
+  loadImages(images, result);
+  return undefined;
+}

@@ -1,0 +1,68 @@
+"""The first minute: what a salute is, the example, and a language of one's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import add_clip
+
+pytestmark = pytest.mark.slow
+
+SAMPLE = "Table 2: eight signs"
+
+EXTRACTION_MS = 300_000
+"""Longest wait for the poses of a clip of six seconds on a loaded machine."""
+
+
+@pytest.fixture
+def client(server: Running) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield client
+
+
+def sample_id(client: httpx.Client) -> str:
+    """Return the id of the sample language."""
+    listed = client.get("/api/v1/languages").json()
+    return next(str(each["id"]) for each in listed if each["name"] == SAMPLE)
+
+
+def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
+    open_page: OpenPage, server: Running, clips: Path
+) -> None:
+    assert clips.is_dir()
+    page = open_page(scene=False)
+    expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
+    add_clip(server, "circle", name="mine.mp4")
+    page.reload()
+    expect(page.get_by_role("heading", name="mine.mp4")).to_be_visible()
+    page.get_by_role("button", name="All keys").click()
+    page.get_by_role("button", name="Example").click()
+    why = page.get_by_role("region", name="Why")
+    expect(why).to_contain_text("instead of 'triangle'", timeout=EXTRACTION_MS)
+
+
+def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is_chosen(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    clip = add_clip(server, "circle", name="own.mp4")
+    query = {"clip": clip, "language": sample_id(client)}
+    page = open_page(query, scene=False)
+    page.get_by_role("button", name="Save as gesture").click()
+    dialog = page.get_by_role("dialog", name="New language")
+    expect(dialog).to_contain_text("is a sample")
+    dialog.get_by_label("Name").fill("Our dive")
+    dialog.get_by_role("button", name="Create").click()
+    expect(page.get_by_role("heading", name="New gesture")).to_be_visible()
+    expect(page.locator(".in-language")).to_have_text("in Our dive")
+
+    page = open_page(query, scene=False)
+    page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_role("button", name="Save into the sample").click()
+    expect(page.locator(".in-language")).to_have_text(f"in {SAMPLE}")

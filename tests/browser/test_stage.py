@@ -1,0 +1,148 @@
+"""The stage: the flat picture first, the cube beside it, and the whole decision in sight."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import httpx
+import numpy as np
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.api.recordings import recording_of
+from tests.api.running import Running, until
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+from tests.browser.numbered_clips import corners_on, number_on, numbered_clip, painted_corners
+
+pytestmark = pytest.mark.slow
+
+WITHOUT_WEBGL = """
+const original = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind.startsWith("webgl") ? null : original.call(this, kind, ...rest);
+};
+"""
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        library = library_of(server, client, request.node.name[:40])
+        video = tmp_path / "numbered.mp4"
+        recording = recording_of("circle")
+        times = np.array(numbered_clip(video, len(recording.poses)))
+        recording = replace(recording, poses=replace(recording.poses, time=times))
+        clip = add_clip(server, name="numbered.mp4", video=video, recording=recording)
+        yield Library(clip, library.language, client)
+
+
+def canvas_of(page: Page) -> Locator:
+    """Return the canvas of viser's frame."""
+    return page.frame_locator("#lab").locator("canvas[data-engine]")
+
+
+def is_square(picture: Locator) -> Callable[[], bool]:
+    """Return whether a picture lies square in its box and fills it."""
+
+    def check() -> bool:
+        corners = corners_on(picture.screenshot())
+        return corners is not None and np.allclose(corners, painted_corners(), atol=0.02)
+
+    return check
+
+
+def test_the_flat_picture_comes_first_and_the_cube_is_a_key_away_and_remembered(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, size=(1440, 900))
+    until(is_square(canvas_of(page)))
+    cube = page.get_by_role("button", name="Space-time cube")
+    expect(cube).to_have_attribute("aria-pressed", "false")
+    page.keyboard.press("v")
+    expect(cube).to_have_attribute("aria-pressed", "true")
+    until(lambda: not is_square(canvas_of(page))())
+    page.reload()
+    expect(cube).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#lab-loading")).to_be_hidden()
+    cube.click()
+    until(is_square(canvas_of(page)))
+    page.reload()
+    until(is_square(canvas_of(page)))
+
+
+def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons(
+    open_page: OpenPage, library: Library
+) -> None:
+    recognition = library.recognise("line")
+    query = {**library.address, "recognition": recognition}
+    page = open_page(query, size=(1440, 900), scene=False)
+    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'line'")
+    picture = page.locator("#lab-box").bounding_box()
+    assert picture is not None
+    assert picture["height"] >= 480
+    table = page.get_by_role("table", name="Votes")
+    expect(table.locator("tbody tr")).to_have_count(17)
+    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
+    for part in (page.locator("#lab-box"), page.locator("#outcome"), table):
+        expect(part).to_be_in_viewport(ratio=1)
+
+
+def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, size=(1440, 900), scene=False)
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    page.get_by_label("Expected", exact=True).select_option("line")
+    before = page.locator("#lab-box").bounding_box()
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'line'")
+    after = page.locator("#lab-box").bounding_box()
+    assert before is not None
+    assert after is not None
+    assert after["y"] == pytest.approx(before["y"], abs=4)
+
+
+def test_without_webgl_the_page_draws_the_same_picture_and_says_why(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page()
+    page.add_init_script(WITHOUT_WEBGL)
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page.goto(f"{page.url.split('?')[0]}?{httpx.QueryParams(query)}")
+    expect(page.get_by_role("status").filter(has_text="offers no WebGL 2")).to_be_visible()
+    expect(page.locator("#lab")).to_be_hidden()
+    expect(page.get_by_role("table", name="Votes")).to_be_visible()
+    clock, picture = page.locator("#clock"), page.locator("#flat .figure")
+    expect(picture.locator(".trails path")).to_have_attribute("d", re.compile("^M"))
+    expect(clock).to_have_text(re.compile(r"frame \d+ of"))
+    video = picture.locator("video")
+    # The trail lies over the number.
+    picture.locator(".figure-over").evaluate("(over) => { over.style.visibility = 'hidden'; }")
+
+    def on_clock() -> int:
+        return int(re.findall(r"frame (\d+)", clock.inner_text())[0])
+
+    until(lambda: 0 < on_clock() == number_on(video.screenshot()))
+    before = on_clock()
+    page.keyboard.press(".")
+    until(lambda: before + 1 == on_clock() == number_on(video.screenshot()))
+
+
+def test_a_weight_is_tried_where_the_distances_are_shown(
+    open_page: OpenPage, library: Library
+) -> None:
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page = open_page(query, size=(1440, 900), scene=False)
+    weight = page.get_by_label(re.compile("^Weight of path:"))
+    expect(weight).to_have_value("1")
+    weight.select_option("off")
+    trial = page.get_by_role("region", name="Why").get_by_role("status")
+    expect(trial).to_contain_text("without the voter path")
+    expect(page.get_by_label("Weight of path: 0 %")).to_have_value("0")
+    language = f"/api/v1/languages/{library.language}"
+    assert library.client.get(language).json()["tuning"] is None
+    trial.get_by_role("button", name="Keep").click()
+    expect(page.locator("#tuning")).to_be_visible()
+    assert library.client.get(language).json()["tuning"]["weights"] == {"path": 0.0}

@@ -1,0 +1,46 @@
+"""Waiting for the poses of several clips: the place in the queue, and the time for all."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.conftest import OpenPage
+from tests.browser.files import drop
+
+pytestmark = pytest.mark.slow
+
+EXTRACTION_MS = 300_000
+"""Longest wait for the poses of a clip of six seconds on a loaded machine."""
+
+
+def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
+    open_page: OpenPage, clips: Path
+) -> None:
+    names = ("one.mp4", "two.mp4", "three.mp4")
+    page = open_page(scene=False)
+    missing: list[str] = []
+    page.on(
+        "response",
+        lambda answer: (
+            missing.append(answer.url)
+            if answer.status == 404 and answer.url.endswith("/poster")
+            else None
+        ),
+    )
+    drop(page, *[clips / "line-test-2.mp4"] * 3, names=names)
+    card = page.locator("#batch")
+    expect(card).to_contain_text("0 of 3 clips done")
+    queued = page.get_by_role("list", name="Clips").get_by_role("listitem")
+    expect(queued.filter(has_text="Next in the queue")).to_have_count(1)
+    expect(queued.filter(has_text="Number 2 of 2 in the queue")).to_have_count(1)
+    # Only the clip that runs has a bar, and its name stands in the card.
+    expect(queued.get_by_role("progressbar")).to_have_count(1)
+    expect(card).to_contain_text(re.compile(r"one\.mp4: \d+ of \d+ frames"), timeout=EXTRACTION_MS)
+    expect(card).to_contain_text(re.compile(r"about \d+ (s|min) left"), timeout=EXTRACTION_MS)
+    assert missing == []
+    expect(card).to_contain_text("1 of 3 clips done", timeout=EXTRACTION_MS)
+    expect(card).to_be_hidden(timeout=EXTRACTION_MS)

@@ -1,0 +1,27 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { salutesIn, saluteWarning } from "../../../static/js/core/salutes.js";
+
+// 0.6 s of salute, 2 s of stroke, 0.6 s of salute, and one frame by chance.
+const RATE = 20;
+const SALUTE = [
+  ...Array(12).fill(0.9),
+  ...Array(40).fill(0.1),
+  ...Array(12).fill(0.8),
+  ...Array(5).fill(0),
+  0.9,
+];
+const TIMELINE = { time: SALUTE.map((_, frame) => frame / RATE), salute: SALUTE };
+
+test("the salutes in a range are those of which it contains more than an edge", () => {
+  assert.equal(salutesIn(TIMELINE, 0, 3.5).length, 2);
+  assert.deepEqual(salutesIn(TIMELINE, 0, 1), [[0, 0.55]]);
+  assert.deepEqual(salutesIn(TIMELINE, 0.55, 2.6), []);
+  assert.deepEqual(salutesIn(TIMELINE, 3.2, 3.5), []);
+});
+
+test("only a range with salutes is warned of", () => {
+  assert.equal(saluteWarning([]), "");
+  assert.match(saluteWarning([[0, 1]]), /contains 1 Vulcan salute,/);
+});
