@@ -80,6 +80,16 @@ def test_a_language_file_that_is_none_is_named(
         assert ended.error.count("bad.json") == 1
 
 
+def test_a_backup_that_cannot_be_made_or_restored_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    for command in ("backup", "restore"):
+        ended = osg_studio(command, tmp_path / "b.zip", "--data-dir", tmp_path / "none")
+        assert ended.code == 2
+        assert ended.error.count("\n") == 1
+    assert not (tmp_path / "b.zip").exists()
+
+
 def test_a_crash_has_a_code_of_its_own(
     osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
