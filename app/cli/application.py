@@ -19,6 +19,7 @@ import typer
 from pydantic import ValidationError
 
 from app import __version__
+from app.cli.backup import backup, restore
 from app.cli.check import check
 from app.cli.clip_argument import (
     ClipReading,
@@ -77,6 +78,8 @@ command_line.command()(evaluate)
 command_line.command()(check)
 command_line.command()(robot)
 command_line.command()(phrase)
+command_line.command()(backup)
+command_line.command()(restore)
 
 
 @command_line.callback(invoke_without_command=True)

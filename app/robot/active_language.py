@@ -9,7 +9,7 @@ from pathlib import Path
 from typing_extensions import Self
 
 from app.recognition import Language, Recognizer
-from app.recognition.language.file import read_content, seal
+from app.recognition.language.file import name_file, read_content, seal
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,9 @@ class ActiveLanguage:
             When there is no such profile.
 
         """
-        return cls.from_json(read_content(path), profile)
+        content = read_content(path)
+        with name_file(path):
+            return cls.from_json(content, profile)
 
     @classmethod
     def from_json(cls, text: str | bytes, profile: str | None = None) -> Self:

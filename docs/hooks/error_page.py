@@ -14,6 +14,8 @@ from app.recognition import OsgError, errors
 
 MEANINGS = {
     "check_cancelled": "the health check was cancelled by another request",
+    "client_left": "the client closed the connection before it was answered",
+    "clip_deleted": "the clip of this `Idempotency-Key` was deleted",
     "clip_not_ready": "the keypoints of the clip are not extracted yet",
     "disk_full": "the server's disk is full",
     "expected_missing": "an explanation needs the gesture that was meant",
@@ -22,6 +24,7 @@ MEANINGS = {
     "demonstration_needed": "the only demonstration of a gesture cannot be removed",
     "gesture_needed": "a phrase uses the gesture that should be deleted",
     "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
+    "idempotency_key_reused": "this `Idempotency-Key` came with another file before",
     "internal": "unexpected error; the server's log has the details",
     "job_not_needed": "the job is done, or the topic is chosen already",
     "label_taken": "another gesture of the language has this label",
@@ -42,6 +45,7 @@ MEANINGS = {
     "take_ambiguous": "the range holds several takes",
     "token_required": "the token is missing or wrong",
     "too_large": "the body is above the limit for its kind",
+    "too_many_guesses": "too many wrong tokens came from this address",
     "topic_needed": "the recording has several usable topics; choose one first",
     "topic_unusable": "a topic was given for a file that is no bag",
     "tus_version": "the upload uses another version of tus than 1.0.0",

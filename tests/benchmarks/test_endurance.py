@@ -68,7 +68,8 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
             # The last bits of later times move the edge of a stroke by one frame, which makes a
             # confidence of 1.00 one of 0.94.
             assert one.confidence == pytest.approx(first.confidence, abs=0.1)
-        assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE
+        # And the frame whose stamp ends the longest take.
+        assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE + 1
     settled = laps[len(laps) // 2 :]
     assert settled[-1].memory - settled[0].memory < 4e6
 

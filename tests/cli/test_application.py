@@ -67,6 +67,29 @@ def test_bad_input_is_one_line_and_exit_code_two(
     assert ended.error.count("\n") == 1
 
 
+@pytest.mark.parametrize("content", ["no json", '{"format": "osg-studio/gesture-language"}'])
+def test_a_language_file_that_is_none_is_named(
+    osg_studio: OsgStudio, tmp_path: Path, content: str
+) -> None:
+    path = tmp_path / "bad.json"
+    path.write_text(content)
+    for command in (["robot", "--source", "none", "--language"], ["check"]):
+        ended = osg_studio(*command, path)
+        assert ended.code == 2
+        assert ended.error.startswith("osg-studio: bad.json: ")
+        assert ended.error.count("bad.json") == 1
+
+
+def test_a_backup_that_cannot_be_made_or_restored_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    for command in ("backup", "restore"):
+        ended = osg_studio(command, tmp_path / "b.zip", "--data-dir", tmp_path / "none")
+        assert ended.code == 2
+        assert ended.error.count("\n") == 1
+    assert not (tmp_path / "b.zip").exists()
+
+
 def test_a_crash_has_a_code_of_its_own(
     osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

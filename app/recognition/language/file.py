@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +58,17 @@ def read_content(path: str | Path) -> bytes:
             return file.read(MAX_FILE_BYTES + 1)
     except OSError as error:
         raise LanguageError(f"cannot read {path}: {error.strerror}") from error
+
+
+@contextmanager
+def name_file(path: str | Path) -> Iterator[None]:
+    """Put the file's name before the message of a `LanguageError`; its pointer stays."""
+    try:
+        yield
+    except LanguageError as error:
+        named = LanguageError(f"{Path(path).name}: {error}")
+        named.pointer = error.pointer
+        raise named from error
 
 
 def read_document(text: str | bytes) -> LanguageDocument:

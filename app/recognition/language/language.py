@@ -15,7 +15,7 @@ from app.recognition.errors import LanguageError, OsgError
 from app.recognition.gestures.gesture import SETTINGS, Gesture
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
-from app.recognition.language.file import read_content, read_document, write_document
+from app.recognition.language.file import name_file, read_content, read_document, write_document
 from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
 from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
 from app.recognition.language.schema import (
@@ -293,7 +293,9 @@ class Language:
             When it cannot be read or is invalid; see `from_json`.
 
         """
-        return cls.from_json(read_content(path))
+        content = read_content(path)
+        with name_file(path):
+            return cls.from_json(content)
 
 
 def _check_text(text: Any, most: int, pointer: str) -> None:

@@ -327,7 +327,7 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
             container_options={
                 "protocol_whitelist": "file",
                 "format_whitelist": ",".join(CONTAINERS),
-                "max_streams": str(MOST_STREAMS),
+                "max_streams": str(MOST_STREAMS + 1),
             },
             # Probing may decode a frame already.
             options={"max_pixels": str(limits.pixels)},
@@ -341,11 +341,11 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
 
 
 def _video_stream(container: InputContainer, path: Path) -> VideoStream:
-    # Not every demuxer heeds `max_streams`.
+    # Some demuxers refuse further streams, Matroska's leaves them out.
     if len(container.streams) > MOST_STREAMS:
         raise VideoError(
-            f"{path.name} holds {len(container.streams)} streams, more than the limit of "
-            f"{MOST_STREAMS}; export its picture alone"
+            f"{path.name} holds more streams than the limit of {MOST_STREAMS}; export its picture "
+            "alone"
         )
     stream = container.streams.best("video")
     if not isinstance(stream, VideoStream):

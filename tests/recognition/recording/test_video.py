@@ -77,7 +77,7 @@ def test_every_common_kind_of_clip_is_read(
 
 def test_more_streams_than_a_film_has_are_refused(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mkv", extra_streams=70)
-    with pytest.raises(VideoError, match="71 streams, more than the limit of 64"):
+    with pytest.raises(VideoError, match="more streams than the limit of 64"):
         probe(clip)
 
 

@@ -1,0 +1,199 @@
+"""Backup of a data folder: one file with the database, the clips and a manifest of both.
+
+It may be written while a server works. The database is copied first, as one consistent state; every
+file that a row of it refers to is on disk by then, and stays until the next start of the server.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+import sqlite3
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+from app.recognition.errors import OsgError
+from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.models import VIDEO, JobStatus
+
+FORMAT = "osg-studio/backup"
+VERSION = 1
+DATABASE = "studio.db"
+MANIFEST = "manifest.json"
+
+_CLIP_FILE = re.compile(r"clips/[0-9a-f]{32}/[a-z]{1,16}(\.[a-z]{1,5})?")
+_PIECE = 1024 * 1024
+
+
+def write_backup(data_dir: Path, target: Path) -> int:
+    """Write a backup of a data folder, also of one that a server uses.
+
+    Parameters
+    ----------
+    data_dir
+        The folder; its database must be SQLite.
+    target
+        The file to write; one that exists is replaced once the new one is complete.
+
+    Returns
+    -------
+    The number of clips in it.
+
+    Raises
+    ------
+    OsgError
+        When there is no database, it is damaged, or a file of a clip is missing.
+
+    """
+    database = data_dir / DATABASE
+    if not database.is_file():
+        raise OsgError(f"{data_dir} holds no {DATABASE}; give the data folder with --data-dir")
+    partial = target.with_name(target.name + PARTIAL_SUFFIX)
+    try:
+        with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
+            snapshot = Path(scratch) / DATABASE
+            _copy_database(database, snapshot)
+            clips = _files_by_clip(snapshot)
+            # Videos and recordings are compressed already.
+            with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
+                digests = {DATABASE: _add(archive, DATABASE, snapshot)}
+                for clip_id, names in clips.items():
+                    for name in names:
+                        place = f"clips/{clip_id}/{name}"
+                        digests[place] = _add(archive, place, data_dir / place)
+                manifest = {"format": FORMAT, "version": VERSION, "files": digests}
+                archive.writestr(MANIFEST, json.dumps(manifest))
+        publish(partial, target)
+    except FileNotFoundError as error:
+        raise OsgError(
+            f"{error.filename} is missing, though the database refers to it; if the server was "
+            "restarted meanwhile, run the backup again"
+        ) from error
+    finally:
+        partial.unlink(missing_ok=True)
+    return len(clips)
+
+
+def restore_backup(source: Path, data_dir: Path) -> int:
+    """Restore a backup into a data folder that holds no database.
+
+    Every file is verified before the database appears, so that a restore that is broken off leaves
+    an empty folder to a server, and can be repeated.
+
+    Returns
+    -------
+    The number of clips restored.
+
+    Raises
+    ------
+    OsgError
+        When the file is no backup, is damaged, or the folder holds a database.
+
+    """
+    if (data_dir / DATABASE).exists():
+        raise OsgError(f"{data_dir} holds a database already; restore into an empty folder")
+    data_dir.mkdir(parents=True, exist_ok=True, mode=0o700)
+    clips = data_dir / "clips"
+    if clips.is_dir() and any(clips.iterdir()):
+        raise OsgError(f"{clips} is not empty; restore into an empty folder")
+    with (
+        _open_backup(source) as (archive, digests),
+        tempfile.TemporaryDirectory(prefix=".restoring-", dir=data_dir) as scratch,
+    ):
+        folder = Path(scratch)
+        for name, digest in digests.items():
+            place = folder / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            with archive.open(name) as packed, place.open("wb") as file:
+                if _copy(packed, file) != digest:
+                    raise OsgError(f"{name} in {source.name} is damaged; use another backup")
+        _check_database(folder / DATABASE)
+        if (folder / "clips").is_dir():
+            shutil.rmtree(clips, ignore_errors=True)
+            (folder / "clips").replace(clips)
+        sync_directory(data_dir)
+        publish(folder / DATABASE, data_dir / DATABASE)
+    return len({name.split("/")[1] for name in digests if name.startswith("clips/")})
+
+
+def _copy_database(database: Path, target: Path) -> None:
+    with (
+        closing(sqlite3.connect(f"{database.resolve().as_uri()}?mode=ro", uri=True)) as source,
+        closing(sqlite3.connect(target)) as copy,
+    ):
+        try:
+            source.backup(copy)
+        except sqlite3.Error as error:
+            raise OsgError(f"the database cannot be copied now: {error}; try again") from error
+        # One file, whatever the server's journal is.
+        copy.execute("PRAGMA journal_mode=DELETE")
+    _check_database(target)
+
+
+def _check_database(database: Path) -> None:
+    try:
+        with closing(sqlite3.connect(database)) as connection:
+            (verdict,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+    except sqlite3.Error as error:
+        verdict = str(error)
+    if verdict != "ok":
+        raise OsgError(f"the database is damaged ({verdict})")
+
+
+def _files_by_clip(snapshot: Path) -> dict[str, list[str]]:
+    """Return the names of the files of each clip that the database refers to."""
+    with closing(sqlite3.connect(snapshot)) as connection:
+        rows = connection.execute(
+            "SELECT clip.id, clip.source, EXISTS (SELECT 1 FROM job WHERE job.clip_id = clip.id "
+            "AND job.status = ?) FROM clip",
+            [JobStatus.DONE.value],
+        ).fetchall()
+    # What an unfinished job has written so far, it writes again.
+    made = (VIDEO, RECORDING, POSTER, FILMSTRIP)
+    return {
+        clip_id: list(dict.fromkeys([source, *(made if done else ())]))
+        for clip_id, source, done in rows
+    }
+
+
+def _add(archive: zipfile.ZipFile, name: str, path: Path) -> str | None:
+    """Add a file and return its SHA-256; pictures may be missing, and are left out."""
+    if name.endswith((POSTER, FILMSTRIP, f"/{VIDEO}")) and not path.is_file():
+        return None
+    with path.open("rb") as file, archive.open(name, "w", force_zip64=True) as packed:
+        return _copy(file, packed)
+
+
+def _copy(source: IO[bytes], target: IO[bytes]) -> str:
+    digest = hashlib.sha256()
+    while piece := source.read(_PIECE):
+        digest.update(piece)
+        target.write(piece)
+    return digest.hexdigest()
+
+
+@contextmanager
+def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]]]:
+    """Open a backup; yield it with the SHA-256 of each of its files."""
+    try:
+        with zipfile.ZipFile(source) as archive:
+            manifest: Any = json.loads(archive.read(MANIFEST))
+            if manifest.get("format") != FORMAT or manifest.get("version") != VERSION:
+                raise OsgError(f"{source.name} is a backup of another version of this program")
+            digests = {name: digest for name, digest in manifest["files"].items() if digest}
+            for name in digests:
+                # Only names that a backup of ours has become paths.
+                if name != DATABASE and not _CLIP_FILE.fullmatch(name):
+                    raise OsgError(f"{source.name} holds {name[:80]!r}, which no backup does")
+            yield archive, digests
+    except FileNotFoundError as error:
+        raise OsgError(f"cannot read {source}: {error.strerror}") from error
+    except (zipfile.BadZipFile, KeyError, ValueError, AttributeError) as error:
+        raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error

@@ -1,0 +1,95 @@
+"""A backup holds what was acknowledged, and a restore brings it all back or nothing."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.recognition.errors import OsgError
+from app.settings import Settings
+from app.store.backup import DATABASE, restore_backup, write_backup
+from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import running
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """Return the backup of a server with a clip, a language and a recognition, that runs on."""
+    settings = Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "none")
+    target = tmp_path / "kept.zip"
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        clip = add_recorded_clip(server.studio, recording_of("circle"))
+        language = client.post(LANGUAGES, json={"name": "pool"}).json()["id"]
+        add_gesture(client, language, clip)
+        body = {"clip_id": clip, "language_id": language}
+        assert client.post("/api/v1/recognitions", json=body).status_code == 201
+        assert write_backup(settings.data_dir, target) == 1
+        client.post(LANGUAGES, json={"name": "after the backup"})
+    return target
+
+
+def test_all_comes_back_on_another_machine(kept: Path, tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "new", samples_dir=tmp_path / "none")
+    assert restore_backup(kept, settings.data_dir) == 1
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (language,) = client.get(LANGUAGES).json()
+        assert (language["name"], language["revision"], language["labels"]) == (
+            "pool",
+            2,
+            ["circle"],
+        )
+        (clip,) = client.get("/api/v1/clips").json()
+        assert len(client.get(f"/api/v1/clips/{clip['id']}/takes").json()) == 1
+        assert len(client.get(f"/api/v1/clips/{clip['id']}/video").content) == 1024
+        assert len(client.get("/api/v1/recognitions").json()) == 1
+    assert not list(settings.data_dir.glob(".restoring-*"))
+
+
+def test_a_damaged_backup_restores_nothing(kept: Path, tmp_path: Path) -> None:
+    content = bytearray(kept.read_bytes())
+    damaged = tmp_path / "damaged.zip"
+    for place in range(0, len(content), len(content) // 25):
+        changed = content.copy()
+        changed[place] ^= 0xFF
+        damaged.write_bytes(changed)
+        folder = tmp_path / f"from {place}"
+        try:
+            restore_backup(damaged, folder)
+        except OsgError:
+            assert not (folder / DATABASE).exists()
+            assert not list(folder.glob("clips/*"))
+
+
+@pytest.mark.parametrize("name", ["../../evil", "clips/../evil", "/etc/passwd", "clips/x/video"])
+def test_only_names_of_ours_become_paths(kept: Path, tmp_path: Path, name: str) -> None:
+    hostile = tmp_path / "hostile.zip"
+    with zipfile.ZipFile(kept) as archive, zipfile.ZipFile(hostile, "w") as written:
+        manifest = archive.read("manifest.json").decode()
+        first = next(each for each in archive.namelist() if each.startswith("clips/"))
+        written.writestr("manifest.json", manifest.replace(first, name))
+        for each in archive.namelist():
+            if each != "manifest.json":
+                written.writestr(name if each == first else each, archive.read(each))
+    with pytest.raises(OsgError, match="which no backup does"):
+        restore_backup(hostile, tmp_path / "new")
+
+
+def test_what_is_there_is_never_overwritten(kept: Path, tmp_path: Path) -> None:
+    with pytest.raises(OsgError, match="holds a database already"):
+        restore_backup(kept, tmp_path / "data")
+    before = kept.read_bytes()
+    with pytest.raises(OsgError, match=r"holds no studio\.db"):
+        write_backup(tmp_path / "nothing", kept)
+    assert kept.read_bytes() == before
+
+
+def test_what_is_no_backup_is_said_so(tmp_path: Path) -> None:
+    other = tmp_path / "other.zip"
+    other.write_bytes(b"no zip")
+    for source in (other, tmp_path / "absent.zip"):
+        with pytest.raises(OsgError, match=r"other\.zip is no backup|cannot read"):
+            restore_backup(source, tmp_path / "new")
