@@ -17,7 +17,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
-    MIN_DISPLACEMENT,
+    LEAST_DISPLACEMENT,
     choose_landmarks,
     find_salient_landmarks,
     measure_displacements,
@@ -263,6 +263,6 @@ def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"
     return (
         f"nothing moves in the demonstration of {label!r}: {most} has the largest displacement, "
-        f"{moved[most]:.2f} {unit}, and a hand or the head needs {MIN_DISPLACEMENT:g}: show the "
+        f"{moved[most]:.2f} {unit}, and at least {LEAST_DISPLACEMENT:g} are needed: show the "
         f"gesture larger, choose another range of the clip, or name the salient landmarks"
     )

@@ -90,7 +90,7 @@ def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
             "too_small",
             label,
             f"{gesture.label} spans only {size:.2f} torso lengths, and even an idle hand moves up "
-            "to 0.2: show it larger",
+            f"to 0.2{_predict_misses(gesture)}: show it larger",
         )
     for name in gesture.salient:
         if (seen := measure_visible_share(shown, name)) < LEAST_SEEN:
@@ -107,6 +107,13 @@ def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
             f"{gesture.label} holds a hand up and still for {held:.1f} s: with its fingers spread "
             "that is a salute, and ends the take; keep the fist closed or the hand moving",
         )
+
+
+def _predict_misses(gesture: Gesture) -> str:
+    """Return the estimated rate of misses as a clause, empty where it is not known."""
+    if gesture.rates is None:
+        return ""
+    return f"; about {gesture.rates.miss:.0%} of other people's takes will be missed"
 
 
 def measure_visible_share(shown: Trajectory, landmark: str) -> float:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from app.recognition.errors import GestureError
-from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, TORSO
+from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS, TORSO
 from app.recognition.poses.trajectory import Trajectory
 
 MIN_DISPLACEMENT = 0.3
@@ -24,6 +24,13 @@ A diver's idle hand sculls for balance, more so during wide gestures, so a fixed
 enough. In two-handed recordings the smaller displacement is rarely below half of the larger.
 """
 
+LEAST_DISPLACEMENT = 0.15
+"""Displacement below which nothing moves at all: a pose model's jitter and a body's sway.
+
+Between it and `MIN_DISPLACEMENT` a gesture is accepted, such as one towards the camera, and the
+health check warns that it is small.
+"""
+
 OUTLIER_PERCENTILES = (5.0, 95.0)
 """The percentiles taken as peak to peak.
 
@@ -33,10 +40,14 @@ turns round there, so little of them is lost.
 
 _GROUP_OF = {name: group for group, names in LANDMARK_GROUPS.items() for name in names}
 
-_NEVER_SALIENT = frozenset({*POSE_LANDMARKS, TORSO}) - frozenset(_GROUP_OF)
-"""MediaPipe's arms, trunk and legs, which only the author can choose.
+_JOINTS = frozenset({*SHOULDERS, "left_elbow", "right_elbow"})
+"""Joints of the upper body that are salient only where no hand and no head moves."""
 
-Shoulders and hips are the frame of reference, elbows follow the hands, and legs swim.
+_NEVER_SALIENT = frozenset({*POSE_LANDMARKS, TORSO}) - frozenset(_GROUP_OF)
+"""MediaPipe's arms, trunk and legs.
+
+Hips are the frame of reference, and legs swim: only the author can choose them. Elbows follow the
+hands: they count where no hand moves (`_JOINTS`).
 """
 
 
@@ -72,6 +83,9 @@ def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
     representative if available, so that all recordings use the same one. Landmarks of other sets
     than MediaPipe's are not grouped.
 
+    Where none of them moves by `MIN_DISPLACEMENT`, an elbow or a shoulder may carry the gesture;
+    where none of these does either, the landmarks that move most, from `LEAST_DISPLACEMENT`.
+
     Returns
     -------
     Names in the trajectory's order; empty when nothing moves.
@@ -79,7 +93,26 @@ def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
     """
     moved = _eligible_displacements(trajectory)
     bar = find_least_displacement(trajectory)
-    return tuple(name for name in trajectory.landmarks if moved.get(name, 0.0) >= bar)
+    chosen = {name for name, displacement in moved.items() if displacement >= bar}
+    if not chosen:
+        chosen = _find_other_moving(trajectory, moved)
+    return tuple(name for name in trajectory.landmarks if name in chosen)
+
+
+def _find_other_moving(trajectory: Trajectory, hands: Mapping[str, float]) -> set[str]:
+    """Return the landmarks that carry a gesture in which no hand or head moves far."""
+    joints = {
+        name: moved for name, moved in measure_displacements(trajectory).items() if name in _JOINTS
+    }
+    for moved, least in (
+        (joints, MIN_DISPLACEMENT),
+        ({**joints, **hands}, LEAST_DISPLACEMENT),
+    ):
+        largest = max(moved.values(), default=0.0)
+        if largest >= least:
+            bar = max(least, MIN_SHARE_OF_LARGEST * largest)
+            return {name for name, displacement in moved.items() if displacement >= bar}
+    return set()
 
 
 def find_least_displacement(trajectory: Trajectory) -> float:

@@ -70,6 +70,20 @@ def test_hand_stands_for_its_fingers_and_elbow_and_legs_never_count() -> None:
     assert salient(poses) == ("right_wrist",)
 
 
+def test_an_elbow_carries_a_gesture_in_which_no_hand_moves() -> None:
+    poses = with_path(recording(rest, jitter=0.005), "left_elbow", sway(0.5))
+    assert salient(poses) == ("left_elbow",)
+
+
+def test_a_small_gesture_is_carried_by_what_moves_most() -> None:
+    poses = with_path(recording(rest, jitter=0.005), "right_wrist", sway(0.25))
+    assert salient(poses) == ("right_wrist",)
+
+
+def test_a_body_that_sways_shows_nothing() -> None:
+    assert salient(with_path(recording(rest, jitter=0.01), "right_wrist", sway(0.1))) == ()
+
+
 def test_a_finger_stands_for_its_hand_where_the_wrist_is_not_in_the_set() -> None:
     names = tuple(name for name in POSE_LANDMARKS if name != "right_wrist")
     poses = with_path(recording(rest, landmarks=names), "right_index", sway(1.0))
