@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import FrameLocator, Locator, Page, expect
 
 from app.recognition import Language
+from app.recognition.voters.registry import VOTERS
 from app.ui.workspace import initial_frame
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
@@ -126,7 +127,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     support = support_in(table)
     assert len(support) == 9
     assert 95 <= sum(support.values()) <= 105
-    assert table.locator("tbody tr").count() == 17
+    assert table.locator("tbody tr").count() == len(VOTERS)
     outcome = page.locator("#outcome")
     expect(outcome).to_have_text(re.compile(r"Recognised as .*voters with \d+ % of the weight"))
     winner = outcome.locator("b.chosen").inner_text()

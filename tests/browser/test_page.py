@@ -182,6 +182,11 @@ def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> 
     expect(cards.first).to_contain_text("circle")
 
 
+def card_of(label: str) -> str:
+    """Return the alternative text of a gesture's card."""
+    return f"Trajectory of {label}, from the dot along the arrow"
+
+
 @pytest.mark.parametrize("label", ["..", ".", "/", "%2e%2e", "\U0001f42c" * 40], ids=ascii)
 def test_a_gesture_is_shown_renamed_and_deleted_whatever_its_label(
     open_page: OpenPage, library: Library, label: str
@@ -190,14 +195,14 @@ def test_a_gesture_is_shown_renamed_and_deleted_whatever_its_label(
     page = open_page(library.address, scene=False)
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
     for shown, other in ((label, "plain"), ("plain", label)):
-        image = page.get_by_role("img", name=f"Trajectory of {shown}", exact=True)
+        image = page.get_by_role("img", name=card_of(shown), exact=True)
         image.scroll_into_view_if_needed()
         page.wait_for_function("image => image.naturalWidth > 0", arg=image.element_handle())
         image.hover()
         page.get_by_role("button", name=f"Change {shown}", exact=True).click()
         page.get_by_label("Label").fill(other)
         page.get_by_role("button", name="Save", exact=True).click()
-    page.get_by_role("img", name=f"Trajectory of {label}", exact=True).hover()
+    page.get_by_role("img", name=card_of(label), exact=True).hover()
     page.get_by_role("button", name=f"Delete {label}", exact=True).click()
     expect(cards).to_have_count(2)
     assert library.client.get(f"/api/v1/languages/{library.language}").status_code == 200

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Request, expect
 
 from app.settings import Settings
 from tests.api.running import running, until
@@ -74,6 +74,10 @@ def padded(path: Path, size: int) -> Path:
     return path
 
 
+def is_upload(request: Request) -> bool:
+    return request.method == "PATCH" and "/uploads/" in request.url
+
+
 def test_an_upload_goes_on_where_a_killed_server_left_it(
     open_page: OpenPage, server: Address, tmp_path: Path
 ) -> None:
@@ -95,7 +99,7 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
     network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
     with ExitStack() as stack:
         # The page may go on before this process hears that the server is there.
-        with page.expect_request(lambda request: request.method == "PATCH") as going_on:
+        with page.expect_request(is_upload) as going_on:
             _, client = stack.enter_context(served(data, port=port))
         assert int(going_on.value.headers["upload-offset"]) == came
         expect(page.get_by_role("button", name="Show long dive.mp4")).to_be_visible()

@@ -54,14 +54,18 @@ class ShownGesture:
         """
         trajectory = self.trajectory
         assert trajectory is not None
-        both_ways = self.direction != "on"
+        both_ways, either_way = self.direction != "on", self.direction == "off"
         either_side = self.mirror == "auto" and uses_both_sides(self.salient)
         hands = find_hands(self.salient)
 
         def compute() -> DescribedGesture:
             shown = build_movement(trajectory, landmarks)
             found = list_traversals(
-                shown, hands=hands, both_ways=both_ways, either_side=either_side
+                shown,
+                hands=hands,
+                both_ways=both_ways,
+                either_way=either_way,
+                either_side=either_side,
             )
             found = found if every else found[:1]
             movements = [each.of(shown, landmarks) for each in found]
@@ -74,5 +78,5 @@ class ShownGesture:
             )
 
         return trajectory.compute_once(
-            ("traversals", landmarks, hands, both_ways, either_side, every), compute
+            ("traversals", landmarks, hands, both_ways, either_way, either_side, every), compute
         )

@@ -19,14 +19,14 @@ BACKWARD_PENALTY = 2.0
 """Factor on the distances to a gesture traversed backwards.
 
 People keep the demonstrated direction more often than they reverse it. On other people's digits
-and commands the accuracy is flat from 1.2 to 2 and falls beyond.
+and commands the accuracy is flat from 1.2 to 2 and falls beyond; whole bodies lose with less.
 """
 
 EXCHANGED_PENALTY = 3.0
 """Factor on the distances to a gesture with exchanged sides.
 
 One in fourteen recorded two-handed figures has left and right exchanged throughout. They are
-recognised with factors from 1.5 to 2; below, spreading wings begins to look like folding them.
+recognised with factors from 1.5 to 3; below, spreading wings begins to look like folding them.
 """
 
 STARTS = 8
@@ -54,17 +54,20 @@ class Traversal:
         Whether the direction is reversed.
     exchanged
         Whether left and right are exchanged.
+    either_way
+        Whether the author has said that the direction does not count: backwards is as good.
 
     """
 
     order: npt.NDArray[np.intp]
     backward: bool = False
     exchanged: bool = False
+    either_way: bool = False
 
     @property
     def penalty(self) -> float:
         """Factor on the distances of this traversal."""
-        return (BACKWARD_PENALTY if self.backward else 1.0) * (
+        return (BACKWARD_PENALTY if self.backward and not self.either_way else 1.0) * (
             EXCHANGED_PENALTY if self.exchanged else 1.0
         )
 
@@ -79,7 +82,12 @@ SIDES_EXCHANGED = Traversal(AS_SHOWN.order, exchanged=True)
 
 
 def list_traversals(
-    movement: Movement, *, hands: int, both_ways: bool, either_side: bool = False
+    movement: Movement,
+    *,
+    hands: int,
+    both_ways: bool,
+    either_way: bool = False,
+    either_side: bool = False,
 ) -> tuple[Traversal, ...]:
     """Return the traversals of a gesture, first the one that was demonstrated.
 
@@ -92,6 +100,8 @@ def list_traversals(
         reordered: with two hands, opening is the reverse of closing.
     both_ways
         Whether it may be traversed backwards.
+    either_way
+        Whether backwards is as good as forwards, by the author's switch.
     either_side
         Whether left and right may have been exchanged.
 
@@ -101,7 +111,11 @@ def list_traversals(
     starts = range(STARTS) if is_closed(movement) else range(1)
     rolls = [np.roll(AS_SHOWN.order, -start * STEPS // STARTS) for start in starts]
     forward = [AS_SHOWN] + [Traversal(order) for order in rolls[1:]]
-    backward = [Traversal(order[::-1], backward=True) for order in rolls] if both_ways else []
+    backward = (
+        [Traversal(order[::-1], backward=True, either_way=either_way) for order in rolls]
+        if both_ways
+        else []
+    )
     return (*forward, *backward)
 
 

@@ -24,8 +24,8 @@ A diver's idle hand sculls for balance, more so during wide gestures, so a fixed
 enough. In two-handed recordings the smaller displacement is rarely below half of the larger.
 """
 
-LEAST_DISPLACEMENT = 0.15
-"""Displacement below which nothing moves at all: a pose model's jitter and a body's sway.
+LEAST_DISPLACEMENT = 0.2
+"""Displacement below which nothing moves at all: a pose model's jitter, an idle hand.
 
 Between it and `MIN_DISPLACEMENT` a gesture is accepted, such as one towards the camera, and the
 health check warns that it is small.

@@ -67,7 +67,7 @@ def test_what_does_not_exist_is_a_problem_on_every_route(client: httpx.Client) -
     ]
     assert len(addressed) > 15
     for method, path in addressed:
-        address = path.replace("{label}", "circle")
+        address = path.replace("{label}", "circle").replace("{index}", "0")
         for name in IDS:
             address = address.replace(f"{{{name}}}", "missing")
         body, query = BODIES.get((method, path)), QUERIES.get(path)
@@ -94,6 +94,10 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/api/v1/languages/{language_id}/revert"): {"revision": 1},
     ("POST", "/api/v1/languages/{language_id}/gestures"): {"label": "x", "clip_id": "missing"},
     ("PATCH", "/api/v1/languages/{language_id}/gestures"): {"label": "x"},
+    ("POST", "/api/v1/languages/{language_id}/demonstrations"): {
+        "label": "x",
+        "clip_id": "missing",
+    },
     ("PATCH", "/api/v1/languages/{language_id}/gestures/{label}"): {"label": "x"},
     ("POST", "/api/v1/languages/{language_id}/preview"): {"label": "x", "change": {}},
     ("POST", "/api/v1/languages/{language_id}/preview/health"): {"label": "x", "change": {}},
@@ -103,9 +107,11 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
 
 
 GESTURES = "/api/v1/languages/{language_id}/gestures"
+DEMONSTRATIONS = "/api/v1/languages/{language_id}/demonstrations"
 QUERIES = {
     "/api/v1/languages/{language_id}/contrast": {"one": "circle", "other": "line"},
     **{GESTURES + part: {"label": "circle"} for part in ("", "/image", "/demonstration")},
+    **{DEMONSTRATIONS + part: {"label": "circle"} for part in ("", "/{index}", "/{index}/image")},
 }
 
 

@@ -12,7 +12,7 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import (
-    MIN_DISPLACEMENT,
+    LEAST_DISPLACEMENT,
     choose_landmarks,
     find_salient_landmarks,
     measure_displacements,
@@ -110,8 +110,12 @@ def test_nothing_is_salient_in_a_diver_at_rest(poses: PoseSequence) -> None:
 def test_the_threshold_is_in_torso_lengths_not_in_pixels() -> None:
     for torso in (20.0, 400.0):
         assert salient(recording(circle, torso=torso)) == ("right_wrist",)
-    just_below = with_path(recording(rest), "right_wrist", sway(MIN_DISPLACEMENT * 0.98))
-    assert salient(just_below) == ()
+        below = with_path(
+            recording(rest, torso=torso),
+            "right_wrist",
+            sway(LEAST_DISPLACEMENT * 0.98) * torso / 120,
+        )
+        assert salient(below) == ()
 
 
 def test_the_author_may_choose_any_landmark_that_is_seen() -> None:
