@@ -14,7 +14,7 @@ import numpy as np
 from app.recognition import PoseError
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses

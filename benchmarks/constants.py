@@ -24,7 +24,7 @@ from app.recognition import Gesture, Language, PoseError, Recognizer
 from app.recognition.decision.calibration import REACH
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import SCORE_FLOOR
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES

@@ -22,7 +22,7 @@ from app.recognition.explanation.differences import find_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.features.motion import parse_body_part
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import ARM_PARTS, draw_variants

@@ -9,7 +9,7 @@ from app.recognition.decision.fusion import fuse, weigh_voters
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
 from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.features.motion import build_movement
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS

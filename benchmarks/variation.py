@@ -36,7 +36,7 @@ from app.evaluation.proportion import Share
 from app.recognition.decision.calibration import calibrate
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person

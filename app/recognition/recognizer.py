@@ -15,7 +15,8 @@ from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.trace import Trace
 from app.recognition.decision.vote import Vote
 from app.recognition.errors import LanguageError, PoseError
-from app.recognition.gestures.gesture import Gesture, condense
+from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import ProfileName, find_profile
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import Tuning

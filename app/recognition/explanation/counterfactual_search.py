@@ -17,7 +17,7 @@ from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_candidates import list_interventions
 from app.recognition.explanation.counterfactual_kinds import Intervention, Preference
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants
 

@@ -8,7 +8,7 @@ from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.differences import find_differences
 from app.recognition.explanation.divergence import measure_divergence
 from app.recognition.explanation.pairing import Pairing
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer
 from app.recognition.text.wording import humanize
 

@@ -21,15 +21,13 @@ from app.recognition.features.trajectory_image import (
 )
 from app.recognition.gestures.demonstration import (
     MAX_DEMONSTRATIONS,
+    MAX_MOMENTS,
     Demonstration,
     check_diver,
     freeze_descriptors,
     freeze_image,
     is_shown_by,
 )
-from app.recognition.gestures.demonstration import MAX_LANDMARKS as MAX_LANDMARKS
-from app.recognition.gestures.demonstration import MAX_MOMENTS as MAX_MOMENTS
-from app.recognition.gestures.demonstration import condense as condense
 from app.recognition.gestures.switches import AUTOMATIC, Switches
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory

@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
-from app.recognition.gestures.gesture import Gesture, condense
+from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.embedding import embed_gestures

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.recognition.errors import PoseError
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer
 from app.recognition.simulation.background_motion import simulate_background_motion
 

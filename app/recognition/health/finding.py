@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.gestures.gesture import MAX_MOMENTS, Gesture
+from app.recognition.gestures.demonstration import MAX_MOMENTS
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.remedy import Remedy
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements

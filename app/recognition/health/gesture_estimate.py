@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.health.check import TAKES, check_pairs
 from app.recognition.health.report import PairHealth
 from app.recognition.health.simulated_trials import simulate_trials

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.rejection import SCORE_FLOOR
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer

@@ -11,7 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.recognition.gestures.gesture import Gesture, condense
+from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.background_motion import simulate_background_motion
 

@@ -7,7 +7,7 @@ import pytest
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.decision.calibration import CUES, calibrate
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.switches import Switches
 from app.recognition.simulation.variation import draw_variants
 from tests.recognition.strategies import SHAPES, circle, recording, wedge

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.decision.motion_references import MotionReferences, describe_movement
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import MOTION_VOTERS

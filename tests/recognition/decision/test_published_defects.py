@@ -15,7 +15,7 @@ from app.recognition import Gesture, GestureError, Language, PoseSequence, Recog
 from app.recognition.decision.majority_vote import MajorityVote
 from app.recognition.features.contour import Contour
 from app.recognition.features.trajectory_image import draw
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.shape_voter import describe_drawing

@@ -9,7 +9,7 @@ from app.recognition import Gesture, PoseSequence
 from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory

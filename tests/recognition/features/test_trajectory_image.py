@@ -18,7 +18,7 @@ from app.recognition.features.trajectory_image import (
     draw,
     simplify,
 )
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from tests.recognition.strategies import Shape, circle, line, recording, recordings, strokes

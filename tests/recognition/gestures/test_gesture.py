@@ -8,7 +8,8 @@ from hypothesis import given
 
 from app.recognition import Gesture, GestureError, PoseSequence
 from app.recognition.features.trajectory_image import draw
-from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_LANDMARKS, MAX_MOMENTS, condense
+from app.recognition.gestures.demonstration import MAX_LANDMARKS, MAX_MOMENTS, condense
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
 from tests.recognition.strategies import circle, recording, recordings, rest

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, OsgError, Recognizer
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import VOTER_NAMES

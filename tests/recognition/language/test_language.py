@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
-from app.recognition.gestures.gesture import MAX_LANDMARKS
+from app.recognition.gestures.demonstration import MAX_LANDMARKS
 from app.recognition.language.schema import MAX_GESTURES
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
 

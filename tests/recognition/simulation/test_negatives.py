@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.background_motion import MANNERS
 from app.recognition.simulation.negatives import MOST_SPLICES, draw_negatives, splice, splice_all

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from app.recognition import Language, PoseSequence
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.errors import OsgError
-from app.recognition.gestures.gesture import condense
+from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory, Unit
 from app.recognition.simulation.variation import SPREADS, Person, Spread, draw_variants, vary
