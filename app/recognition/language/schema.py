@@ -93,6 +93,20 @@ class RatesEntry(_Model):
     ]
 
 
+EncodedImage = Annotated[
+    str,
+    Field(
+        max_length=100_000,
+        description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
+    ),
+]
+
+Descriptors = Annotated[
+    dict[str, list[FiniteFloat]],
+    Field(description="Per voter its description of the image."),
+]
+
+
 class DemonstrationEntry(_Model):
     """A further demonstration of a gesture, with the same keys as the first."""
 
@@ -104,17 +118,8 @@ class DemonstrationEntry(_Model):
         ),
     ]
     trajectory: TrajectoryEntry
-    image: Annotated[
-        str,
-        Field(
-            max_length=100_000,
-            description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
-        ),
-    ]
-    descriptors: Annotated[
-        dict[str, list[FiniteFloat]],
-        Field(description="Per voter its description of the image."),
-    ]
+    image: EncodedImage
+    descriptors: Descriptors
     diver: Annotated[
         Diver, Field(description="Name of the diver who shows it. Left out when not known.")
     ] = ""
@@ -137,17 +142,8 @@ class GestureEntry(_Model):
         TrajectoryEntry | None,
         Field(description="null where the gesture was imported from a file of images."),
     ]
-    image: Annotated[
-        str,
-        Field(
-            max_length=100_000,
-            description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
-        ),
-    ]
-    descriptors: Annotated[
-        dict[str, list[FiniteFloat]],
-        Field(description="Per voter its description of the image."),
-    ]
+    image: EncodedImage
+    descriptors: Descriptors
     thresholds: Annotated[
         dict[str, FiniteFloat],
         Field(
