@@ -103,7 +103,7 @@ class Movement:
         The mean over the steps of the squares summed over all landmarks; paths without motion
         are unchanged.
         """
-        return normalize_size(self.paths - np.add.reduce(self.paths) / len(self.paths))
+        return normalize_figure(self.paths)
 
     @cached_property
     def under_way(self) -> FloatArray:
@@ -144,6 +144,11 @@ class Movement:
                 self.limbs.shape
             ),
         )
+
+
+def normalize_figure(paths: FloatArray) -> FloatArray:
+    """Move each path of ``(N, K, 2)`` to its own mean, and divide all by one size."""
+    return normalize_size(paths - np.add.reduce(paths) / len(paths))
 
 
 def normalize_size(vectors: FloatArray) -> FloatArray:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from app.recognition.features.motion import Movement, normalize_size
+from app.recognition.features.motion import Movement, normalize_figure
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
 
@@ -25,6 +23,4 @@ class ArmPath(DtwVoter):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` coordinates in sizes, NaN where not seen."""
-        places = movement.places
-        centred = places - np.add.reduce(places) / len(places)
-        return normalize_size(centred).reshape(len(centred), -1)
+        return normalize_figure(movement.places).reshape(len(movement.places), -1)
