@@ -79,11 +79,11 @@ class Trim(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         # The ends are times of frames; a rounding error must not drop these.
         poses = context.whole.between(self.start - 1e-6, self.end + 1e-6)
         return replace(context, poses=poses)
@@ -100,11 +100,11 @@ class VoterWeight(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return describe_weight(self.voter, self.factor)
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         weights = {**context.tuning.weights}
         weights[self.voter] = weights.get(self.voter, 1.0) * self.factor
         return context.with_tuning(replace(context.tuning, weights=weights))
@@ -120,11 +120,11 @@ class Simplification(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return describe_simplification(self.tolerance)
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         return context.with_tuning(replace(context.tuning, simplification=self.tolerance))
 
 
@@ -138,11 +138,11 @@ class KeypointRepair(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return describe_repair(self.on)
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         return context.with_tuning(replace(context.tuning, keypoints_repaired=self.on))
 
 
@@ -156,11 +156,11 @@ class OtherProfile(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return f"with the profile {self.profile}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         return context.with_profile(self.profile)
 
 
@@ -175,12 +175,12 @@ class SalientKeypoints(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         followed = join_words(humanize_all(self.salient))
         return f"with {followed} as the salient keypoints of {self.label!r}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         gesture = context.language.gesture(self.label)
         return context.with_gesture(gesture.with_salient(self.salient))
 
@@ -197,11 +197,11 @@ class SwitchPosition(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return f"with the switch {self.switch} of {self.label!r} {self.position}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         gesture = context.language.gesture(self.label)
         switches = replace(gesture.switches, **{self.switch: self.position})
         return context.with_gesture(replace(gesture, switches=switches))
@@ -221,11 +221,11 @@ class FurtherDemonstration(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return f"with this take as another demonstration of {self.label!r}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         gesture = context.language.gesture(self.label)
         return context.with_gesture(gesture.with_demonstration(context.poses))
 
@@ -241,11 +241,11 @@ class NewDemonstration(Intervention):
 
     @property
     def words(self) -> str:
-        """See `Change`."""
+        """See `Intervention`."""
         return f"with this take in place of the demonstration of {self.label!r}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Change`."""
+        """See `Intervention`."""
         before = context.language.gesture(self.label)
         made = Gesture.from_demonstration(
             self.label,
