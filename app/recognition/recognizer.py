@@ -80,7 +80,7 @@ class Recognizer:
         rejected where it is beyond its thresholds, see `rejection`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
-        still too poor to judge get no label, and `fault` gives the reason.
+        still of insufficient quality get no label, and `fault` gives the reason.
 
         Raises
         ------

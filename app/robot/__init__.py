@@ -9,6 +9,7 @@ from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
+    Heartbeat,
     LanguageChanged,
     LanguageRefused,
     PhraseHeard,
@@ -34,6 +35,7 @@ __all__ = [
     "Event",
     "Frame",
     "FramesDropped",
+    "Heartbeat",
     "LandmarkListener",
     "LanguageChanged",
     "LanguageRefused",

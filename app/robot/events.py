@@ -15,6 +15,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BeforeValidator, Field
 
 from app.recognition import Recognition
+from app.recognition.language.short_code import short_code
 from app.recognition.phrases.parser import PhraseEvent
 from app.recognition.recording.segmentation import TakeState
 
@@ -114,6 +115,19 @@ class FramesDropped:
 
 
 @dataclass(frozen=True)
+class Heartbeat:
+    """The runtime works; of live sources alone, at least every 5 seconds.
+
+    A supervisor that reads none for longer starts the robot again.
+    """
+
+    time: Seconds
+    frames: Annotated[Count, Field(description="Looked at since the beginning.")]
+    dropped: Annotated[Count, Field(description="Left out since the beginning.")]
+    lost: Annotated[bool, Field(description="Whether the source gives no frames at present.")]
+
+
+@dataclass(frozen=True)
 class StateChanged:
     """Another state of the salutes."""
 
@@ -138,6 +152,13 @@ class LanguageChanged:
     gestures: Annotated[tuple[str, ...], Field(description="The labels.")]
     profile: Annotated[str, Field(description="The voters that recognise it.")]
     tuning: Annotated[str, Field(description='What differs from that, in words: "recognised ...".')]
+    code: Annotated[
+        str,
+        Field(description="Short code of `sha256`, which the studio shows too."),
+    ] = field(init=False, default="")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "code", short_code(self.sha256))
 
 
 @dataclass(frozen=True)
@@ -259,6 +280,7 @@ Event = (
     | SourceRestored
     | SourceEnded
     | FramesDropped
+    | Heartbeat
     | StateChanged
     | LanguageChanged
     | LanguageRefused

@@ -17,6 +17,7 @@ from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
     FramesDropped,
+    Heartbeat,
     LanguageChanged,
     LanguageRefused,
     SourceEnded,
@@ -30,6 +31,9 @@ from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
 REPORT_SECONDS: Final = 10.0
 """Seconds between two events about dropped frames; keeps a log of several days readable."""
+
+HEARTBEAT_SECONDS: Final = 5.0
+"""Seconds between two heartbeats: a supervisor that waits for three of them acts within 15 s."""
 
 THE_ESTIMATOR: Final = "the pose estimator"
 """Subject of the message about a missing landmark."""
@@ -102,6 +106,8 @@ class Runtime:
         self._stopped = False
         self._drops = DropCounter()
         self._time = 0.0
+        self._beaten = 0.0
+        self._lost = False
 
     def stop(self) -> None:
         """Stop after the current frame; any thread and any signal handler may call this."""
@@ -126,6 +132,7 @@ class Runtime:
                 yield from self._process_frame(given)
             else:
                 yield from self._handle_notice(given)
+            yield from self._beat()
             if self._stopped:
                 break
         yield from self._listener.finish()
@@ -149,15 +156,23 @@ class Runtime:
     def _handle_notice(self, notice: Notice) -> Iterator[Event]:
         match notice:
             case SourceLost(time, reason):
+                self._lost = True
                 yield notice
                 yield from self._listener.abandon(time, f"the source was lost: {reason}")
             case SourceRestored():
+                self._lost = False
                 self._estimator.reset()
                 yield notice
             case SourceWarned():
                 yield notice
             case NoFrame():
                 pass
+
+    def _beat(self) -> Iterator[Heartbeat]:
+        """Yield a heartbeat of a live source when it is due, also while it is lost."""
+        if self._source.live and self._time - self._beaten >= HEARTBEAT_SECONDS:
+            self._beaten = self._time
+            yield Heartbeat(self._time, self._drops.frames, self._drops.dropped, self._lost)
 
     def _update_language(self) -> Iterator[Event]:
         """Activate a new language, if there is one; it also recognises a take that is open."""

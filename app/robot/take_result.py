@@ -87,7 +87,7 @@ def reject_take(
 def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str:
     """Return why a recognition has no label, in words."""
     if recognition.fault:
-        return f"too poor to judge: {recognition.fault}"
+        return f"insufficient recording quality: {recognition.fault}"
     novelty = recognition.novelty[recognition.gestures.index(recognition.nearest)]
     return (
         f"no gesture of {language.name!r}: the nearest, {recognition.nearest!r}, is {novelty:.1f} "

@@ -38,8 +38,8 @@ def language() -> Language:
     return Language(name="shapes", gestures=gestures)
 
 
-def told(recording: Recording, language: Language) -> list[tuple[float, float, str | None]]:
-    """Return when each take was, to a millisecond, and what it was recognised as."""
+def labelled(recording: Recording, language: Language) -> list[tuple[float, float, str | None]]:
+    """Return start, end (to a millisecond) and label of each take."""
     recognizer = Recognizer(language)
     return [
         (round(take.start, 3), round(take.end, 3), recognizer.recognize(take.poses).label)
@@ -55,8 +55,12 @@ def test_recorded_keypoints_come_out_as_the_gestures_that_went_in(
     recording = recording_of("circle", "line", "circle backwards")
     assert callable(rows)
     read = record_bag(write_bag(tmp_path / "dive", rows(recording), storage))
-    assert told(read, language) == told(recording, language)
-    assert [label for *_, label in told(read, language)] == ["circle", "line", "circle backwards"]
+    assert labelled(read, language) == labelled(recording, language)
+    assert [label for *_, label in labelled(read, language)] == [
+        "circle",
+        "line",
+        "circle backwards",
+    ]
     assert np.allclose(read.poses.time, recording.poses.time, atol=1e-9)
     assert np.allclose(read.poses.xy, recording.poses.xy, atol=0.001, equal_nan=True)
     assert read.poses.frame_size == recording.poses.frame_size

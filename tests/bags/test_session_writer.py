@@ -18,6 +18,8 @@ from tests.api.recordings import recording_of
 from tests.bags.sessions import checked
 from tests.recognition.damaged_clips import write_clip
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def recording() -> Recording:
@@ -64,8 +66,8 @@ def test_everything_of_the_session_is_in_it_at_its_time(
     assert set(states) == {"idle", "recording", "done"}
 
     takes = takes_in(recording)
-    told = [(content["start"], content["end"]) for _, content in found["/takes"]]
-    assert told == [(take.start, take.end) for take in takes]
+    ranges = [(content["start"], content["end"]) for _, content in found["/takes"]]
+    assert ranges == [(take.start, take.end) for take in takes]
     results = [content for _, content in found["/recognitions"]]
     assert [(each["nearest"], each["expected"]) for each in results] == [("circle", "circle")] * 2
     assert [each["rejected"] for each in results] == [

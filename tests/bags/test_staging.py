@@ -28,6 +28,7 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     "name",
     ["../dive.mcap", "/etc/dive.mcap", "a/../../dive.mcap", "..\\dive.mcap", "C:\\dive.mcap"],
 )
+@pytest.mark.withstands(row="H14")
 def test_paths_that_lead_out_are_refused(tmp_path: Path, scratch: Path, name: str) -> None:
     path = zip_of(tmp_path / "dive.zip", {name: b"x"})
     with pytest.raises(BagError, match="leads out of its folder"), stage(path):
@@ -45,6 +46,7 @@ def test_links_are_refused(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.withstands(row="H14")
 def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
     tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -61,6 +63,7 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
     assert list(scratch.iterdir()) == []
 
 
+@pytest.mark.withstands(row="H14")
 def test_a_million_entries_are_not_walked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = zip_of(tmp_path / "dive.zip", {f"{index}.mcap": b"" for index in range(12)})
     monkeypatch.setattr(staging, "MOST_ENTRIES", 10)
@@ -101,6 +104,7 @@ def test_only_what_belongs_to_the_recording_is_unpacked(tmp_path: Path) -> None:
     assert not folder.exists()
 
 
+@pytest.mark.withstands(row="H14")
 def test_an_encrypted_archive_is_refused(tmp_path: Path) -> None:
     path = zip_of(tmp_path / "dive.zip", {"dive.mcap": b"secret"})
     content = bytearray(path.read_bytes())

@@ -3,7 +3,7 @@
 from collections.abc import Collection
 
 from app.evaluation.one_shot import LabelledTake
-from benchmarks.drawn_sets import TAKES, drawn_sets
+from benchmarks.sets.drawn_sets import TAKES, drawn_sets
 
 
 def drawn_takes(name: str, people: Collection[int], takes: int) -> list[LabelledTake]:

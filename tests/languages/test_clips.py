@@ -53,6 +53,7 @@ def test_a_clip_starts_to_play_before_all_of_it_is_loaded(sample_clips: Path, na
     assert 0 < file.find(b"moov") < file.find(b"mdat")
 
 
+@pytest.mark.slow
 def test_the_clips_are_different_pictures(sample_clips: Path) -> None:
     colours = [_mean_colours(sample_clips / f"{name}.mp4") for name in TAKES if "test" in name]
     nearest = [

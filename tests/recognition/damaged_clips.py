@@ -117,6 +117,27 @@ def flipped(clip: Path, seed: int, bytes_changed: int) -> Path:
     return clip
 
 
+def huge_motion_jpeg(path: Path, side: int, *, stated: bool) -> Path:
+    """Write a Motion JPEG clip whose pictures claim a size that no encoder could make.
+
+    `stated` tells whether the container claims that size too.
+    """
+    write_clip(path, codec="mjpeg", pixel_format="yuvj420p", size=(96, 96), frames=3)
+    content = path.read_bytes()
+    header, small, large = b"\xff\xc0\x00\x11\x08", (96, 96), (side, side)
+    content = content.replace(
+        header + struct.pack(">HH", *small), header + struct.pack(">HH", *large)
+    )
+    if stated:
+        content = content.replace(struct.pack("<II", *small), struct.pack("<II", *large))
+        content = content.replace(
+            struct.pack(">II", 96 << 16, 96 << 16), struct.pack(">II", side << 16, side << 16)
+        )
+        content = content.replace(struct.pack(">HH", *small), struct.pack(">HH", *large))
+    path.write_bytes(content)
+    return path
+
+
 def sound_only(path: Path) -> Path:
     """Write a clip with half a second of sound and no picture."""
     with av.open(str(path), "w") as container:

@@ -92,6 +92,32 @@ def recording(
     )
 
 
+def known(values: FloatArray | None) -> FloatArray:
+    """Return values that must be there."""
+    assert values is not None
+    return values
+
+
+def in_space(poses: PoseSequence, turned: float = 0.0, reach: float = 0.4) -> PoseSequence:
+    """Give a recording depth, its moving hand `reach` torso lengths in front, and turn the diver.
+
+    `turned` is in degrees, positive to the diver's own left, as the camera far away sees it.
+    """
+    torso, centre = poses.torso_length() or 1.0, known(poses.torso_centre())
+    across, down = np.moveaxis((poses.xy - centre[:, None]) / torso, 2, 0)
+    away = np.zeros_like(across)
+    away[:, poses.landmarks.index("right_wrist")] = -reach
+    cosine, sine = np.cos(np.radians(turned)), np.sin(np.radians(turned))
+    across, away = cosine * across - sine * away, sine * across + cosine * away
+    return PoseSequence(
+        landmarks=poses.landmarks,
+        xy=np.stack([across, down], axis=2) * torso + centre[:, None],
+        time=poses.time,
+        frame_size=poses.frame_size,
+        world=np.stack([across, down, away], axis=2) / 2,
+    )
+
+
 @st.composite
 def strokes(draw: st.DrawFn) -> Shape:
     """Draw smooth strokes a torso length wide or high: sums of three random harmonics."""

@@ -210,7 +210,7 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
         for gesture in language.gestures
         for n in range(10)
     ]
-    recognizer = Recognizer(Language("many", [*many, left]))
+    recognizer = Recognizer(Language("many", [*many, left]), "paper")
     drawn: list[tuple[str, ...]] = []
 
     def noted(trajectory: Trajectory, simplification: float) -> Drawing:

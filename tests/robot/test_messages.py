@@ -15,6 +15,7 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     Event,
     FramesDropped,
+    Heartbeat,
     LanguageChanged,
     LanguageRefused,
     Listener,
@@ -71,6 +72,7 @@ EVENTS: list[Event] = [
     SourceRestored(4.0, 2.0, 3),
     SourceEnded(9.0, 120, 4, True),
     FramesDropped(10.0, 10.0, 3, 200),
+    Heartbeat(5.0, 100, 3, lost=False),
     StateChanged(1.0, TakeState.recording),
     LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲"), "full", "as the profile does"),
     LanguageRefused(5.0, "/format: not a language file", SEAL, 3),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     ActiveLanguage,
     Event,
+    Heartbeat,
     LanguageChanged,
     LanguageRefused,
     Listener,
@@ -29,6 +31,7 @@ from app.robot import (
     StateChanged,
     open_source,
 )
+from app.robot import runtime as runtime_module
 from app.robot.sources.cameras import NetworkStream
 from app.robot.sources.live import LiveSource
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
@@ -84,11 +87,12 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
         events = iter(runtime)
         emitted = [next(events) for _ in range(3)]
     with closing(source):
-        emitted.append(next(events))
+        told = (event for event in events if not isinstance(event, Heartbeat))
+        emitted.append(next(told))
         with MjpegServer(first.port):
-            emitted.append(next(events))
+            emitted.append(next(told))
             runtime.stop()
-            emitted.extend(events)
+            emitted.extend(told)
     opened, _, idle, lost, restored, *_, ended = emitted
     assert isinstance(opened, SourceOpened)
     assert opened.live
@@ -99,6 +103,39 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
     assert isinstance(ended, SourceEnded)
     assert ended.stopped
     assert ended.frames > 0
+
+
+def test_a_live_source_gives_heartbeats_also_while_it_is_lost(
+    estimator: PoseEstimator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runtime_module, "HEARTBEAT_SECONDS", 0.2)
+    beats: list[Heartbeat] = []
+    with MjpegServer() as server:
+        source = LiveSource("reef", partial(NetworkStream, server.address), first_wait=0.05)
+        runtime = Runtime(source, estimator, Listener(spoken("circle")))
+        events = iter(runtime)
+        while not beats:
+            beats += [event for event in [next(events)] if isinstance(event, Heartbeat)]
+    with closing(source):
+        for event in events:
+            if isinstance(event, Heartbeat):
+                beats.append(event)
+                if event.lost:
+                    runtime.stop()
+    assert not beats[0].lost
+    assert beats[-1].lost
+    assert all(later.time - beat.time >= 0.2 for beat, later in pairwise(beats))
+    assert beats[-1].frames >= beats[0].frames
+
+
+def test_a_clip_gives_no_heartbeats(
+    estimator: PoseEstimator, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runtime_module, "HEARTBEAT_SECONDS", 0.0)
+    clip = write_clip(tmp_path / "dive.mp4", frames=3)
+    with closing(open_source(str(clip))) as source:
+        emitted = list(Runtime(source, estimator, Listener(spoken("circle"))))
+    assert not any(isinstance(event, Heartbeat) for event in emitted)
 
 
 def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_refused(

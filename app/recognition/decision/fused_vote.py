@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -16,8 +16,8 @@ from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     MotionReferences,
     describe_movement,
-    drop_ambiguous_traversals,
     find_tempo_dependent,
+    find_unambiguous_traversals,
 )
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
@@ -30,6 +30,7 @@ from app.recognition.decision.rejection import (
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.decision.views import View, Views
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
@@ -122,7 +123,16 @@ class FusedVote:
         # Last: weight factors must not change which directions and tempos the language needs.
         self._factors = tuning.weights_of(VOTER_NAMES)
         self._weights: FloatArray = self._weights * self._factors
+        self._draws = self._needs_drawings()
+        if not self._draws:
+            self._weights[:_SHAPES] = 0.0
         self._thresholds = gather_thresholds(sides, VOTER_NAMES)
+        self._simplification = tuning.simplification
+        self._views = self._prepare_views()
+
+    def _prepare_views(self) -> Views:
+        shapes = self._shapes if self._draws else None
+        return Views(self._shown.gestures, shapes, self._motions, self._simplification)
 
     def _calibrate(self, sides: Sequence[Gesture]) -> None:
         """Compute the weights, and which directions and tempos the language needs."""
@@ -148,9 +158,14 @@ class FusedVote:
             for owner, gesture in zip(self._owners, sides, strict=True)
             if gesture.switches.direction == "off"
         ]
-        self._motions = drop_ambiguous_traversals(
-            self._motions, own, *self._of_motion, self._owners, free
-        )
+        kept = find_unambiguous_traversals(self._motions, own, *self._of_motion, self._owners, free)
+        self._motions = self._motions.take(kept)
+
+    def _needs_drawings(self) -> bool:
+        """Return whether a gesture has only a drawing, or the tuning raises a shape voter."""
+        with_movement = set(self._motions.gestures.tolist())
+        raised = self._factors[:_SHAPES].max() > np.median(self._factors[_SHAPES:])
+        return bool(raised) or not with_movement.issuperset(self._shapes.members)
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return whether a gesture's direction, tempo and sides count; None without movement."""
@@ -209,14 +224,49 @@ class FusedVote:
         other._thresholds = thresholds[:, self._owners]
         return other
 
+    def among(self, gestures: npt.NDArray[np.intp]) -> FusedVote:
+        """Return the same vote between some of the gestures, given in ascending order.
+
+        Weights, thresholds and traversals stay those of the whole language.
+        """
+        sides = np.flatnonzero(np.isin(self._owners, gestures))
+        rows = np.flatnonzero(np.isin(self._motions.gestures, sides))
+        motions = self._motions.take(rows)
+        other = copy(self)
+        other.__dict__.pop("weights", None)
+        other._labels = tuple(self._labels[index] for index in gestures.tolist())
+        other._owners = np.searchsorted(gestures, self._owners[sides])
+        other._shown = References(
+            gestures=tuple(self._shown.gestures[side] for side in sides.tolist()),
+            owners=other._owners,
+            demonstrations=self._shown.demonstrations[sides],
+            mirrored=self._shown.mirrored[sides],
+        )
+        other._shapes = self._shapes.take(sides)
+        other._motions = replace(motions, gestures=np.searchsorted(sides, motions.gestures))
+        other._tempo = self._tempo[sides]
+        other._thresholds = self._thresholds[:, sides]
+        other._views = other._prepare_views()
+        return other
+
     def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
         """Compare a condensed query with the nearest demonstration of every gesture.
 
-        Mirror images count as demonstrations.
+        Mirror images count as demonstrations. Demonstrations with depth are turned to how the
+        query's diver stands (`views`); where that is not known, to the view in which any of them
+        is nearest.
 
-        Without `drawn` the shape voters are left out; they take most of the time and rarely decide.
+        The shape voters compare only where a gesture has no demonstration, or where the tuning
+        gives one of them another weight: otherwise they take a quarter of the time and change no
+        set's accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn`
+        they are left out in any case.
         """
-        distances, rows = self._compare_sides(trajectory, drawn)
+        views = self._views.list_for(trajectory.facing)
+        tables = [self._compare_in(view, trajectory, drawn) for view in views]
+        return min(tables, key=lambda table: float(table.scores.min()))
+
+    def _compare_in(self, view: View, trajectory: Trajectory, drawn: bool) -> ScoreTable:
+        distances, rows = self._compare_sides(view, trajectory, drawn)
         shares = weigh_distances(distances, self._weights, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
         moved = rows >= 0
@@ -239,6 +289,8 @@ class FusedVote:
             ),
             mirrored=self._shown.mirrored[chosen],
             demonstrations=self._shown.demonstrations[chosen],
+            views=view.turns[chosen],
+            facing=trajectory.facing,
             novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
         )
 
@@ -289,23 +341,27 @@ class FusedVote:
             scores=scores,
             novelty=novelty,
             novelty_by_view=dict(zip(CUE_GROUPS, compared.novelty_by_view, strict=True)),
+            facing=compared.facing,
+            views=compared.views.astype(np.float64),
         )
 
     def _compare_sides(
-        self, trajectory: Trajectory, drawn: bool
+        self, view: View, trajectory: Trajectory, drawn: bool
     ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
         """Return ``(V, sides)`` distances and ``(sides,)`` rows of the traversals, -1: none."""
         distances = np.full((len(VOTERS), len(self._owners)), np.inf)
-        if drawn:
-            distances[:_SHAPES] = self._shapes.distances(trajectory)
+        if drawn and view.shapes is not None:
+            distances[:_SHAPES] = view.shapes.distances(trajectory)
             comparable = np.asarray(np.isfinite(distances[:_SHAPES]).any(axis=0))
+        elif drawn:
+            comparable = self._shapes.find_comparable(trajectory)
         else:
             shown = not set(self.needed).isdisjoint(trajectory.landmarks)
             comparable = np.full(len(self._owners), shown)
         rows = np.full(len(self._owners), -1, dtype=np.intp)
         if len(self._motions) and len(trajectory) > 1 and comparable.any():
             query = describe_movement(trajectory, self._motions.landmarks)
-            nearest = self._motions.find_nearest(query, *self._of_motion, len(self._owners))
+            nearest = view.motions.find_nearest(query, *self._of_motion, len(self._owners))
             rows, distances[_SHAPES:] = nearest.rows, nearest.distances
             distances[_SHAPES:, ~comparable] = np.inf
         return distances, rows

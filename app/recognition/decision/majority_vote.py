@@ -78,6 +78,7 @@ class MajorityVote:
             demonstrations=np.array(
                 [part.argmin() for part in np.split(relative, self._first[1:])]
             ),
+            views=np.zeros(count, dtype=np.intp),
         )
 
     def may_win(

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.fusion import fuse
-from app.recognition.decision.shown_gesture import ShownGesture
+from app.recognition.decision.shown_gesture import ShownGesture, describe_traversals
 from app.recognition.features.motion import build_movement, find_followed_landmarks
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
@@ -157,6 +157,31 @@ class MotionReferences:
             {name: values[rows] for name, values in self.descriptors.items()},
         )
 
+    def turn(self, gestures: Sequence[Gesture], turns: Sequence[int]) -> MotionReferences:
+        """Return the same traversals of the demonstrations turned by some degrees each.
+
+        Parameters
+        ----------
+        gestures
+            Those of the references, of one demonstration each.
+        turns
+            Degrees, see `Trajectory.turn`; multiples of one step, because all are cached.
+
+        """
+        descriptors = {name: values.copy() for name, values in self.descriptors.items()}
+        for index in np.unique(self.gestures):
+            seen = gestures[index].trajectory
+            if seen is None or not turns[index]:
+                continue
+            rows = np.flatnonzero(self.gestures == index)
+            turned = seen.turn_once(turns[index])
+            described = _describe_turned(
+                turned, self.landmarks, [self.traversals[row] for row in rows]
+            )
+            for name, values in described.items():
+                descriptors[name][rows] = values
+        return MotionReferences(self.landmarks, self.gestures, self.traversals, descriptors)
+
     def distances(self, query: dict[str, FloatArray]) -> FloatArray:
         """Compute the distances of a query, described per voter, to the rows of `find_promising`.
 
@@ -288,6 +313,18 @@ class MotionReferences:
         return NearestTraversals(np.where(found, compared[chosen], -1), distances)
 
 
+def _describe_turned(
+    trajectory: Trajectory, landmarks: tuple[str, ...], traversals: Sequence[Traversal]
+) -> dict[str, FloatArray]:
+    """Return the descriptors ``(R, ...)`` by voter's name, cached."""
+
+    def compute() -> dict[str, FloatArray]:
+        return describe_traversals(build_movement(trajectory, landmarks), traversals, landmarks)
+
+    ways = tuple((each.order.tobytes(), each.exchanged) for each in traversals)
+    return trajectory.compute_once(("traversals", landmarks, ways), compute)
+
+
 @lru_cache(maxsize=REMEMBERED)
 def _build_cached(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
     return MotionReferences.of_shown(gestures)
@@ -304,7 +341,7 @@ def find_tempo_dependent(
     """Return ``(S,)``: the references whose tempo counts, by their switch or automatically.
 
     Automatically for two gestures that differ in duration only. Parameters as for
-    `drop_ambiguous_traversals`; `gestures` are those of the references, S in number.
+    `find_unambiguous_traversals`; `gestures` are those of the references, S in number.
     """
     shown = references.as_shown
     scores = fuse(own, weights, between)[:, shown]
@@ -329,20 +366,20 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
     return trajectory.compute_once(("movement", tuple(landmarks)), compute)
 
 
-def drop_ambiguous_traversals(
+def find_unambiguous_traversals(
     references: MotionReferences,
     own: FloatArray,
     weights: FloatArray,
     between: FloatArray,
     owners: npt.NDArray[np.intp],
     free: Collection[int] = (),
-) -> MotionReferences:
-    """Drop the traversals by which a gesture would be confused with another one of the language.
+) -> npt.NDArray[np.intp]:
+    """Return the rows of the traversals by which no gesture is confused with another one.
 
-    Backward traversals are dropped when another gesture is the same figure in the opposite
+    Backward traversals are left out when another gesture is the same figure in the opposite
     direction: for some starting points, their distance with one of them reversed is below
     `SAME_FIGURE` or `TURNED` times the forward distance, and below `CLEARANCE` times that.
-    Exchanged sides are dropped by the same rule.
+    Exchanged sides are left out by the same rule.
 
     Parameters
     ----------
@@ -373,4 +410,4 @@ def drop_ambiguous_traversals(
             alike = np.maximum(SAME_FIGURE, TURNED * plain)
             if matters and ((turned < alike) & (turned < CLEARANCE * plain)).any():
                 keep[rows & otherwise] = False
-    return references.take(np.flatnonzero(keep))
+    return np.flatnonzero(keep)

@@ -60,6 +60,12 @@ class Recognition:
         By cue group's name (`rejection.CUE_GROUPS`) the novelties ``(G,)`` in that group alone, of
         which `novelty` is the largest; NaN where the group has no thresholds or cannot compare.
         Empty for profile ``paper``, and in results of earlier versions.
+    facing
+        Degrees by which the diver is turned from the camera, positive to the own left; None where
+        the poses have no depth, for profile ``paper``, and in results of earlier versions.
+    views
+        ``(G,)``: degrees by which each gesture's demonstration was turned before it was compared
+        (`views.Views`); empty for profile ``paper``, and in results of earlier versions.
 
     """
 
@@ -77,13 +83,15 @@ class Recognition:
     scores: FloatArray = field(default_factory=lambda: np.empty(0))
     novelty: FloatArray = field(default_factory=lambda: np.empty(0))
     novelty_by_view: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
+    facing: float | None = None
+    views: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         """Freeze private copies of the arrays; without weights all voters have the same."""
         if not self.weights:
             equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
             object.__setattr__(self, "weights", MappingProxyType(equal))
-        for name in ("distances", "scores", "novelty"):
+        for name in ("distances", "scores", "novelty", "views"):
             object.__setattr__(self, name, _freeze(getattr(self, name)))
         by_view = {view: _freeze(values) for view, values in self.novelty_by_view.items()}
         object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
@@ -142,6 +150,8 @@ class Recognition:
                 view: np.array(values, dtype=np.float64)
                 for view, values in content.get("novelty_by_view", {}).items()
             },
+            facing=content.get("facing"),
+            views=np.array(content.get("views", []), dtype=np.float64),
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -163,6 +173,8 @@ class Recognition:
             "novelty_by_view": {
                 view: _finite(values.tolist()) for view, values in self.novelty_by_view.items()
             },
+            "facing": self.facing,
+            "views": self.views.tolist(),
         }
 
 

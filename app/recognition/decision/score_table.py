@@ -35,6 +35,12 @@ class ScoreTable:
         ``(G,)``: whether the gesture's mirror image is nearest.
     demonstrations
         ``(G,)``: index of each gesture's nearest demonstration.
+    views
+        ``(G,)``: degrees by which that demonstration was turned before it was compared
+        (`views.Views`).
+    facing
+        Degrees by which the query's diver is turned from the camera, positive to the own left;
+        None where not known.
     novelty_by_view
         ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
         group has no thresholds or cannot compare, all of profile ``paper``.
@@ -49,14 +55,20 @@ class ScoreTable:
     mirrored: npt.NDArray[np.bool_]
     novelty_by_view: FloatArray
     demonstrations: npt.NDArray[np.intp]
+    views: npt.NDArray[np.intp]
+    facing: float | None = None
 
     def nearest_demonstration(self, gesture: int) -> int:
         """Return the index of the demonstration that stands for a gesture, given its own index."""
         return int(self.demonstrations[gesture])
 
     def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
-        """Return a gesture with only the demonstration that the query was compared with."""
-        return gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
+        """Return a gesture with only the demonstration that the query was compared with.
+
+        It is turned as it was compared.
+        """
+        shown = gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
+        return shown.turn(int(self.views[gesture]))
 
     @property
     def scores(self) -> FloatArray:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
+from app.recognition.features.trajectory_image import SIMPLIFICATION, draw, is_drawable
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -35,6 +36,14 @@ class _DrawingGroup:
     members: npt.NDArray[np.intp]
     references: dict[str, FloatArray]
 
+    def take(self, gestures: npt.NDArray[np.intp]) -> _DrawingGroup:
+        """Return the members among `gestures`, with their indices in these."""
+        _, own, others = np.intersect1d(
+            self.members, gestures, assume_unique=True, return_indices=True
+        )
+        references = {name: values[own] for name, values in self.references.items()}
+        return _DrawingGroup(self.salient, others, references)
+
 
 class ShapeReferences:
     """Shape references of a language for the paper's seven voters.
@@ -55,10 +64,23 @@ class ShapeReferences:
             gestures = [gesture.redraw(simplification) for gesture in gestures]
         self._groups = _group_by_landmarks(gestures, PAPER_VOTERS)
 
+    def take(self, gestures: npt.NDArray[np.intp]) -> ShapeReferences:
+        """Return the references of some of the gestures, given in ascending order."""
+        other = copy(self)
+        other._count = len(gestures)
+        taken = (group.take(gestures) for group in self._groups)
+        other._groups = tuple(group for group in taken if len(group.members))
+        return other
+
     @property
     def needed(self) -> tuple[str, ...]:
         """The landmarks that any gesture needs, in alphabetical order."""
         return tuple(sorted({name for group in self._groups for name in group.salient}))
+
+    @property
+    def members(self) -> frozenset[int]:
+        """Indices of the gestures that have a drawing."""
+        return frozenset(index for group in self._groups for index in group.members.tolist())
 
     def distances(self, trajectory: Trajectory) -> FloatArray:
         """Compute the distances of a query to all gestures.
@@ -75,6 +97,15 @@ class ShapeReferences:
         for group in self._groups:
             _fill_distances(trajectory, group, self._simplification, distances)
         return distances
+
+    def find_comparable(self, trajectory: Trajectory) -> npt.NDArray[np.bool_]:
+        """Return ``(G,)``: where `distances` of a query would be finite, without drawing it."""
+        comparable = np.zeros(self._count, dtype=bool)
+        for group in self._groups:
+            if set(group.salient) <= set(trajectory.landmarks):
+                seen = trajectory.select(group.salient)
+                comparable[group.members] = _all_seen(seen) and is_drawable(seen)
+        return comparable
 
     def own_distances(self, most: int) -> list[FloatArray]:
         """Compute, per voter, the distances between gestures with the same salient landmarks.
@@ -113,10 +144,15 @@ def _fill_distances(
 
 def _describe(query: Trajectory, simplification: float) -> dict[str, FloatArray]:
     """Draw and describe salient landmarks; empty where one of them is never seen."""
-    known = np.isfinite(query.xy)
-    if not (known.all() or known.all(axis=2).any(axis=0).all()):
+    if not _all_seen(query):
         return {}
     return describe_drawing(draw(query, simplification), PAPER_VOTERS)
+
+
+def _all_seen(trajectory: Trajectory) -> bool:
+    """Return whether each landmark is seen at some moment."""
+    known = np.isfinite(trajectory.xy)
+    return bool(known.all() or known.all(axis=2).any(axis=0).all())
 
 
 def _group_by_landmarks(

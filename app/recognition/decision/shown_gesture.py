@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.features.motion import build_movement, find_hands, uses_both_sides
+from app.recognition.features.motion import (
+    Movement,
+    build_movement,
+    find_hands,
+    uses_both_sides,
+)
 from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switch
@@ -68,15 +74,19 @@ class ShownGesture:
                 either_side=either_side,
             )
             found = found if every else found[:1]
-            movements = [each.of(shown, landmarks) for each in found]
-            return DescribedGesture(
-                found,
-                {
-                    voter.name: np.array([voter.describe(each) for each in movements])
-                    for voter in MOTION_VOTERS
-                },
-            )
+            return DescribedGesture(found, describe_traversals(shown, found, landmarks))
 
         return trajectory.compute_once(
             ("traversals", landmarks, hands, both_ways, either_way, either_side, every), compute
         )
+
+
+def describe_traversals(
+    shown: Movement, traversals: Sequence[Traversal], landmarks: Sequence[str]
+) -> dict[str, FloatArray]:
+    """Return the descriptors of R traversals of a movement, ``(R, ...)`` by voter's name."""
+    movements = [each.of(shown, landmarks) for each in traversals]
+    return {
+        voter.name: np.array([voter.describe(each) for each in movements])
+        for voter in MOTION_VOTERS
+    }

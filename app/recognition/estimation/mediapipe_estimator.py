@@ -137,7 +137,10 @@ def _body(result: Any, size: FloatArray) -> Body | None:
         return None
     landmarks = result.pose_landmarks[0]
     visibility = np.array([point.visibility for point in landmarks], dtype=np.float64)
-    return Body(_pixels(landmarks, size), visibility, score=1.0)
+    world = np.array(
+        [(point.x, point.y, point.z) for point in result.pose_world_landmarks[0]], dtype=np.float64
+    )
+    return Body(_pixels(landmarks, size), visibility, score=1.0, world=world)
 
 
 def _hands(result: Any, size: FloatArray) -> tuple[Hand, ...]:

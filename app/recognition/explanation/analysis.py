@@ -40,6 +40,11 @@ class Analysis:
         By label the total weight of these voters.
     verdicts
         The breakdown by voter, those most against the expected gesture first.
+    facing
+        Degrees by which the diver is turned from the camera, positive to the own left; None where
+        not known.
+    view
+        Degrees by which the expected gesture's demonstration was turned to be compared.
     turned
         Share of `score` minus `other_score` that comes from the penalties of traversals.
     alignments
@@ -66,6 +71,8 @@ class Analysis:
     votes: Mapping[str, int]
     support: Mapping[str, float]
     verdicts: tuple[VoterBreakdown, ...]
+    facing: float | None
+    view: int
     turned: float
     alignments: tuple[Alignment, ...]
     differences: tuple[Difference, ...]
@@ -75,6 +82,13 @@ class Analysis:
     def right(self) -> bool:
         """Whether the expected gesture was recognised."""
         return self.label == self.expected
+
+    @property
+    def lesson(self) -> Difference | None:
+        """The difference to avoid when the gesture is shown again: that of the largest share."""
+        if self.right:
+            return None
+        return max(self.differences, key=lambda each: each.share, default=None)
 
     @property
     def margin(self) -> float:

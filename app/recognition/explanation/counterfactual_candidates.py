@@ -34,6 +34,9 @@ TRIM_STEP = 0.1
 TRIM_STEPS = 4
 """Most steps at either end; a longer part is hardly a transit."""
 
+LEAST_KEPT = 0.8
+"""Share of the stroke that a trim keeps; a shorter part of it is another gesture."""
+
 WEIGHTS = (0.5, 0.0, 2.0, 4.0)
 """Weight factors that are tried."""
 
@@ -67,7 +70,7 @@ def list_interventions(context: RecognitionContext, expected: str) -> Iterator[S
 
 
 def _trims(context: RecognitionContext) -> Iterator[Series]:
-    """Move the start, the end, or both, within the take."""
+    """Move the start, the end, or both, within the take, and keep most of the stroke."""
     time, whole = context.poses.time, context.whole.time
     start, end = float(time[0]), float(time[-1])
     duration = end - start
@@ -86,7 +89,7 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
         yield [
             Trim(size=min(1.0, (abs(a - start) + abs(b - end)) / duration), start=a, end=b)
             for a, b in inside
-            if duration > 0
+            if duration > 0 and min(b, end) - max(a, start) >= LEAST_KEPT * duration - 1e-9
         ]
 
 

@@ -26,10 +26,6 @@ Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
 
-Preference = Literal["first", "usual", "last"]
-"""Rank of an intervention among those that help, before its size."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Intervention(ABC):
     """Base of interventions.
@@ -43,7 +39,6 @@ class Intervention(ABC):
 
     kind: ClassVar[str]
     reach: ClassVar[Reach]
-    preference: ClassVar[Preference] = "usual"
     size: float
 
     @property
@@ -211,12 +206,11 @@ class SwitchPosition(Intervention):
 class FurtherDemonstration(Intervention):
     """The take as one more demonstration of a gesture; its size is its share of them.
 
-    Preferred, because it is the only intervention that adds evidence and takes none away.
+    The only intervention that adds evidence and takes none away.
     """
 
     kind = "further_demonstration"
     reach = "gesture"
-    preference = "first"
     label: str
 
     @property
@@ -236,7 +230,6 @@ class NewDemonstration(Intervention):
 
     kind = "demonstration"
     reach = "gesture"
-    preference = "last"
     label: str
 
     @property

@@ -5,10 +5,10 @@ Each is verified by applying the intervention and running the recogniser again.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
 from typing import Any, Final
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_candidates import list_interventions
-from app.recognition.explanation.counterfactual_kinds import Intervention, Preference
+from app.recognition.explanation.counterfactual_kinds import Intervention
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import draw_variants
@@ -26,6 +26,20 @@ MOST = 8
 
 MOST_OF_A_KIND = 2
 """Most counterfactuals of one kind."""
+
+ORDER: Final = (
+    "further_demonstration",
+    "switch",
+    "salient",
+    "trim",
+    "keypoint_repair",
+    "profile",
+    "simplification",
+    "voter_weight",
+    "demonstration",
+)
+"""Kinds of interventions, from what teaches most to what fits one take only: another demonstration
+adds evidence, weights are fitted to this take, and a demonstration that is replaced is lost."""
 
 VARIANTS = 1
 """Simulated takes of each gesture by another person, used with its demonstration to measure the
@@ -95,8 +109,8 @@ class Counterfactual:
 class Counterfactuals:
     """The interventions that correct a recognition, in the order in which to try them.
 
-    A further demonstration comes first unless another gesture loses a take by it; then the
-    others, the smallest first; last those that lose the demonstration there is.
+    In the `ORDER` of their kinds, of a kind the smallest first. None of them makes a gesture of the
+    language lose a take.
 
     Attributes
     ----------
@@ -125,7 +139,7 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
 
 
 def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterfactuals:
-    """Find the smallest interventions with which `expected` is recognised.
+    """Find the interventions with which `expected` is recognised and no gesture loses a take.
 
     Of each series of increasing interventions the first that succeeds is kept.
 
@@ -146,8 +160,8 @@ def find_counterfactuals(context: RecognitionContext, expected: str) -> Counterf
                 found.append(helps)
                 break
     rest = _Rest(context)
-    described = [_describe(each, expected, rest) for each in _choose_smallest(found)]
-    return Counterfactuals(found=tuple(sorted(described, key=_rank)), tried=tried)
+    described = (_describe(each, expected, rest) for each in sorted(found, key=_rank))
+    return Counterfactuals(found=tuple(_choose(described)), tried=tried)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,28 +173,21 @@ class _Found:
     margin: float
 
 
-def _choose_smallest(found: Iterable[_Found]) -> list[_Found]:
-    """Choose the smallest interventions, at most `MOST_OF_A_KIND` of a kind."""
-    by_kind = sorted(found, key=lambda each: (each.change.kind, each.change.size, -each.margin))
-    chosen = [
-        each
-        for _, group in groupby(by_kind, key=lambda each: each.change.kind)
-        for each in list(group)[:MOST_OF_A_KIND]
-    ]
-    return sorted(chosen, key=lambda each: (_PLACES[each.change.preference], each.change.size))[
-        :MOST
-    ]
+def _rank(found: _Found) -> tuple[int, float, float]:
+    """Return the sort key of an intervention: kind, size, margin."""
+    return ORDER.index(found.change.kind), found.change.size, -found.margin
 
 
-_PLACES: Final[Mapping[Preference, int]] = {"first": 0, "usual": 1, "last": 2}
-
-
-def _rank(found: Counterfactual) -> tuple[int, float, float]:
-    """Return the sort key of a counterfactual: preference, size, margin."""
-    preference = found.change.preference
-    if preference == "first" and found.effect is not None and found.effect.lost:
-        preference = "last"
-    return _PLACES[preference], found.change.size, -found.margin
+def _choose(described: Iterable[Counterfactual]) -> Iterator[Counterfactual]:
+    """Choose at most `MOST`, of a kind `MOST_OF_A_KIND`, by which no gesture loses a take."""
+    kinds: Counter[str] = Counter()
+    for each in described:
+        kind = each.change.kind
+        if kinds[kind] < MOST_OF_A_KIND and (each.effect is None or not each.effect.lost):
+            kinds[kind] += 1
+            yield each
+        if kinds.total() == MOST:
+            return
 
 
 def _verify(context: RecognitionContext, change: Intervention, expected: str) -> _Found | None:

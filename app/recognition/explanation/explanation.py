@@ -59,8 +59,11 @@ class Explanation(Analysis):
             "support": dict(self.support),
             "verdicts": [verdict.to_dict() for verdict in self.verdicts],
             "turned": _finite(self.turned),
+            "facing": self.facing,
+            "view": self.view,
             "alignments": [alignment.to_dict() for alignment in self.alignments],
             "differences": [difference.to_dict() for difference in self.differences],
+            "lesson": None if self.lesson is None else self.lesson.to_dict(),
             "counterfactuals": [each.to_dict() for each in self.counterfactuals.found],
             "tried": self.counterfactuals.tried,
             "sentence": self.sentence,
@@ -115,6 +118,8 @@ def explain(
         verdicts=break_down_votes(
             table, result, context.language.gestures[at].thresholds, at, other
         ),
+        facing=table.facing,
+        view=int(table.views[at]),
         turned=_difference(table, at, other),
         alignments=tuple(
             alignment

@@ -20,7 +20,7 @@ def write_sentence(analysis: Analysis) -> str:
     beside = [each.words for each in analysis.differences if each.share == 0]
     if beside:
         parts.append(f"Also, {join_words(beside)}.")
-    parts.append(_remedy(analysis))
+    parts += [_describe_view(analysis), _remedy(analysis)]
     return " ".join(part for part in parts if part)
 
 
@@ -100,13 +100,23 @@ def _cause(analysis: Analysis) -> Difference | None:
     return causes[0] if causes else None
 
 
+def _describe_view(analysis: Analysis) -> str:
+    """Return from where the demonstration was looked at, if it was turned."""
+    if not analysis.view:
+        return ""
+    side = "left" if analysis.view > 0 else "right"
+    return (
+        f"The diver is turned to the own {side}, so the demonstration was turned by "
+        f"{abs(analysis.view)} degrees before it was compared."
+    )
+
+
 def _remedy(analysis: Analysis) -> str:
     # A take is recognised by its own demonstration by construction, which is no remedy to name.
     found = [
         each
         for each in analysis.counterfactuals.found
         if not each.change.kind.endswith("demonstration")
-        and not (each.effect is not None and each.effect.lost)
     ]
     if found:
         return f"It would have been read as {analysis.expected!r} {found[0].change.words}."

@@ -63,7 +63,8 @@ RESTING_SPEED = 0.15
 Recordings begin and end with hanging arms for as long as it pleases; the speed is the 95th
 percentile, because a single frame may jump."""
 
-SPEED_PERCENTILE = 95.0
+SPEED_SHARE = 0.95
+"""Share of the moments that are slower than the gesture's speed."""
 
 LEAST_MOVING = 4
 """Least moments between the rests at both ends; with fewer, nothing is cut."""
@@ -226,7 +227,8 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
 
     """
     at = _find_columns(trajectory.landmarks, tuple(landmarks))
-    needed = replace(trajectory, landmarks=at.needed, xy=trajectory.xy.take(at.columns, axis=1))
+    xy = trajectory.xy.take(at.columns, axis=1)
+    needed = replace(trajectory, landmarks=at.needed, xy=xy, depth=None)
     smooth = _cut_rests(_smooth(needed), at.moving)
     followed, path = at.followed, at.paths
     seen = np.isfinite(smooth.xy[0]).all(axis=1).take(followed)
@@ -337,9 +339,13 @@ def _cut_rests(trajectory: Trajectory, moving: npt.NDArray[np.intp]) -> Trajecto
     if len(time) <= LEAST_MOVING:
         return trajectory
     paths = np.nan_to_num(trajectory.xy.take(moving, axis=1)).reshape(len(time), -1)
-    velocity = np.gradient(paths, time, axis=0)
+    velocity = np.empty_like(paths)
+    velocity[1:-1] = (paths[2:] - paths[:-2]) / (time[2:] - time[:-2])[:, None]
+    velocity[0] = (paths[1] - paths[0]) / (time[1] - time[0])
+    velocity[-1] = (paths[-1] - paths[-2]) / (time[-1] - time[-2])
     speed = np.sqrt(np.vecdot(velocity, velocity))
-    under_way = np.flatnonzero(speed > RESTING_SPEED * np.percentile(speed, SPEED_PERCENTILE))
+    usual = np.sort(speed)[int(SPEED_SHARE * (len(speed) - 1))]
+    under_way = np.flatnonzero(speed > RESTING_SPEED * usual)
     if len(under_way) < LEAST_MOVING:
         return trajectory
     inside = slice(under_way[0], under_way[-1] + 1)

@@ -77,6 +77,12 @@ class Drawing:
         return self.strokes.size == 0
 
 
+def is_drawable(trajectory: Trajectory) -> bool:
+    """Return whether `draw` draws a stroke: something is seen, and moves by `MIN_EXTENT`."""
+    seen = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
+    return len(seen) > 0 and float(np.ptp(seen, axis=0).max()) >= MIN_EXTENT
+
+
 def draw(trajectory: Trajectory, simplification: float = SIMPLIFICATION) -> Drawing:
     """Draw the paths of a trajectory's landmarks into one image.
 

@@ -47,6 +47,9 @@ MAX_LANDMARKS = 16
 DIGITS = 4
 """Decimals kept of a trajectory: 0.05 mm of a diver, below what any pose model resolves."""
 
+DEPTH_DIGITS = 2
+"""Decimals kept of a trajectory's depth: 5 mm of a diver, a tenth of a pose model's error."""
+
 
 @dataclass(frozen=True, eq=False)
 class Demonstration:
@@ -152,6 +155,13 @@ class Demonstration:
         descriptors = describe_drawing(drawing, PAPER_VOTERS)
         return Demonstration(trajectory, salient, drawing.image, descriptors, self.diver)
 
+    def turn(self, degrees: int) -> Demonstration:
+        """Return the demonstration as seen when its diver is turned, see `Trajectory.turn`."""
+        seen = self.trajectory.turn_once(degrees)
+        return seen.compute_once(
+            ("demonstration", self.salient), lambda: replace(self, trajectory=seen).redraw()
+        )
+
     def with_salient(self, salient: Sequence[str]) -> Demonstration:
         """Return the demonstration with other salient landmarks, redrawn.
 
@@ -242,7 +252,10 @@ def condense(trajectory: Trajectory) -> Trajectory:
         bounded = bounded.resample_in_time(MAX_MOMENTS)
     # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
     return replace(
-        bounded, xy=np.round(bounded.xy, DIGITS) + 0.0, time=np.round(bounded.time, DIGITS) + 0.0
+        bounded,
+        xy=np.round(bounded.xy, DIGITS) + 0.0,
+        time=np.round(bounded.time, DIGITS) + 0.0,
+        depth=None if bounded.depth is None else np.round(bounded.depth, DEPTH_DIGITS) + 0.0,
     )
 
 

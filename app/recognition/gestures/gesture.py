@@ -279,6 +279,20 @@ class Gesture:
         first = self._require_first("cannot be mirrored: define it again from a clip")
         return self._with_shown([each.mirror() for each in (first, *self.further)])
 
+    def turn(self, degrees: int) -> Gesture:
+        """Return the gesture as seen when its divers are turned, see `Trajectory.turn`.
+
+        Demonstrations without depth are unchanged.
+        """
+        if degrees == 0 or (first := self._first) is None:
+            return self
+        return self._with_shown(
+            [
+                each if each.trajectory.depth is None else each.turn(degrees)
+                for each in (first, *self.further)
+            ]
+        )
+
     def with_salient(self, salient: Sequence[str]) -> Gesture:
         """Return the gesture with other salient landmarks, with image and descriptors recomputed.
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
+import numpy.typing as npt
 
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
@@ -16,6 +17,11 @@ from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.embedding import embed_gestures
 from app.recognition.health.false_alarms import FalseAlarm, find_false_alarms
 from app.recognition.health.finding import Finding, check_demonstration, measure_visible_share
+from app.recognition.health.neighbours import (
+    MOST_TOGETHER,
+    find_neighbours,
+    measure_path_distances,
+)
 from app.recognition.health.remedy import Remedy, TrialRunner, find_pair_remedies
 from app.recognition.health.report import (
     MOST_CONFUSION,
@@ -27,6 +33,7 @@ from app.recognition.health.report import (
 )
 from app.recognition.health.second_divers import advise_second_divers
 from app.recognition.health.simulated_trials import SimulatedTrials
+from app.recognition.health.viewing_angles import check_angles, find_blind_angles
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.salience import measure_displacements
@@ -51,6 +58,9 @@ EXAMPLES = 2
 MOST_REMEDIED = 3
 """Findings for which remedies are computed, the worst first; a next check computes the others'."""
 
+MOST_EXPLAINED = 100
+"""Confused pairs with a finding of their own, the worst first; each costs two comparisons."""
+
 Progress = Callable[[str, int, int], None]
 """Called with the stage, the steps done and their number (0: unknown); an exception that it raises
 ends the check."""
@@ -66,7 +76,8 @@ def check_health(
 ) -> HealthReport:
     """Check a language before the dive.
 
-    The same language, seed and number of takes give the same report.
+    The same language, seed and number of takes give the same report. The time grows linearly with
+    the number of gestures: beyond `neighbours.MOST_TOGETHER` each is tried among its nearest ones.
 
     Parameters
     ----------
@@ -102,15 +113,16 @@ def check_health(
     read = find_false_alarms(
         recognizer, EXAMPLES, seed=seed, advance=_count_steps(progress, "accidental movements", 0)
     )
-    distances = _demonstrated_distances(recognizer)
+    neighbours = find_neighbours(recognizer)
+    distances = _demonstrated_distances(recognizer, neighbours)
+    angles = check_angles(
+        recognizer, seed=seed, person=person, advance=_count_steps(progress, "turned divers", 0)
+    )
     gestures = tuple(
-        _gesture_health(gesture, index, trials, read)
+        replace(_gesture_health(gesture, index, trials, read), angles=angles.get(index, ()))
         for index, gesture in enumerate(language.gestures)
     )
-    pairs = [
-        check_pairs(language, pair, trials, distances)
-        for pair in combinations(range(len(gestures)), 2)
-    ]
+    pairs = [check_pairs(language, pair, trials, distances) for pair in _list_pairs(neighbours)]
     pairs.sort(key=_confusion_rate, reverse=True)
     searching = replace(run_trials, advance=_count_steps(progress, "remedies", 0))
     findings = [
@@ -118,9 +130,15 @@ def check_health(
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
+    findings += [
+        each for health in gestures for each in find_blind_angles(health.label, health.angles)
+    ]
     if person == "another":
         findings += advise_second_divers(language, gestures)
     findings += _profile_findings(language)
+    compared = neighbours.shape[1] - 1
+    if compared + 1 < len(gestures):
+        findings.append(_neighbours_finding(len(gestures), compared))
     if language.grammar is not None:
         findings += [each.finding() for each in find_ambiguities(language.grammar)]
     return HealthReport(
@@ -131,7 +149,8 @@ def check_health(
         gestures=gestures,
         pairs=tuple(pairs),
         findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
-        places=embed_gestures(distances),
+        places=embed_gestures(_estimate_far_distances(recognizer, distances)),
+        neighbours=None if compared + 1 == len(gestures) else compared,
     )
 
 
@@ -147,25 +166,40 @@ def _count_steps(progress: Progress, stage: str, total: int) -> Callable[[], Non
     return advance
 
 
-def _demonstrated_distances(recognizer: Recognizer) -> FloatArray:
-    """Compute the distances of demonstrations to gestures: ``(G, G)``; infinite without one."""
-    gestures = recognizer.language.gestures
+def _demonstrated_distances(recognizer: Recognizer, neighbours: npt.NDArray[np.intp]) -> FloatArray:
+    """Compute the distances of demonstrations to gestures: ``(G, G)``; infinite where unknown."""
+    gestures, vote = recognizer.language.gestures, recognizer.vote
+    assert isinstance(vote, FusedVote)  # profile `full`
     distances = np.full((len(gestures), len(gestures)), np.inf)
-    for index, gesture in enumerate(gestures):
+    for index, (gesture, near) in enumerate(zip(gestures, neighbours, strict=True)):
         if gesture.trajectory is not None:
-            distances[index] = recognizer.compare(condense(gesture.trajectory)).scores
+            among = vote if len(near) == len(gestures) else vote.among(near)
+            distances[index, near] = among.compare(condense(gesture.trajectory)).scores
     return distances
 
 
-def _performer(trials: SimulatedTrials, gesture: int) -> int | None:
-    rows = np.flatnonzero(trials.gestures == gesture)
-    return int(rows[0]) if len(rows) else None
+def _list_pairs(neighbours: npt.NDArray[np.intp]) -> list[tuple[int, int]]:
+    """List the pairs of gestures of which one is a neighbour of the other, each once."""
+    one = np.repeat(np.arange(len(neighbours)), neighbours.shape[1])
+    pairs = np.sort(np.column_stack([one, neighbours.ravel()]), axis=1)
+    different = pairs[pairs[:, 0] != pairs[:, 1]]
+    return [(first, second) for first, second in np.unique(different, axis=0).tolist()]
+
+
+def _estimate_far_distances(recognizer: Recognizer, distances: FloatArray) -> FloatArray:
+    """Return the distances with those of far pairs estimated from their paths, for the map."""
+    if len(distances) <= MOST_TOGETHER:
+        return distances
+    paths = measure_path_distances(recognizer)
+    known = np.isfinite(distances) & np.isfinite(paths) & (paths > 0)
+    scale = float(np.median(distances[known] / paths[known])) if known.any() else 1.0
+    return np.where(np.isfinite(distances), distances, scale * paths)
 
 
 def _gesture_health(
     gesture: Gesture, index: int, trials: SimulatedTrials, read: Sequence[FalseAlarm]
 ) -> GestureHealth:
-    shown, performer = gesture.trajectory, _performer(trials, index)
+    shown, performer = gesture.trajectory, trials.performer(index)
     moved = {} if shown is None else measure_displacements(shown)
     taken = [alarm for alarm in read if alarm.taken and alarm.nearest == index]
     comparable = any(alarm.nearest is not None for alarm in read)
@@ -204,7 +238,7 @@ def check_pairs(
     """
 
     def estimate(one: int, other: int) -> RateEstimate | None:
-        performer = _performer(trials, one)
+        performer = trials.performer(one)
         return None if performer is None else trials.confusion(performer, other)
 
     first, second = pair
@@ -231,10 +265,8 @@ def _pair_findings(
     """Return the findings about confused pairs; `pairs` are sorted, the worst first."""
     language = recognizer.language
     findings: list[Finding] = []
-    for pair in pairs:
-        confusion = pair.confusion
-        if confusion is None or confusion.rate <= MOST_CONFUSION:
-            break
+    confused = [pair for pair in pairs if _confusion_rate(pair)[0] > MOST_CONFUSION]
+    for pair in confused[:MOST_EXPLAINED]:
         first, second = (language.labels.index(label) for label in pair.gestures)
         differences = (
             compare_pair(recognizer, first, second),
@@ -254,7 +286,20 @@ def _pair_findings(
                 remedies=remedies,
             )
         )
+    if (more := len(confused) - MOST_EXPLAINED) > 0:
+        message = (
+            f"{more} further pairs are confused as well, less often than the {MOST_EXPLAINED} worst"
+        )
+        findings.append(Finding("more_confused", (), message, below_bar=True))
     return findings
+
+
+def _neighbours_finding(count: int, compared: int) -> Finding:
+    message = (
+        f"of {count} gestures each is tried among its {compared} nearest ones, because trying all "
+        "pairs would take hours: confusions of pairs farther apart are left out"
+    )
+    return Finding("neighbours_only", (), message)
 
 
 def _is_duplicate(pair: PairHealth) -> bool:

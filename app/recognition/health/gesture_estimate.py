@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from app.recognition.gestures.demonstration import condense
 from app.recognition.health.check import TAKES, check_pairs
+from app.recognition.health.neighbours import find_neighbours
 from app.recognition.health.report import PairHealth
 from app.recognition.health.simulated_trials import simulate_trials
 from app.recognition.recognizer import Recognizer
@@ -38,7 +40,9 @@ class GestureEstimate:
     refused: RateEstimate
 
 
-def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | None:
+def estimate_gesture(
+    recognizer: Recognizer, label: str, *, advance: Callable[[], None] = lambda: None
+) -> GestureEstimate | None:
     """Simulate trials of one gesture and its nearest ones, as `check_health` does for all.
 
     Parameters
@@ -47,6 +51,8 @@ def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | No
         Of its language, profile ``full``.
     label
         The gesture's.
+    advance
+        Called after each comparison; an exception that it raises ends the work.
 
     Returns
     -------
@@ -68,12 +74,13 @@ def estimate_gesture(recognizer: Recognizer, label: str) -> GestureEstimate | No
         shown = language.gestures[index].trajectory
         if shown is not None:
             distances[index] = recognizer.compare(condense(shown)).scores
+        advance()
 
     measure(own)
-    others = [index for index in range(len(language.gestures)) if index != own]
+    others = [index for index in find_neighbours(recognizer)[own].tolist() if index != own]
     nearest = sorted(others, key=lambda index: distances[own, index])[:MOST_NEIGHBOURS]
     for index in nearest:
         measure(index)
-    trials = simulate_trials(recognizer, TAKES, gestures=(own, *nearest))
+    trials = simulate_trials(recognizer, TAKES, gestures=(own, *nearest), advance=advance)
     pairs = (check_pairs(language, (own, index), trials, distances) for index in nearest)
     return GestureEstimate(pairs=tuple(pairs), missed=trials.missed(0), refused=trials.refused(0))

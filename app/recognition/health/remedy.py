@@ -126,9 +126,8 @@ def find_pair_remedies(
     """
     two = [language.gestures[index] for index in pair]
     performers = [before.gestures.tolist().index(index) for index in pair]
-    confused = is_worse(
-        before.confusion(performers[0], pair[1]), before.confusion(performers[1], pair[0])
-    )
+    confused = _confusion_between(before, performers, pair)
+    assert confused is not None  # the caller's finding is about this pair
     missed = sum(before.missed(performer).rate for performer in performers)
     tried = [
         (_try_edit(changed, run_trials), edit, changed)
@@ -140,7 +139,8 @@ def find_pair_remedies(
     proposed = []
     for edit, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
         repeated = run_trials(Recognizer(_with(language, pair, changed), "full"), pair)
-        after = is_worse(repeated.confusion(0, pair[1]), repeated.confusion(1, pair[0]))
+        # What is no neighbour any more is not confused.
+        after = _confusion_between(repeated, (0, 1), pair) or RateEstimate(0.0, 0.0, 0.0)
         missed_then = repeated.missed(0).rate + repeated.missed(1).rate
         if after.rate <= HELPS * confused.rate and missed_then < missed:
             proposed.append(Remedy(edit.kind, edit.label, edit.text, confused, after))
@@ -167,7 +167,18 @@ def _try_edit(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     # Only scores are compared, so thresholds are not calibrated.
     uncalibrated = replace(language, thresholds_for=language.fingerprint)
     trials = run_trials(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
-    return is_worse(trials.confusion(0, 1), trials.confusion(1, 0))
+    confused = _confusion_between(trials, (0, 1), (0, 1))
+    assert confused is not None  # in a language of two, both are rivals
+    return confused
+
+
+def _confusion_between(
+    trials: SimulatedTrials, performers: Sequence[int], pair: tuple[int, int]
+) -> RateEstimate | None:
+    """Return the worse estimate of two gestures' confusion; None where neither is a rival."""
+    forth = trials.confusion(performers[0], pair[1])
+    back = trials.confusion(performers[1], pair[0])
+    return is_worse(forth, back) if forth and back else forth or back
 
 
 def _with(language: Language, indices: tuple[int, ...], changed: list[Gesture]) -> Language:

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.recognition.health.finding import Finding
 from app.recognition.health.remedy import is_worse
+from app.recognition.health.viewing_angles import AngleHealth
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
 from app.recognition.simulation.variation import Person
@@ -70,6 +71,8 @@ class GestureHealth:
         its landmarks.
     set_off_by
         Kinds of background motion that are recognised as it, in words.
+    angles
+        Its rates when the diver is turned; empty where its demonstration has no depth.
 
     """
 
@@ -80,6 +83,7 @@ class GestureHealth:
     refused: RateEstimate | None
     false_alarms: RateEstimate | None
     set_off_by: tuple[str, ...]
+    angles: tuple[AngleHealth, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
@@ -91,6 +95,7 @@ class GestureHealth:
             "refused": self.refused and self.refused.to_dict(),
             "false_alarms": self.false_alarms and self.false_alarms.to_dict(),
             "set_off_by": list(self.set_off_by),
+            "angles": [angle.to_dict() for angle in self.angles],
         }
 
 
@@ -149,11 +154,13 @@ class HealthReport:
     gestures
         In the language's order.
     pairs
-        All of them, the most confused first.
+        Those that were compared, the most confused first.
     findings
         Errors first, then warnings.
     places
         ``(G, 2)``: the gestures on a map, see `embedding.embed_gestures`.
+    neighbours
+        Number of nearest gestures that each one is compared with; None: with all of them.
 
     """
 
@@ -165,6 +172,7 @@ class HealthReport:
     pairs: tuple[PairHealth, ...]
     findings: tuple[Finding, ...]
     places: FloatArray
+    neighbours: int | None = None
 
     @property
     def ok(self) -> bool:
@@ -182,6 +190,7 @@ class HealthReport:
             "takes": self.takes,
             "bar": {"confusion": MOST_CONFUSION, "missed": MOST_MISSED},
             "ok": self.ok,
+            "neighbours": self.neighbours,
             "gestures": [gesture.to_dict() for gesture in self.gestures],
             "pairs": [pair.to_dict() for pair in self.pairs],
             "warnings": [finding.to_dict() for finding in self.findings],

@@ -116,6 +116,7 @@ def _demonstration(entry: DemonstrationEntry, pointer: str) -> Demonstration:
 
 
 def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
+    depth = trajectory.depth
     return TrajectoryEntry(
         unit=trajectory.unit,
         axes="x right, y down",
@@ -125,6 +126,7 @@ def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
                 landmark=name,
                 x=_without_nan(trajectory.xy[:, index, 0]),
                 y=_without_nan(trajectory.xy[:, index, 1]),
+                z=None if depth is None else _without_nan(depth[:, index]),
             )
             for index, name in enumerate(trajectory.landmarks)
         ],
@@ -148,17 +150,20 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         at = pointer + build_pointer("paths", index)
         if path.landmark in names[:index]:
             raise LanguageError(f"a second path of {path.landmark!r}", at + "/landmark")
-        for axis, values in (("x", path.x), ("y", path.y)):
-            if len(values) != count:
+        for axis, values in (("x", path.x), ("y", path.y), ("z", path.z)):
+            if values is not None and len(values) != count:
                 raise LanguageError(
                     f"{len(values)} values, but time has {count} moments", at + build_pointer(axis)
                 )
     columns = [[path.x, path.y] for path in entry.paths]
+    depths = [[None] * count if path.z is None else path.z for path in entry.paths]
+    has_depth = any(path.z is not None for path in entry.paths)
     return Trajectory(
         landmarks=tuple(names),
         xy=np.array(columns, dtype=np.float64).transpose(2, 0, 1),
         time=np.array(entry.time),
         unit=entry.unit,
+        depth=np.array(depths, dtype=np.float64).T if has_depth else None,
     )
 
 

@@ -54,6 +54,13 @@ class PathEntry(_Model):
         list[FiniteFloat | None],
         Field(description="Down, in `unit`, per moment; null = not seen."),
     ]
+    z: Annotated[
+        list[FiniteFloat | None] | None,
+        Field(
+            description="Away from the camera behind the torso's centre, in `unit`, per moment; "
+            "null = not known. Left out where no landmark's depth is known."
+        ),
+    ] = None
 
 
 class TrajectoryEntry(_Model):

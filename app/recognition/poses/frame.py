@@ -32,12 +32,16 @@ class Body:
         ``(33,)`` in [0, 1]: the model's probability that the landmark is in view and not hidden.
     score
         The model's probability, in [0, 1], that there is a person.
+    world
+        ``(33, 3)`` metres from the hips' middle, x to the image's right, y down, z away from the
+        camera; None where the model gives none.
 
     """
 
     xy: FloatArray
     visibility: FloatArray
     score: float
+    world: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

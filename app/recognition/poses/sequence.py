@@ -42,6 +42,10 @@ class PoseSequence:
         ``(T,)`` seconds, strictly increasing: timestamps, never frame number over rate.
     frame_size
         Width and height of the image in pixels.
+    world
+        ``(T, K, 3)`` metres, x to the image's right, y down, z away from the camera, from any
+        origin in each frame; NaN: not known. None where the source gives none. Only depth is
+        used, to turn demonstrations (`Trajectory.turn`).
 
     Raises
     ------
@@ -55,6 +59,7 @@ class PoseSequence:
     confidence: FloatArray | None = None
     time: FloatArray
     frame_size: tuple[int, int]
+    world: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Validate, and freeze private copies of the arrays."""
@@ -79,6 +84,7 @@ class PoseSequence:
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "confidence", _check_confidence(self.confidence, xy))
         object.__setattr__(self, "frame_size", _check_size(self.frame_size))
+        object.__setattr__(self, "world", _check_world(self.world, xy))
 
     def __len__(self) -> int:
         """Count the frames, T."""
@@ -93,7 +99,8 @@ class PoseSequence:
             and self.frame_size == other.frame_size
             and np.array_equal(self.xy, other.xy, equal_nan=True)
             and np.array_equal(self.time, other.time)
-            and _same_confidence(self.confidence, other.confidence)
+            and _same_values(self.confidence, other.confidence)
+            and _same_values(self.world, other.world)
         )
 
     __hash__ = None  # type: ignore[assignment]  # arrays inside: equality without a hash
@@ -137,14 +144,24 @@ class PoseSequence:
 
         """
         columns = find_columns(names, self.landmarks, "recording")
-        confidence = None if self.confidence is None else self.confidence[:, columns]
-        return replace(self, landmarks=tuple(names), xy=self.xy[:, columns], confidence=confidence)
+        return replace(
+            self,
+            landmarks=tuple(names),
+            xy=self.xy[:, columns],
+            confidence=None if self.confidence is None else self.confidence[:, columns],
+            world=None if self.world is None else self.world[:, columns],
+        )
 
     def between(self, start: float, end: float) -> PoseSequence:
         """Keep the frames with ``start <= time <= end`` (seconds, as in `time`)."""
         inside = (self.time >= start) & (self.time <= end)
-        confidence = None if self.confidence is None else self.confidence[inside]
-        return replace(self, xy=self.xy[inside], time=self.time[inside], confidence=confidence)
+        return replace(
+            self,
+            xy=self.xy[inside],
+            time=self.time[inside],
+            confidence=None if self.confidence is None else self.confidence[inside],
+            world=None if self.world is None else self.world[inside],
+        )
 
     def torso_centre(self) -> FloatArray | None:
         """Return the middle of the torso: the mean of mid-shoulders and mid-hips.
@@ -229,7 +246,7 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
     ----------
     moments
         At least one part, in order, with the same landmarks and frame size. Confidence is kept
-        only if all of them have it.
+        only if all of them have it; world landmarks of a part without them are NaN.
 
     Raises
     ------
@@ -243,6 +260,18 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
         xy=np.concatenate([each.xy for each in moments]),
         confidence=np.concatenate(known) if len(known) == len(moments) else None,
         time=np.concatenate([each.time for each in moments]),
+        world=_join_worlds(moments),
+    )
+
+
+def _join_worlds(moments: Sequence[PoseSequence]) -> FloatArray | None:
+    if all(each.world is None for each in moments):
+        return None
+    return np.concatenate(
+        [
+            np.full((*each.xy.shape[:2], 3), np.nan) if each.world is None else each.world
+            for each in moments
+        ]
     )
 
 
@@ -286,16 +315,27 @@ def _check_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
     return confidence
 
 
+def _check_world(values: Any, xy: FloatArray) -> FloatArray | None:
+    if values is None:
+        return None
+    world = _freeze(values, "world")
+    if world.shape != (*xy.shape[:2], 3):
+        raise PoseError(f"world has shape {world.shape}, expected {(*xy.shape[:2], 3)}")
+    if np.isinf(world).any():
+        raise PoseError("world holds infinite values; mark what is not known with NaN")
+    return world
+
+
 def _check_size(size: Any) -> tuple[int, int]:
     if len(size) != 2 or not all(float(side) > 0 for side in size):
         raise PoseError(f"frame_size is {size!r}, expected (width, height) in pixels, both > 0")
     return int(size[0]), int(size[1])
 
 
-def _same_confidence(one: FloatArray | None, other: FloatArray | None) -> bool:
+def _same_values(one: FloatArray | None, other: FloatArray | None) -> bool:
     if one is None or other is None:
         return one is other
-    return np.array_equal(one, other)
+    return np.array_equal(one, other, equal_nan=True)
 
 
 def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -10,7 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.landmarks import TORSO, other_side
+from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
 
 Result = TypeVar("Result")
@@ -52,6 +53,9 @@ class Trajectory:
         ``"torso_length"``, or ``"extent"`` where the recording shows no torso: then the longest
         diagonal of any landmark's bounding box is 1 (the frame's longer side, where nothing
         moves) and no translation is taken out per frame.
+    depth
+        ``(T, K)`` in `unit`: how far each landmark is behind the torso's centre, away from the
+        camera. NaN: not known. None where the recording has no depth.
 
     """
 
@@ -59,6 +63,7 @@ class Trajectory:
     xy: FloatArray
     time: FloatArray
     unit: Unit
+    depth: FloatArray | None = None
 
     @classmethod
     def from_poses(cls, poses: PoseSequence) -> Trajectory:
@@ -96,6 +101,7 @@ class Trajectory:
             xy=np.concatenate([xy, sway[:, None]], axis=1),
             time=time,
             unit="torso_length",
+            depth=_measure_depth(poses),
         )
 
     def __len__(self) -> int:
@@ -134,12 +140,60 @@ class Trajectory:
 
         """
         columns = find_columns(names, self.landmarks, "trajectory")
-        return replace(self, landmarks=tuple(names), xy=self.xy.take(columns, axis=1))
+        return replace(
+            self,
+            landmarks=tuple(names),
+            xy=self.xy.take(columns, axis=1),
+            depth=None if self.depth is None else self.depth.take(columns, axis=1),
+        )
 
     def between(self, start: float, end: float) -> Trajectory:
         """Keep the moments with ``start <= time <= end`` (seconds since the first moment)."""
         inside = (self.time >= start) & (self.time <= end)
-        return replace(self, xy=self.xy[inside], time=self.time[inside])
+        return replace(
+            self,
+            xy=self.xy[inside],
+            time=self.time[inside],
+            depth=None if self.depth is None else self.depth[inside],
+        )
+
+    @cached_property
+    def facing(self) -> float | None:
+        """Degrees by which the body is turned from the camera; None where it has no depth.
+
+        Positive: turned to its own left, so that its left shoulder is farther away. The angle of
+        the line through the shoulders, the median over the moments.
+        """
+        if self.depth is None or not set(SHOULDERS) <= set(self.landmarks):
+            return None
+        left, right = (self.landmarks.index(name) for name in SHOULDERS)
+        across = self.xy[:, left, 0] - self.xy[:, right, 0]
+        away = self.depth[:, left] - self.depth[:, right]
+        known = np.isfinite(across) & np.isfinite(away)
+        if not known.any():
+            return None
+        return math.degrees(math.atan2(np.median(away[known]), np.median(across[known])))
+
+    def turn(self, degrees: float) -> Trajectory:
+        """Return the trajectory as seen when the body is turned about the vertical.
+
+        Parameters
+        ----------
+        degrees
+            Positive: to the body's own left, as `facing`. Landmarks whose depth is not known count
+            as beside the torso's centre; without any depth nothing changes.
+
+        """
+        if self.depth is None:
+            return self
+        cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        across, away = self.xy[..., 0], np.nan_to_num(self.depth)
+        xy = np.stack([cosine * across - sine * away, self.xy[..., 1]], axis=2)
+        return replace(self, xy=xy, depth=sine * across + cosine * self.depth)
+
+    def turn_once(self, degrees: int) -> Trajectory:
+        """Return `turn`, cached."""
+        return self.compute_once(("turned", degrees), lambda: self.turn(degrees))
 
     def mirror(self) -> Trajectory:
         """Mirror left and right: x changes its sign, landmarks swap their sides."""
@@ -159,7 +213,7 @@ class Trajectory:
         and after the last of them there is nothing to bridge to.
         """
         if np.isfinite(self.xy).all():
-            return self
+            return replace(self, depth=self._fill_depth())
         xy = self.xy.copy()
         seen = np.asarray(np.isfinite(xy).all(axis=2))
         for index in np.flatnonzero(~seen.all(axis=0)):
@@ -171,7 +225,7 @@ class Trajectory:
                     inside = slice(before + 1, after)
                     share = (self.time[inside] - self.time[before]) / span
                     path[inside] = path[before] + share[:, None] * (path[after] - path[before])
-        return replace(self, xy=xy)
+        return replace(self, xy=xy, depth=self._fill_depth())
 
     def resample_in_time(self, count: int) -> Trajectory:
         """Resample to `count` moments at equal times, linearly.
@@ -243,7 +297,14 @@ class Trajectory:
         # At a sample itself its neighbour's NaN must not leak in, nor a sum's rounding.
         np.copyto(xy, high, where=share == 1)
         np.copyto(xy, low, where=share == 0)
-        return replace(self, xy=xy, time=moments)
+        depth = self.depth
+        if depth is not None:
+            depth = _interpolate_columns(depth, self.time, moments)
+        return replace(self, xy=xy, time=moments, depth=depth)
+
+    def _fill_depth(self) -> FloatArray | None:
+        """Return `depth` with gaps bridged: it is smooth, and used for known landmarks only."""
+        return None if self.depth is None else _interpolate_columns(self.depth, self.time)
 
 
 @lru_cache(maxsize=16)
@@ -259,6 +320,35 @@ def _remove_drift(path: FloatArray, time: FloatArray) -> FloatArray:
     since = time - time.mean()
     velocity = since @ path / (since @ since)
     return np.asarray(path - path.mean(axis=0) - since[:, None] * velocity)
+
+
+def _measure_depth(poses: PoseSequence) -> FloatArray | None:
+    """Return ``(T, K + 1)`` depths in torso lengths, the torso's own last; None if not known."""
+    if poses.world is None or not {*SHOULDERS, *HIPS} <= set(poses.landmarks):
+        return None
+    shoulders, hips = (
+        poses.world[:, [poses.landmarks.index(name) for name in pair]].mean(axis=1)
+        for pair in (SHOULDERS, HIPS)
+    )
+    torso = np.linalg.norm((shoulders - hips)[:, :2], axis=1)
+    if not np.isfinite(torso).any() or not np.nanmedian(torso) > 0:
+        return None
+    centre = (shoulders + hips)[:, 2] / 2
+    depth = (poses.world[..., 2] - centre[:, None]) / np.nanmedian(torso)
+    return np.concatenate([depth, np.zeros((len(poses), 1))], axis=1)
+
+
+def _interpolate_columns(
+    values: FloatArray, time: FloatArray, moments: FloatArray | None = None
+) -> FloatArray:
+    """Interpolate the known values of each column of ``(T, K)``; unknown columns stay NaN."""
+    at = time if moments is None else moments
+    filled = np.full((len(at), values.shape[1]), np.nan)
+    for index, column in enumerate(values.T):
+        known = np.isfinite(column)
+        if known.any():
+            filled[:, index] = np.interp(at, time[known], column[known])
+    return filled
 
 
 def _extent(xy: FloatArray) -> float:

@@ -117,12 +117,13 @@ def _exchange_sides(repair: Repair) -> Repair:
         return repair
     xy = swap_sides(poses.xy, poses.landmarks, sides.exchanged)
     xy[sides.blended] = np.nan
-    confidence = poses.confidence
-    if confidence is not None:
-        confidence = swap_sides(confidence, poses.landmarks, sides.exchanged)
+    confidence, world = (
+        None if values is None else swap_sides(values, poses.landmarks, sides.exchanged)
+        for values in (poses.confidence, poses.world)
+    )
     return replace(
         repair,
-        poses=replace(poses, xy=xy, confidence=confidence),
+        poses=replace(poses, xy=xy, confidence=confidence, world=world),
         exchanged=repair.exchanged ^ sides.exchanged,
         blended=repair.blended | sides.blended,
     )

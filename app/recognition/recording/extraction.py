@@ -129,17 +129,22 @@ def build_frame_sequence(
     """
     if found.body is None:
         xy, visibility = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
+        world = None
     else:
         seen = np.isfinite(found.body.xy).all(axis=1, keepdims=True)
         xy = np.where(seen, found.body.xy, np.nan)
         # NaN becomes 0, unlike in np.clip.
         visibility = np.fmin(np.fmax(found.body.visibility, 0), 1)
+        world = found.body.world
+        if world is not None:
+            world = world.astype(np.float32).astype(np.float64)  # as precise as `Recording.save`
     moment = PoseSequence(
         landmarks=POSE_LANDMARKS,
         xy=xy[None],
         confidence=visibility[None],
         time=np.array([time]),
         frame_size=frame_size,
+        world=None if world is None else world[None],
     )
     return moment if landmarks == POSE_LANDMARKS else moment.select(landmarks)
 

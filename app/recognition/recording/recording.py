@@ -96,6 +96,8 @@ class Recording:
         }
         if self.poses.confidence is not None:
             arrays["confidence"] = self.poses.confidence
+        if self.poses.world is not None:
+            arrays["world"] = self.poses.world.astype(np.float32)  # micrometres are enough
         np.savez_compressed(file, allow_pickle=False, **arrays)
 
     @classmethod
@@ -134,6 +136,7 @@ class Recording:
             confidence=arrays.get("confidence"),
             time=arrays["time"],
             frame_size=(int(arrays["frame_size"][0]), int(arrays["frame_size"][1])),
+            world=arrays.get("world"),
         )
         found = [
             Hand(xy=xy, side="right" if is_right else "left", score=float(score))

@@ -9,6 +9,7 @@ this in a process of its own with a time limit, as jobs do.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -24,6 +25,7 @@ from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
+from app.recognition.recording.jpeg_size import read_jpeg_size
 from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -170,8 +172,10 @@ class FrameReader(Iterator[VideoFrame]):
                 )
             self.info = _info(self._container, self._stream, self._first)
             self._limits.require_pixels(self.info.width, self.info.height)
-        except BaseException:
+        except BaseException as error:
             self.close()
+            if isinstance(error, VideoError):
+                _require_jpeg_pixels(self._path, self._limits)
             raise
 
     def __next__(self) -> VideoFrame:
@@ -362,6 +366,20 @@ def _video_stream(container: InputContainer, path: Path) -> VideoStream:
     context.thread_count = DECODER_THREADS
     context.thread_type = "AUTO"
     return stream
+
+
+def _require_jpeg_pixels(path: Path, limits: VideoLimits) -> None:
+    """Raise VideoError when the first picture of a Motion JPEG clip is larger than allowed.
+
+    FFmpeg refuses pictures beyond a size of its own as if they were damaged.
+    """
+    with suppress(av.error.FFmpegError, OSError, IndexError), _open(path, limits) as container:
+        stream = container.streams.video[0]
+        context = stream.codec_context
+        if context is not None and context.codec is not None and context.name == "mjpeg":
+            packet = next(container.demux(stream))
+            if (size := read_jpeg_size(bytes(packet))) is not None:
+                limits.require_pixels(*size)
 
 
 def _nominal_step(stream: VideoStream) -> float:

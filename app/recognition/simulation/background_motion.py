@@ -217,11 +217,13 @@ def _build_body(right: FloatArray, left: FloatArray) -> Trajectory:
     for side, outward, wrist in (("right", (-1.0, 1.0), right), ("left", (1.0, 1.0), left)):
         for part, path in _build_arm(wrist).items():
             paths[f"{side}_{part}"] = path * outward
+    # Depth 0 says that the diver faces the camera, so that one view is compared.
     return Trajectory(
         landmarks=tuple(paths),
         xy=np.stack(list(paths.values()), axis=1),
         time=np.arange(len(right)) / RATE,
         unit="torso_length",
+        depth=np.zeros((len(right), len(paths))),
     )
 
 

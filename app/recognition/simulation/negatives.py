@@ -61,9 +61,13 @@ def splice(before: Trajectory, after: Trajectory) -> Trajectory:
     tail = after.select(common)
     tail = tail.between(tail.time[-1] / 2, tail.time[-1])
     step = (before.time[-1] - before.time[0]) / (len(before) - 1)
+    depth = None
+    if head.depth is not None and tail.depth is not None:
+        depth = np.concatenate([head.depth, tail.depth])
     return Trajectory(
         landmarks=tuple(common),
         xy=np.concatenate([head.xy, tail.xy + np.nan_to_num(head.xy[-1] - tail.xy[0])]),
         time=np.concatenate([head.time, tail.time - tail.time[0] + head.time[-1] + step]),
         unit=before.unit,
+        depth=depth,
     )

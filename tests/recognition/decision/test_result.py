@@ -42,6 +42,8 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
         "scores": [0.4, None],
         "novelty": [0.2, None],
         "novelty_by_view": {"figure": [0.2, None], "wrist": [0.1, None]},
+        "facing": None,
+        "views": [],
     }
 
 

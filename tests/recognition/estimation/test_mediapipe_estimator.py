@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import EstimatorError
-from app.recognition.estimation import MediaPipeEstimator
+from app.recognition.estimation import MediaPipeEstimator, OnnxPoseEstimator
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
+from tests.recognition.strategies import known
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +48,16 @@ def test_pixels_lie_in_the_image(library: MediaPipeEstimator, frame: VideoFrame)
     assert body is not None
     height, width = frame.image.shape[:2]
     assert ((body.xy[:13] > 0) & (body.xy[:13] < (width, height))).all()
+
+
+def test_places_in_the_world_are_those_of_our_own_pipeline(
+    library: MediaPipeEstimator, estimator: OnnxPoseEstimator, frame: VideoFrame
+) -> None:
+    library.reset()
+    theirs, ours = (each.estimate(frame.image, 0.0).body for each in (library, estimator))
+    assert theirs is not None
+    assert ours is not None
+    np.testing.assert_allclose(known(ours.world), known(theirs.world), atol=0.01)
 
 
 def test_what_is_no_image_is_refused(library: MediaPipeEstimator) -> None:

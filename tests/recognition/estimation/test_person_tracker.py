@@ -1,6 +1,7 @@
 """One person is followed, whoever else is in the picture."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -29,6 +30,7 @@ def test_of_two_as_large_the_surer_one_is_followed() -> None:
     assert PersonTracker().choose(same, np.array([0.4, 0.8]), 0.0) == 1
 
 
+@pytest.mark.withstands(row="H11")
 def test_whoever_was_followed_stays_it_when_another_comes_nearer() -> None:
     choice = PersonTracker()
     choice.choose(people(100, 400), BOTH, 0.0)

@@ -48,6 +48,7 @@ def test_landmarks_of_another_set_make_a_gesture() -> None:
 
 
 @pytest.mark.parametrize("frames", [0, 1, 2])
+@pytest.mark.withstands(row="H12")
 def test_a_demonstration_of_hardly_a_frame_is_refused(frames: int) -> None:
     with pytest.raises(GestureError, match=f"has {frames} frames, a gesture needs at least 3"):
         Gesture.from_demonstration("blink", recording(circle, frames=frames))

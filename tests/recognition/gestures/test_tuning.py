@@ -23,16 +23,28 @@ def language() -> Language:
     return Language("pool", gestures)
 
 
-@pytest.mark.parametrize("profile", ["paper", "full"])
+@pytest.mark.parametrize(("profile", "voter"), [("paper", "zernike"), ("full", "velocity")])
 def test_a_voter_that_is_off_neither_votes_nor_contributes(
-    language: Language, profile: str
+    language: Language, profile: str, voter: str
 ) -> None:
     query = recording(wedge, jitter=0.02)
-    off = Recognizer(language, profile, tuning=Tuning(weights={"zernike": 0.0}))
-    assert "zernike" in Recognizer(language, profile).recognize(query).counted
-    assert "zernike" not in off.recognize(query).counted
+    off = Recognizer(language, profile, tuning=Tuning(weights={voter: 0.0}))
+    assert voter in Recognizer(language, profile).recognize(query).counted
+    assert voter not in off.recognize(query).counted
     compared = off.compare(condense(Trajectory.from_poses(query)))
-    assert not compared.contributions[compared.voters.index("zernike")].any()
+    assert not compared.contributions[compared.voters.index(voter)].any()
+
+
+def test_drawings_are_compared_in_profile_full_where_the_tuning_raises_them(
+    language: Language,
+) -> None:
+    query = recording(wedge, jitter=0.02)
+    plain = Recognizer(language).recognize(query)
+    raised = Recognizer(language, tuning=Tuning(weights={"zernike": 2.0})).recognize(query)
+    assert "zernike" not in plain.counted
+    assert np.isinf(plain.distances[plain.voters.index("zernike")]).all()
+    assert "zernike" in raised.counted
+    assert np.isfinite(raised.distances).all()
 
 
 @pytest.mark.parametrize("profile", ["paper", "full"])

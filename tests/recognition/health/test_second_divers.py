@@ -67,6 +67,7 @@ def test_the_sentence_says_what_to_do() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("person", "named"), [("another", True), ("same", False)])
 def test_a_report_for_other_people_has_the_advice(person: str, named: bool) -> None:
     nearly = recording(lambda share: circle(share) * np.array([1.0, 0.95]))

@@ -4,12 +4,13 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
 from app.recognition.language.schema import MAX_FILE_BYTES, MAX_GESTURES
-from tests.recognition.strategies import circle, line, recording
+from tests.recognition.strategies import circle, in_space, line, recording
 
 Content = dict[str, Any]
 Change = Callable[[Content], object]
@@ -223,6 +224,7 @@ def put_in_path(key: str, value: object) -> Change:
         (put_in_path("x", [True] * 60), "/gestures/0/trajectory/paths/1/x/0", "valid number"),
     ],
 )
+@pytest.mark.withstands(row="H13")
 def test_what_breaks_the_format_is_refused_with_a_pointer(
     text: str, change: Change, pointer: str, complaint: str
 ) -> None:
@@ -278,6 +280,7 @@ def test_text_with_a_lone_surrogate_is_refused(text: str) -> None:
     assert "surrogate" in str(refusal_of(text.replace("pool", r"po\ud800l")))
 
 
+@pytest.mark.withstands(row="H13")
 def test_ten_thousand_gestures_are_refused_before_they_are_looked_at(text: str) -> None:
     many = resealed(text, put("gestures", [{}] * 10_000))
     error = refusal_of(many)
@@ -291,6 +294,25 @@ def test_any_readable_label_goes_through_the_file(label: str) -> None:
     assert Language.from_json(language.to_json()).labels == (label,)
 
 
+@pytest.mark.withstands(row="H12")
 def test_a_gesture_that_matches_nothing_does_not_keep_the_file_from_loading(text: str) -> None:
     still = resealed(text, put_in_gesture("salient", []))
     assert Language.from_json(still).labels == ("circle", "line")
+
+
+def test_depth_survives_a_file_and_is_left_out_where_there_is_none(text: str) -> None:
+    gesture = Gesture.from_demonstration("circle", in_space(recording(circle), 20.0))
+    written = Language("pool", [gesture]).to_json()
+    read = Language.from_json(written).gestures[0].trajectory
+    assert gesture.trajectory is not None
+    assert read is not None
+    np.testing.assert_array_equal(read.depth, gesture.trajectory.depth)
+    assert '"z"' in written
+    assert '"z"' not in text
+
+
+def test_a_path_with_fewer_depths_than_moments_is_refused() -> None:
+    gesture = Gesture.from_demonstration("circle", in_space(recording(circle)))
+    written = Language("pool", [gesture]).to_json()
+    shorter = resealed(written, lambda content: first(content)["trajectory"]["paths"][1]["z"].pop())
+    assert refusal_of(shorter).pointer == "/gestures/0/trajectory/paths/1/z"

@@ -135,6 +135,7 @@ def test_any_gesture_comes_back_from_the_file_as_it_was(poses: PoseSequence) -> 
 divers = st.text(st.characters(codec="utf-8", categories=("L", "N")), max_size=8)
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(recordings(), divers), min_size=1, max_size=5))
 @settings(max_examples=25, deadline=None)
 def test_all_demonstrations_come_back_from_the_file(takes: list[tuple[PoseSequence, str]]) -> None:

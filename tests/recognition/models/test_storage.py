@@ -66,6 +66,7 @@ def test_a_missing_model_is_named_with_the_mending_command(models: Path) -> None
 
 
 @pytest.mark.parametrize("kept", [0, 1, 1000, -1])
+@pytest.mark.withstands(row="H25")
 def test_a_truncated_model_is_named_with_its_size(models: Path, kept: int) -> None:
     path = models / "pose_detection.onnx"
     content = path.read_bytes()[:kept]

@@ -19,7 +19,7 @@ OPEN = Grammar(
 """Without start and end: after "photo" only a pause tells that no number is coming."""
 
 
-def heard(parser: PhraseParser, *labels: str | None, since: float = 0.0) -> list[PhraseEvent]:
+def feed(parser: PhraseParser, *labels: str | None, since: float = 0.0) -> list[PhraseEvent]:
     """Show gestures of a second each, a second apart."""
     return [
         event
@@ -34,7 +34,7 @@ def kinds(events: list[PhraseEvent]) -> list[str]:
 
 def test_a_message_is_understood_gesture_by_gesture() -> None:
     parser = PhraseParser(MISSIONS)
-    events = heard(parser, "start", "photo", "three", "end")
+    events = feed(parser, "start", "photo", "three", "end")
     assert kinds(events) == ["continues", "continues", "continues", "complete"]
     assert set(events[0].expected) == {"photo", "picture", "go"}
     assert set(events[1].expected) == {"two", "three", "down", "start", "end"}
@@ -50,7 +50,7 @@ def test_a_message_is_understood_gesture_by_gesture() -> None:
 
 def test_a_mission_has_several_phrases_and_digits_make_one_number() -> None:
     shown = ["start", "photo", "down", "one", "two", "start", "go", "left", "end"]
-    (*_, last) = heard(PhraseParser(MISSIONS), *shown)
+    (*_, last) = feed(PhraseParser(MISSIONS), *shown)
     assert last.mission is not None
     assert last.mission.spoken == "mission: photo, at 12 metres; then go left"
     assert [each.command for each in last.mission.phrases] == [
@@ -61,7 +61,7 @@ def test_a_mission_has_several_phrases_and_digits_make_one_number() -> None:
 
 def test_a_gesture_that_does_not_follow_drops_the_message_and_says_what_would_have() -> None:
     parser = PhraseParser(MISSIONS)
-    events = heard(parser, "start", "go", "three", "left", "end")
+    events = feed(parser, "start", "go", "three", "left", "end")
     assert kinds(events) == ["continues", "continues", "unexpected", "outside", "outside"]
     assert events[2].expected == ("left", "right")
     assert events[2].text == "three does not follow start, go, left or right does; begin again"
@@ -69,13 +69,13 @@ def test_a_gesture_that_does_not_follow_drops_the_message_and_says_what_would_ha
 
 
 def test_the_start_gesture_begins_anew_in_the_middle_of_a_message() -> None:
-    events = heard(PhraseParser(MISSIONS), "start", "go", "start", "go", "left", "end")
+    events = feed(PhraseParser(MISSIONS), "start", "go", "start", "go", "left", "end")
     assert kinds(events)[2:] == ["unexpected", "continues", "continues", "continues", "complete"]
 
 
 def test_a_rejected_gesture_is_asked_for_again_and_the_sequence_kept() -> None:
     parser = PhraseParser(MISSIONS)
-    events = heard(parser, "start", "photo", None, "three", "end")
+    events = feed(parser, "start", "photo", None, "three", "end")
     assert kinds(events) == ["continues", "continues", "repeat", "continues", "complete"]
     assert events[2].gestures == ("start", "photo")
     assert events[4].mission is not None
@@ -84,7 +84,7 @@ def test_a_rejected_gesture_is_asked_for_again_and_the_sequence_kept() -> None:
 
 def test_cancel_drops_what_was_begun() -> None:
     parser = PhraseParser(MISSIONS)
-    assert kinds(heard(parser, "start", "photo", "cancel", "end")) == [
+    assert kinds(feed(parser, "start", "photo", "cancel", "end")) == [
         "continues",
         "continues",
         "cancelled",
@@ -95,11 +95,11 @@ def test_cancel_drops_what_was_begun() -> None:
 
 def test_a_pause_that_is_too_long_drops_the_message() -> None:
     parser = PhraseParser(MISSIONS)
-    heard(parser, "start", "photo")
+    feed(parser, "start", "photo")
     assert parser.expire(3.0 + MISSIONS.timeout) == ()
     (event,) = parser.expire(3.1 + MISSIONS.timeout)
     assert (event.kind, event.mission) == ("timed_out", None)
-    assert kinds(heard(parser, "end", since=20)) == ["outside"]
+    assert kinds(feed(parser, "end", since=20)) == ["outside"]
 
 
 def test_the_pause_before_a_gesture_counts_and_not_its_own_length() -> None:
@@ -113,23 +113,23 @@ def test_the_pause_before_a_gesture_counts_and_not_its_own_length() -> None:
 
 def test_without_an_end_a_pause_tells_that_no_more_is_coming() -> None:
     parser = PhraseParser(OPEN)
-    assert kinds(heard(parser, "photo")) == ["continues"]
+    assert kinds(feed(parser, "photo")) == ["continues"]
     (event,) = parser.expire(6.5)
     assert event.kind == "complete"
     assert event.mission is not None
     assert event.mission.spoken == "mission: photo"
-    assert kinds(heard(parser, "photo", "three")) == ["continues", "complete"]
+    assert kinds(feed(parser, "photo", "three")) == ["continues", "complete"]
 
 
 def test_nothing_is_done_when_the_last_gesture_before_the_pause_was_rejected() -> None:
     parser = PhraseParser(OPEN)
-    assert kinds(heard(parser, "photo", None)) == ["continues", "repeat"]
+    assert kinds(feed(parser, "photo", None)) == ["continues", "repeat"]
     (event,) = parser.expire(60.0)
     assert (event.kind, event.mission) == ("timed_out", None)
 
 
 def test_an_event_is_plain_json() -> None:
-    (*_, last) = heard(PhraseParser(MISSIONS), "start", "go", "left", "end")
+    (*_, last) = feed(PhraseParser(MISSIONS), "start", "go", "left", "end")
     assert last.to_dict() == {
         "kind": "complete",
         "gestures": ["start", "go", "left", "end"],
@@ -146,10 +146,10 @@ def test_an_event_is_plain_json() -> None:
 
 @pytest.mark.parametrize("phrase", MISSIONS.phrases, ids=lambda phrase: phrase.name)
 def test_the_example_of_a_phrase_is_understood_as_that_phrase(phrase: Phrase) -> None:
-    (*_, last) = heard(PhraseParser(MISSIONS), *MISSIONS.example(phrase))
+    (*_, last) = feed(PhraseParser(MISSIONS), *MISSIONS.example(phrase))
     assert last.mission is not None
     assert [each.phrase for each in last.mission.phrases] == [phrase.name]
-    (*_, renamed) = heard(
+    (*_, renamed) = feed(
         PhraseParser(MISSIONS.renamed("start", "hello")),
         *MISSIONS.renamed("start", "hello").example(phrase),
     )
@@ -164,7 +164,7 @@ def test_every_message_means_what_it_was_made_to_mean(
     if find_ambiguities(grammar):
         return
     labels, parse = data.draw(st.sampled_from(list(sentences(grammar))))
-    events = heard(PhraseParser(grammar), *labels)
+    events = feed(PhraseParser(grammar), *labels)
     assert kinds(events) == ["continues"] * (len(labels) - 1) + ["complete"]
     assert events[-1].mission == interpret_message(grammar, parse)
     assert events[-1].gestures == labels
@@ -178,7 +178,7 @@ def test_what_is_expected_is_exactly_what_can_follow(grammar: Grammar, data: st.
     shown = labels[: data.draw(st.integers(0, len(labels) - 1))]
     parser = PhraseParser(grammar)
     # What may be over may also go on, as long as there is no pause.
-    heard(parser, *shown)
+    feed(parser, *shown)
     following = {each[len(shown)] for each in every if each[: len(shown)] == shown < each}
     assert set(parser.expected) == following
 
@@ -190,7 +190,7 @@ def test_no_command_ever_contains_a_gesture_that_was_not_recognised(
 ) -> None:
     known = {labels for labels, _ in sentences(grammar)}
     parser = PhraseParser(grammar)
-    for event in [*heard(parser, *shown), *parser.expire(1000.0)]:
+    for event in [*feed(parser, *shown), *parser.expire(1000.0)]:
         if event.mission is None:
             continue
         assert event.kind == "complete"
@@ -201,5 +201,5 @@ def test_no_command_ever_contains_a_gesture_that_was_not_recognised(
 
 def test_two_parsers_of_one_grammar_do_not_hear_each_other() -> None:
     one_diver, other = PhraseParser(MISSIONS), PhraseParser(replace(MISSIONS))
-    heard(one_diver, "start", "go")
+    feed(one_diver, "start", "go")
     assert other.expected == ("start",)

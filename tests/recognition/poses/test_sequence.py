@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.recognition import PoseError, PoseSequence
-from app.recognition.poses.sequence import SHOULDER_WIDTHS_PER_TORSO, FloatArray
+from app.recognition.poses.sequence import SHOULDER_WIDTHS_PER_TORSO, FloatArray, join_sequences
 from tests.recognition.strategies import circle, recording
 
 WRIST_AND_NOSE = {
@@ -58,6 +58,8 @@ UNSEEN = (np.nan, np.nan)
         ({"confidence": [[0.5, 0.5]]}, r"confidence has shape \(1, 2\), expected \(2, 2\)"),
         ({"confidence": np.full((2, 2), 1.1)}, r"outside \[0, 1\]"),
         ({"confidence": np.full((2, 2), np.nan)}, r"outside \[0, 1\]"),
+        ({"world": np.zeros((2, 2, 2))}, r"world has shape \(2, 2, 2\), expected \(2, 2, 3\)"),
+        ({"world": np.full((2, 2, 3), np.inf)}, "world holds infinite values"),
         ({"frame_size": (640,)}, r"frame_size is \(640,\)"),
         ({"frame_size": (640, 0)}, r"expected \(width, height\) in pixels, both > 0"),
     ],
@@ -166,3 +168,25 @@ def test_without_shoulders_there_is_no_torso() -> None:
 
 def test_a_torso_without_extent_has_no_length() -> None:
     assert torso([[(10, 10)] * 4]).torso_length() is None
+
+
+def test_places_in_the_world_stay_with_their_landmarks_and_moments() -> None:
+    world = np.arange(12.0).reshape(2, 2, 3)
+    poses = wrist_and_nose(world=world)
+    selected, cut = poses.select(["nose"]).world, poses.between(0.05, 0.2).world
+    assert selected is not None
+    assert cut is not None
+    np.testing.assert_array_equal(selected, world[:, 1:])
+    np.testing.assert_array_equal(cut, world[1:])
+    assert poses != wrist_and_nose(world=world + 1)
+    assert poses != wrist_and_nose()
+
+
+def test_a_joined_part_without_places_in_the_world_has_none_there() -> None:
+    with_world = wrist_and_nose(world=np.ones((2, 2, 3)))
+    later = wrist_and_nose(time=[0.2, 0.3])
+    joined = join_sequences([with_world, later]).world
+    assert joined is not None
+    assert np.isfinite(joined[:2]).all()
+    assert np.isnan(joined[2:]).all()
+    assert join_sequences([wrist_and_nose(), later]).world is None

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from app.recognition import PoseError, PoseSequence
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
-from tests.recognition.strategies import circle, recording, recordings
+from tests.recognition.strategies import circle, in_space, known, recording, recordings
 
 HAND_ONLY = ("right_wrist",)
 UNSEEN = [np.nan, np.nan]
@@ -176,3 +176,52 @@ def test_what_was_worked_out_once_is_kept_for_this_trajectory_alone() -> None:
     assert [seen.compute_once("number", work_out) for _ in range(3)] == [1, 1, 1]
     assert seen.compute_once(("number", 2), work_out) == 2
     assert seen.between(0, 1).compute_once("number", work_out) == 3
+
+
+TURNS = st.floats(-80, 80)
+
+
+@given(turned=TURNS)
+def test_the_way_a_diver_faces_is_read_off_the_shoulders(turned: float) -> None:
+    seen = Trajectory.from_poses(in_space(recording(circle), turned))
+    assert seen.facing == pytest.approx(turned, abs=1e-6)
+    assert seen.mirror().facing == pytest.approx(-turned, abs=1e-6)
+
+
+@given(turned=TURNS, by=TURNS)
+def test_a_turned_demonstration_is_what_the_camera_sees_of_a_turned_diver(
+    turned: float, by: float
+) -> None:
+    one = Trajectory.from_poses(in_space(recording(circle), turned)).turn(by)
+    other = Trajectory.from_poses(in_space(recording(circle), turned + by))
+    np.testing.assert_allclose(one.xy, other.xy, atol=1e-9)
+    np.testing.assert_allclose(known(one.depth), known(other.depth), atol=1e-9)
+
+
+def test_without_depth_nobody_is_known_to_be_turned_and_nothing_turns() -> None:
+    seen = Trajectory.from_poses(recording(circle))
+    assert seen.depth is None
+    assert seen.facing is None
+    assert seen.turn(30) is seen
+
+
+def test_depth_is_cut_resampled_and_bridged_with_the_path() -> None:
+    poses = in_space(recording(circle, frames=20, rate=10.0), 30.0)
+    assert poses.world is not None
+    world = poses.world.copy()
+    world[5:8] = np.nan
+    whole = Trajectory.from_poses(poses)
+    gappy = Trajectory.from_poses(replace(poses, world=world))
+    depth = known(whole.depth)
+    np.testing.assert_allclose(known(gappy.fill_gaps().depth), depth, atol=0.1)
+    assert known(whole.resample_in_time(7).depth).shape == (7, 34)
+    np.testing.assert_array_equal(known(whole.between(0.5, 1.0).depth), depth[5:11])
+    wrist = known(whole.select(["right_wrist"]).depth)
+    np.testing.assert_array_equal(wrist[:, 0], depth[:, 16])
+
+
+@pytest.mark.parametrize("missing", [("left_hip", "right_hip"), ("left_shoulder",)])
+def test_depth_needs_the_torso_it_is_measured_from(missing: tuple[str, ...]) -> None:
+    poses = in_space(recording(circle))
+    kept = poses.select([name for name in poses.landmarks if name not in missing])
+    assert Trajectory.from_poses(kept).depth is None

@@ -1,4 +1,4 @@
-"""Recordings too poor to judge: told with the reason, in place of a guess."""
+"""Recordings of insufficient quality get a reason in place of a label."""
 
 from collections.abc import Callable
 from dataclasses import replace

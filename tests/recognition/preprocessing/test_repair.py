@@ -11,9 +11,9 @@ from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.preprocessing.side_swaps import pair_sides
+from app.recognition.preprocessing.side_swaps import pair_sides, swap_sides
 from tests.recognition.damaged_poses import with_sides_exchanged
-from tests.recognition.strategies import SHAPES, circle, recording, recordings
+from tests.recognition.strategies import SHAPES, circle, in_space, recording, recordings
 
 WRIST = POSE_LANDMARKS.index("right_wrist")
 
@@ -114,3 +114,16 @@ def test_jumps_cost_profile_full_no_confidence() -> None:
     assert result.confidence == pytest.approx(clean.confidence, abs=0.05)
     left_as_it_is = Recognizer(language, "full", tuning=Tuning(keypoints_repaired=False))
     assert left_as_it_is.recognize(bad).confidence < result.confidence - 0.2
+
+
+def test_places_in_the_world_are_exchanged_back_with_their_landmarks() -> None:
+    poses = in_space(recording(circle))
+    assert poses.world is not None
+    damaged = np.zeros(len(poses), dtype=bool)
+    damaged[20:26] = True
+    swapped = replace(
+        poses,
+        xy=swap_sides(poses.xy, poses.landmarks, damaged),
+        world=swap_sides(poses.world, poses.landmarks, damaged),
+    )
+    np.testing.assert_array_equal(repair_poses(swapped).poses.world, poses.world)

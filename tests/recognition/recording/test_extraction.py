@@ -113,6 +113,7 @@ def test_the_larger_hand_comes_first(clip: Path) -> None:
     assert [hand.side for hand in recording.hands[0]] == ["left", "right"]
 
 
+@pytest.mark.withstands(row="H11")
 def test_frames_without_a_person_stay_and_are_counted(clip: Path) -> None:
     bodiless = frozenset({0, 7, 8})
     recording = record(
@@ -132,6 +133,7 @@ def test_a_clip_without_anybody_is_no_silent_success(clip: Path) -> None:
     assert takes_in(recording) == ()
 
 
+@pytest.mark.withstands(row="H11")
 def test_a_landmark_that_is_no_number_becomes_unseen(clip: Path) -> None:
     poses = extract_poses(clip, estimator=ScriptedEstimator(unseen=5))
     assert not poses.seen[:, 5].any()

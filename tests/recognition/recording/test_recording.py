@@ -1,5 +1,6 @@
 """Recordings: what is saved is what is loaded, and damage is told plainly."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import FILE_VERSION, Recording
 from tests.recognition.parametric_hand import hand_xy, salute
+from tests.recognition.strategies import known
 
 FRAMES = 7
 
@@ -128,3 +130,13 @@ def test_scores_are_shares() -> None:
     good = recording()
     with pytest.raises(PoseError, match=r"outside \[0, 1\]"):
         Recording(poses=good.poses, hands=good.hands, salute=good.salute + 2)
+
+
+def test_places_in_the_world_are_saved_to_a_micrometre(tmp_path: Path) -> None:
+    whole = recording()
+    world = np.random.default_rng(1).normal(size=(FRAMES, 2, 3))
+    world[2] = np.nan
+    poses = replace(whole.poses, world=world)
+    replace(whole, poses=poses).save(tmp_path / "clip.npz")
+    loaded = known(Recording.load(tmp_path / "clip.npz").poses.world)
+    np.testing.assert_allclose(loaded, world, atol=1e-6)

@@ -16,6 +16,7 @@ def times(given_stamps: list[float | None], step: float = 0.04) -> tuple[list[fl
 
 
 @given(stamps)
+@pytest.mark.withstands(row="H09")
 def test_time_begins_at_zero_and_always_increases(given_stamps: list[float | None]) -> None:
     seconds, _ = times(given_stamps)
     assert seconds[0] == 0

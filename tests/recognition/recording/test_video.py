@@ -27,6 +27,7 @@ from tests.recognition.damaged_clips import (
     WIDTH,
     cut_off,
     flipped,
+    huge_motion_jpeg,
     joined,
     sound_only,
     write_clip,
@@ -75,6 +76,7 @@ def test_every_common_kind_of_clip_is_read(
     assert warnings == ()
 
 
+@pytest.mark.withstands(row="H09")
 def test_more_streams_than_a_film_has_are_refused(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mkv", extra_streams=70)
     with pytest.raises(VideoError, match="more streams than the limit of 64"):
@@ -125,6 +127,7 @@ def test_joined_recordings_go_on_in_time(tmp_path: Path) -> None:
     ("rotation", "red_corner"),
     [(0, (2, 2)), (90, (-3, 2)), (180, (-3, -3)), (-90, (2, -3))],
 )
+@pytest.mark.withstands(row="H09")
 def test_pictures_come_upright(tmp_path: Path, rotation: int, red_corner: tuple[int, int]) -> None:
     clip = write_clip(tmp_path / "clip.mp4", rotation=rotation)
     info = probe(clip)
@@ -154,6 +157,7 @@ def test_the_probe_states_size_time_count_and_codec(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", IMPOSTORS)
+@pytest.mark.withstands(row="H08")
 def test_what_is_no_clip_is_refused_by_its_content(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "clip.mp4"
     path.write_bytes(IMPOSTORS[kind])
@@ -163,6 +167,7 @@ def test_what_is_no_clip_is_refused_by_its_content(tmp_path: Path, kind: str) ->
 
 @pytest.mark.parametrize("kind", PLAYLISTS)
 @pytest.mark.parametrize("suffix", ["mp4", "m3u8", "ffconcat", "sdp"])
+@pytest.mark.withstands(row="H07")
 def test_a_playlist_opens_no_other_file(tmp_path: Path, kind: str, suffix: str) -> None:
     other = write_clip(tmp_path / "other.mp4")
     path = tmp_path / f"clip.{suffix}"
@@ -177,12 +182,14 @@ def test_an_address_is_not_a_file(name: str) -> None:
         probe(name)
 
 
+@pytest.mark.withstands(row="H09")
 def test_sound_without_a_picture_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(VideoError, match=r"no video, only.*audio"):
         probe(sound_only(tmp_path / "clip.mp4"))
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+@pytest.mark.withstands(row="H08")
 def test_a_clip_without_its_index_is_refused(tmp_path: Path, share: float) -> None:
     clip = cut_off(write_clip(tmp_path / "clip.mp4", frames=100), share)
     with pytest.raises(VideoError, match=r"clip\.mp4.*(record|export)"):
@@ -198,6 +205,7 @@ def test_a_clip_without_its_index_is_refused(tmp_path: Path, share: float) -> No
         ("clip.mkv", 0.5, {}),
     ],
 )
+@pytest.mark.withstands(row="H08")
 def test_a_truncated_clip_gives_its_beginning_and_says_how_much(
     tmp_path: Path, name: str, share: float, options: dict[str, Any]
 ) -> None:
@@ -221,6 +229,7 @@ def test_a_truncated_stream_without_an_index_gives_its_beginning(tmp_path: Path)
     ],
 )
 @pytest.mark.parametrize("name", ["clip.mp4", "clip.mkv", "clip.ts"])
+@pytest.mark.withstands(row="H09")
 def test_limits_hold_and_are_named(
     tmp_path: Path, limits: VideoLimits, reason: str, name: str
 ) -> None:
@@ -240,12 +249,33 @@ def test_the_container_may_lie_about_its_length(tmp_path: Path) -> None:
         read(clip, VideoLimits(seconds=0.5))
 
 
+@pytest.mark.slow
+@pytest.mark.withstands(row="H09")
 def test_a_frame_too_large_is_never_decoded(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=1, size=(4800, 4800))
     with pytest.raises(VideoError, match="4800 x 4800 pixels"):
         probe(clip)
 
 
+@pytest.mark.parametrize("name", ["clip.avi", "clip.mov", "clip.mkv"])
+@pytest.mark.parametrize("stated", [False, True])
+@pytest.mark.parametrize("side", [8000, 16384])
+def test_a_motion_jpeg_that_the_decoder_refuses_is_too_large_and_not_damaged(
+    tmp_path: Path, name: str, side: int, stated: bool
+) -> None:
+    clip = huge_motion_jpeg(tmp_path / name, side, stated=stated)
+    with pytest.raises(VideoError, match=f"{side} x {side} pixels, more than the limit"):
+        probe(clip)
+
+
+def test_a_damaged_motion_jpeg_of_a_fitting_size_is_damaged(tmp_path: Path) -> None:
+    clip = huge_motion_jpeg(tmp_path / "clip.avi", 2000, stated=False)
+    clip.write_bytes(clip.read_bytes().replace(b"\xff\xda", b"\xff\x00"))
+    with pytest.raises(VideoError, match="damaged"):
+        probe(clip)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "codec"), [("clip.mp4", "libx264"), ("clip.webm", "libvpx"), ("clip.avi", "mpeg4")]
 )
@@ -311,6 +341,7 @@ def test_neither_does_one_that_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
     assert [alive() for alive in opened] == [None]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "count", "seconds"),
     [("diver_follow_me.webm", 83, 6.0), ("pose2sim_single_cam02.mp4", 100, 1.65)],

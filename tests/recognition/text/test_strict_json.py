@@ -61,6 +61,7 @@ def test_plain_json_is_read_as_it_is(value: object) -> None:
         ('{"a/b": {"~": NaN}}', "/a~1b/~0", "not a number"),
     ],
 )
+@pytest.mark.withstands(row="H13")
 def test_what_other_readers_would_take_differently_is_refused(
     text: str | bytes, pointer: str, message: str
 ) -> None:
@@ -90,6 +91,7 @@ def test_the_deepest_nesting_allowed_is_read() -> None:
 
 
 @pytest.mark.parametrize("text", ["[" * 10_000 + "]" * 10_000, '{"a":' * 10_000, "[" * 33])
+@pytest.mark.withstands(row="H13")
 def test_deeper_nesting_is_refused_before_parsing(text: str) -> None:
     [(_, message)] = faults_of(text, max_bytes=100 * KB)
     assert message.startswith("nested ")
@@ -181,6 +183,7 @@ def _read_number(integer: int) -> int | float:
 
 
 @pytest.mark.timeout(60)  # counting each key among all others takes minutes
+@pytest.mark.withstands(row="H13")
 def test_very_many_keys_that_occur_twice_are_refused_at_once() -> None:
     keys = [f'"{index}": 0' for index in range(100_000)]
     document = ("{" + ", ".join(keys + keys) + "}").encode()

@@ -131,32 +131,34 @@ def test_another_picture_or_time_going_back_ends_a_take() -> None:
         assert idle.state is TakeState.idle
 
 
+@pytest.mark.withstands(row="H27")
 def test_late_and_repeated_frames_are_dropped_and_counted_and_the_take_stays() -> None:
     frames = moments_of(recording_of("circle"))
     middle = len(frames) // 2
     disordered = [*frames[:middle], frames[middle - 1], frames[middle - 9], *frames[middle:]]
     disordered[8], disordered[9] = disordered[9], disordered[8]
     listener, alone = Listener(spoken("circle")), Listener(spoken("circle"))
-    told = [event for frame in disordered for event in listener.feed(*frame)]
+    events = [event for frame in disordered for event in listener.feed(*frame)]
     expected = [event for frame in frames for event in alone.feed(*frame)]
     assert listener.order.late == 3
-    (said,) = [event for event in told if isinstance(event, TakeRecognized)]
+    (said,) = [event for event in events if isinstance(event, TakeRecognized)]
     (same,) = [event for event in expected if isinstance(event, TakeRecognized)]
     assert (said.label, said.start, said.end) == (same.label, same.start, same.end)
 
 
 @pytest.mark.parametrize("seconds", [59.0, 61.0, 62.0, 70.0, 3600.0, 1e6])
+@pytest.mark.withstands(row="H27")
 def test_a_pause_or_a_step_of_the_clock_in_a_take_rejects_it(seconds: float) -> None:
     listener = Listener(spoken("circle"))
     begun = cut(recording_of("circle"), 2.0)
     run_listener(listener, begun)
     *_, (last, _) = moments_of(begun)
-    told = [
+    events = [
         event
         for number in range(1, 4 * RATE)
         for event in listener.feed(moved(last, seconds + number / RATE), 0.0)
     ]
-    (rejected,) = [event for event in told if isinstance(event, TakeRejected)]
+    (rejected,) = [event for event in events if isinstance(event, TakeRejected)]
     assert "no salute ended it within 60 s" in rejected.reason
     assert listener.state is TakeState.idle
     # And it goes on.

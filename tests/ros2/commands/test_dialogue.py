@@ -147,6 +147,7 @@ def test_two_recognitions_of_one_take_never_confirm_each_other(rules: Rules) -> 
     assert repeated[-1] == "photo"
 
 
+@pytest.mark.withstands(row="H27")
 def test_only_the_same_body_confirms() -> None:
     first = of_take("circle", 1.0, 2.0)
     other = of_take("circle", 3.0, 4.0, body="other")
@@ -217,6 +218,7 @@ def decide_all(
 
 
 @given(arrivals)
+@pytest.mark.withstands(row="H27")
 def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
     arrivals: list[tuple[RecognizedGesture, float]],
 ) -> None:

@@ -78,6 +78,7 @@ def test_a_lifecycle_manager_does_it_by_service_in_the_nodes_namespace(
         (CommandNode, {"cancel": ["line"], "emergency": ["line"]}, "'line'"),
     ],
 )
+@pytest.mark.withstands(row="H27")
 def test_a_node_that_cannot_be_configured_stays_so_and_says_why(
     bench: Bench, kind: type[ManagedNode], wrong: dict[str, Any], expected: str
 ) -> None:

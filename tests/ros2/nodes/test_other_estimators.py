@@ -47,6 +47,7 @@ def pointing(tmp_path: Path) -> str:
     return str(tmp_path / "fingers.json")
 
 
+@pytest.mark.slow
 def test_a_gesture_without_salutes_is_heard_by_yolo_pose(
     bench: Bench, tmp_path: Path, estimator: str, two_signs: str
 ) -> None:

@@ -175,11 +175,11 @@ def warm_up(bench: Bench, pictures: Any) -> None:
         pictures.publish(message)
         news = len(reports) + 3
         bench.wait(lambda news=news: len(reports) >= news, "diagnostics")  # type: ignore[misc]
-        if any(recogniser_heard(report.status[0]) for report in reports):
+        if any(recogniser_received(report.status[0]) for report in reports):
             return
 
 
-def recogniser_heard(status: DiagnosticStatus) -> bool:
+def recogniser_received(status: DiagnosticStatus) -> bool:
     """Tell whether the node that recognises has worked on a picture."""
     values = {value.key: value.value for value in status.values}
     return status.name in ("/gesture_node", "/recognition_node") and values["messages"] != "0"

@@ -153,6 +153,7 @@ def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
     assert recognitions[1].label == "circle"
 
 
+@pytest.mark.withstands(row="H27")
 def test_keypoints_without_stamps_are_timed_by_their_arrival(
     bench: Bench, recogniser: RecognitionNode
 ) -> None:
@@ -238,6 +239,7 @@ def test_another_language_is_spoken_without_missing_a_picture(
     assert recognitions[0].language_name == "one sign"
 
 
+@pytest.mark.withstands(row="H27")
 def test_a_language_that_is_refused_leaves_the_old_one(
     bench: Bench, recogniser: RecognitionNode, tmp_path: Path
 ) -> None:

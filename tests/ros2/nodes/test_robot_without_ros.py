@@ -46,7 +46,7 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
     ):
         bench.probe.create_subscription(kind, f"/osg/{topic}", seen.append, RELIABLE)
 
-    def all_heard() -> bool:
+    def all_received() -> bool:
         return (
             len(takes) >= ROUNDS * len(emitted_takes)
             and len(labels) >= ROUNDS * len(emitted_labels)
@@ -58,11 +58,11 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
     with subprocess.Popen(robot, env=workspace.environment(domain)) as process:
         try:
             end = time.monotonic() + PATIENCE
-            while not all_heard() and time.monotonic() < end:
+            while not all_received() and time.monotonic() < end:
                 rclpy.spin_once(bench.probe, timeout_sec=0.1)
         finally:
             process.kill()
-    assert all_heard()
+    assert all_received()
     compare_takes(takes, emitted_takes)
     compare_phrases(phrases, emitted_phrases)
     assert {label.data for label in labels} == set(emitted_labels)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
@@ -13,6 +15,7 @@ from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER,
 from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 INPUT_SIZE: Final = 256
 """Side of the landmark model's input in pixels."""
@@ -28,9 +31,15 @@ HEATMAP_SIZE: Final = 64
 
 POSE_SIGNATURE: Final = Signature(
     INPUT_SIZE,
-    outputs=((1, LANDMARKS * 5), (1, 1), (1, HEATMAP_SIZE, HEATMAP_SIZE, LANDMARKS)),
+    outputs=(
+        (1, LANDMARKS * 5),
+        (1, 1),
+        (1, HEATMAP_SIZE, HEATMAP_SIZE, LANDMARKS),
+        (1, LANDMARKS * 3),
+    ),
 )
-"""Landmarks (x, y, z, visibility, presence), probability of a person, heat maps."""
+"""Landmarks (x, y, z, visibility, presence), probability of a person, heat maps, world landmarks
+(x, y, z in metres, in the region's axes)."""
 
 MID_HIPS, REACH_POINT = 33, 34
 """Auxiliary points: the middle of the hips, and a point on the circle around the whole body."""
@@ -81,7 +90,7 @@ class BodyTracker:
         if region is None:
             return None
         region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._landmarks.pixels)
-        raw, presence, heatmap = self._landmarks.run()
+        raw, presence, heatmap, metric = self._landmarks.run()
         score = float(presence[0, 0])
         if not score >= LEAST_PRESENCE:
             self.reset()
@@ -100,6 +109,7 @@ class BodyTracker:
             xy=self._position.apply(xy[:count], time, scale=1 / following.side),
             visibility=self._visibility.apply(sigmoid(points[:count, 3])),
             score=min(score, 1.0),
+            world=_turn_upright(metric.reshape(LANDMARKS, 3)[:count], region),
         )
 
     def _found(self, image: Image) -> Region | None:
@@ -109,3 +119,11 @@ class BodyTracker:
         centre, reach = persons[0].keypoints[:2]
         region = Region.aligned(centre, reach, MARGIN)
         return region if region.usable else None
+
+
+def _turn_upright(metric: npt.NDArray[np.float32], region: Region) -> FloatArray:
+    """Return world landmarks ``(K, 3)`` in the image's axes instead of the region's."""
+    world = metric.astype(np.float64)
+    cosine, sine = math.cos(region.rotation), math.sin(region.rotation)
+    world[:, :2] = world[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    return world

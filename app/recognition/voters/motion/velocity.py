@@ -26,5 +26,8 @@ class Velocity(DtwVoter):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` velocities in sizes, NaN where not seen."""
-        velocities = np.gradient(movement.places, axis=0)
+        places = movement.places
+        velocities = np.empty_like(places)
+        velocities[1:-1] = (places[2:] - places[:-2]) / 2
+        velocities[0], velocities[-1] = places[1] - places[0], places[-1] - places[-2]
         return normalize_size(velocities).reshape(len(velocities), -1)

@@ -93,6 +93,7 @@ def test_a_distant_diver_s_salute_is_seen(
     assert np.mean(np.array(scores) > ENTER_SCORE) > 0.7
 
 
+@pytest.mark.slow
 def test_arms_whose_hands_are_hidden_get_none(
     estimator: OnnxPoseEstimator, saluting: tuple[VideoFrame, ...]
 ) -> None:

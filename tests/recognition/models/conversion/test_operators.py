@@ -50,6 +50,7 @@ windows = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @given(case=windows, channels=st.tuples(st.integers(1, 4), st.integers(1, 4)))
 def test_convolution(schemas: Schemas, case: dict[str, Any], channels: tuple[int, int]) -> None:
     generator = np.random.default_rng(case["seed"])
