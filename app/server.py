@@ -24,34 +24,43 @@ from app.api.http import problems
 from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
+from app.api.middleware.audit import Audit
 from app.api.middleware.body_limit import BodyLimit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
 from app.api.middleware.pace import BodyPace
+from app.api.middleware.request_log import RequestLog
+from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
-from app.api.routes import (
-    checks,
+from app.api.middleware.strict_bodies import StrictBodies
+from app.api.observation.logs import set_up
+from app.api.observation.metrics import Metrics
+from app.api.routes import events, health
+from app.api.routes.administration import audit, session
+from app.api.routes.administration import metrics as metrics_routes
+from app.api.routes.clips import (
     clips,
-    demonstrations,
-    events,
-    gestures,
-    health,
-    jobs,
-    language_files,
-    languages,
+    extraction_jobs,
     mcap_exports,
-    pair_differences,
-    phrases,
-    previews,
-    recognition_pages,
-    recognitions,
     resumable_uploads,
-    revisions,
-    sample_clips,
-    sample_languages,
     timelines,
 )
+from app.api.routes.gestures import demonstrations, gestures, previews
+from app.api.routes.languages import (
+    checks,
+    language_files,
+    language_settings,
+    languages,
+    pair_differences,
+    phrases,
+    practice,
+    revisions,
+    slates,
+    test_sets,
+)
+from app.api.routes.recognitions import recognition_pages, recognitions
+from app.api.routes.samples import sample_clips, sample_languages
 from app.api.services.studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
@@ -79,11 +88,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
     """
     settings = settings or Settings()
-    registry = WorkspaceRegistry()
+    registry, metrics = WorkspaceRegistry(), Metrics()
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        async with open_studio(settings) as studio:
+        async with open_studio(settings, metrics) as studio:
             app.state.studio = studio
             sweeper = asyncio.create_task(registry.sweep())
             try:
@@ -112,11 +121,15 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         resumable_uploads.router,
         timelines.router,
         mcap_exports.router,
-        jobs.router,
+        extraction_jobs.router,
         languages.router,
         language_files.router,
         revisions.router,
         checks.router,
+        test_sets.router,
+        practice.router,
+        slates.router,
+        language_settings.router,
         pair_differences.router,
         gestures.router,
         demonstrations.router,
@@ -127,6 +140,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         sample_clips.router,
         sample_languages.router,
         events.router,
+        session.router,
+        audit.router,
         workspaces.router,
         playback_socket.router,
         live.router,
@@ -134,11 +149,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         api.include_router(router)
     app.include_router(api)
     app.include_router(health.router, include_in_schema=False)
+    app.include_router(metrics_routes.router)
     app.include_router(relay.router)
     _serve_page(app)
     problems.install(app)
     _describe(app)
-    _guard(app, settings)
+    _guard(app, settings, metrics)
     return app
 
 
@@ -153,6 +169,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         Whether to open the page in this machine's browser once the server is up.
 
     """
+    set_up(settings.log_format, settings.log_level)
     app = create_app(settings)
     server = _AnnouncedServer(
         uvicorn.Config(
@@ -163,8 +180,10 @@ def run(settings: Settings, *, open_browser: bool) -> None:
             # viser compresses its messages itself; compressing them twice halves the frame rate.
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=GRACEFUL_SECONDS,
-            # The Host check needs the header that the browser sent.
-            proxy_headers=False,
+            # The address and scheme that a trusted proxy names; never the host, which it passes on.
+            proxy_headers=bool(settings.forwarded_allow_ips),
+            forwarded_allow_ips=settings.forwarded_allow_ips or None,
+            log_config=None,
             server_header=False,
         ),
         app,
@@ -237,13 +256,15 @@ def _describe(app: FastAPI) -> None:
     app.openapi = generate_openapi  # type: ignore[method-assign]
 
 
-def _guard(app: FastAPI, settings: Settings) -> None:
+def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     """Add the middleware that checks every request, the outermost last."""
     limits = {
         f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
         f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.max_language_bytes,
     }
+    app.add_middleware(StrictBodies, most_bytes=settings.max_body_bytes, exceptions=limits)
+    app.add_middleware(Audit)
     app.add_middleware(SafePaths)
     app.add_middleware(
         BodyPace,
@@ -251,7 +272,9 @@ def _guard(app: FastAPI, settings: Settings) -> None:
         bytes_per_second=settings.upload_bytes_per_second,
     )
     app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
+    app.add_middleware(RoleRequired)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)
     app.add_middleware(EndsInTime, requests=app.state.requests)
     app.add_middleware(SecurityHeaders)
+    app.add_middleware(RequestLog, metrics=metrics)

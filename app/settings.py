@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from platformdirs import user_data_path
 from pydantic import AfterValidator, Field, SecretStr, model_validator
@@ -14,6 +14,9 @@ from app import resources
 from app.recognition.estimation.water import WaterCorrection
 
 MEBIBYTE = 1024 * 1024
+
+TOKENS_FILE = "tokens.json"
+"""Name of the file of the named tokens in the data folder."""
 
 SHORTEST_TOKEN = 16
 """Characters of a token: 64 bits in hexadecimal, too many to be guessed twenty a minute."""
@@ -62,6 +65,25 @@ class Settings(BaseSettings):
     token: SecretStr | None = None
     """Secret of at least 16 characters that every request must contain; required when other
     machines can reach `host`."""
+
+    tokens_file: Path | None = None
+    """File of the named tokens (`osg-studio tokens`); ``tokens.json`` in `data_dir` by default."""
+
+    quota_bytes: Annotated[int, Field(ge=0)] = 0
+    """Bytes of clips that each named token may keep, unless it has a quota of its own; 0 is any."""
+
+    quota_clips: Annotated[int, Field(ge=0)] = 0
+    """Clips that each named token may keep, unless it has a quota of its own; 0 is any number."""
+
+    forwarded_allow_ips: str = ""
+    """Addresses of reverse proxies whose ``X-Forwarded-For`` and ``X-Forwarded-Proto`` are
+    believed, comma separated; ``*`` is all, where only a proxy can reach the server."""
+
+    log_format: Literal["text", "json"] = "text"
+    """Form of the log: lines for people, or one JSON object a line with request and job ids."""
+
+    log_level: Literal["debug", "info", "warning", "error"] = "warning"
+    """Least severe entries logged; ``info`` logs every request and job."""
 
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = ()
     """Further host names of the app, comma separated in the environment."""
@@ -122,6 +144,11 @@ class Settings(BaseSettings):
         return not is_loopback(self.host)
 
     @property
+    def tokens(self) -> Path:
+        """The file of the named tokens, which need not exist."""
+        return self.tokens_file or self.data_dir / TOKENS_FILE
+
+    @property
     def database(self) -> str:
         """SQLAlchemy URL of the database in use."""
         return self.database_url or f"sqlite:///{self.data_dir / 'studio.db'}"
@@ -145,10 +172,10 @@ class Settings(BaseSettings):
                     f"the token has {length} characters and can be guessed; give a random one of "
                     f"at least {SHORTEST_TOKEN}"
                 )
-        if self.public and self.token is None:
+        if self.public and self.token is None and not self.tokens.is_file():
             raise ValueError(
                 f"host {self.host!r} can be reached from other machines and no token is set, so "
-                "anyone there could read and delete clips; set a token (--token or OSG_TOKEN) or "
-                "stay on 127.0.0.1"
+                "anyone there could read and delete clips; set a token (--token or OSG_TOKEN), "
+                "add a named one (osg-studio tokens add), or stay on 127.0.0.1"
             )
         return self

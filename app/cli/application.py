@@ -19,6 +19,7 @@ import typer
 from pydantic import ValidationError
 
 from app import __version__
+from app.cli.audit import audit
 from app.cli.backup import backup, restore
 from app.cli.check import check
 from app.cli.clip_argument import (
@@ -37,10 +38,13 @@ from app.cli.clip_argument import (
 from app.cli.demonstrations import demonstrations_command
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
+from app.cli.language_code import code
 from app.cli.mcap_file import name_recognitions, save_session
 from app.cli.phrase import phrase
-from app.cli.robot import robot
-from app.cli.ros_arguments import split_ros_arguments
+from app.cli.recognition_report import build_report
+from app.cli.robots.robot import robot
+from app.cli.robots.ros_arguments import split_ros_arguments
+from app.cli.slate import slate
 from app.cli.terminal import (
     describe_error,
     people,
@@ -48,13 +52,14 @@ from app.cli.terminal import (
     show_explanation,
     show_recognition,
 )
-from app.recognition import Language, Recognition, Recognizer, Take
+from app.cli.tokens import tokens_command
+from app.recognition import Language, Recognizer
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.explanation import Explanation, explain
+from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
-from app.recognition.language.file_format import FileFormat
+from app.recognition.language.export_format import FileFormat
 from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.spotting import Spotter
 
@@ -66,7 +71,6 @@ command_line = typer.Typer(
     name="osg-studio",
     help="Design gesture languages for underwater robots: one demonstration per gesture.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 models_command = typer.Typer(
@@ -76,10 +80,14 @@ command_line.add_typer(models_command, name="models")
 command_line.add_typer(demonstrations_command, name="demonstrations")
 command_line.command()(evaluate)
 command_line.command()(check)
+command_line.command()(code)
+command_line.command()(slate)
 command_line.command()(robot)
 command_line.command()(phrase)
 command_line.command()(backup)
 command_line.command()(restore)
+command_line.add_typer(tokens_command, name="tokens")
+command_line.command()(audit)
 
 
 @command_line.callback(invoke_without_command=True)
@@ -94,8 +102,12 @@ def top(
 
 @command_line.command()
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on; 0 picks a free one.")] = 8000,
+    host: Annotated[
+        str, typer.Option(envvar="OSG_HOST", help="Address to listen on.")
+    ] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(envvar="OSG_PORT", help="Port to listen on; 0 picks a free one.")
+    ] = 8000,
     data_dir: Annotated[
         Path | None, typer.Option(help="Folder for clips, languages and the database.")
     ] = None,
@@ -219,15 +231,7 @@ def recognize(
         if expected is not None
     ]
     if as_json:
-        report = {
-            "clip": str(path),
-            "language": loaded.name,
-            "profile": recognizer.profile,
-            "takes": [
-                report_take(take, result, explanation)
-                for (take, result), explanation in zip_longest(results, explanations)
-            ],
-        }
+        report = build_report(str(path), loaded.name, recognizer.profile, results, explanations)
         typer.echo(json.dumps(report, allow_nan=False))
     else:
         for (take, result), explanation in zip_longest(results, explanations):
@@ -339,15 +343,6 @@ def read_language(source: Path) -> Language:
     if is_reference(content):
         return from_reference(content, source.stem)
     return Language.from_json(content)
-
-
-def report_take(
-    take: Take, result: Recognition, explanation: Explanation | None = None
-) -> dict[str, Any]:
-    """Build the JSON object of one recognised take for ``recognize --json``."""
-    span = {"start": take.start, "end": take.end, "closed": take.closed}
-    explained = {} if explanation is None else {"explanation": explanation.to_dict()}
-    return span | result.to_dict() | explained
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:

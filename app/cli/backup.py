@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
+from app.cli.data_folder import DataDir, settings_of
 from app.cli.terminal import people
 from app.recognition.errors import OsgError
-
-DataDir = Annotated[Path | None, typer.Option(help="Folder for clips, languages and the database.")]
 
 
 def backup(
@@ -39,14 +38,7 @@ def restore(
 
 def _data_dir(given: Path | None) -> Path:
     """Return the folder named, or that of the settings, whose database must be in it."""
-    try:
-        from app.settings import Settings
-    except ModuleNotFoundError as error:
-        raise OsgError(
-            f"the studio's packages are not installed ({error.name} is missing), and only the "
-            "studio has a data folder"
-        ) from error
-    settings = Settings() if given is None else Settings(data_dir=given)
+    settings = settings_of(given)
     if settings.database_url is not None:
         raise OsgError(
             "OSG_DATABASE_URL names another database, which its own tools back up; copy the "

@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.recognition import Recognition, Take
+from app.recognition.explanation.differences import Difference
 from app.recognition.explanation.explanation import Explanation
 
 people = Console(stderr=True)
@@ -42,6 +43,8 @@ def show_recognition(take: Take, result: Recognition) -> None:
 def show_explanation(explanation: Explanation) -> None:
     """Print an explanation on stderr: why a take was recognised so, and the interventions."""
     people.print(Text(explanation.sentence))
+    if (lesson := explanation.lesson) is not None:
+        people.print(Text(f"Show it again: in this take {lesson.words}{_moment(lesson)}."))
     table = Table(
         "what to change",
         "confidence",
@@ -64,6 +67,10 @@ def show_explanation(explanation: Explanation) -> None:
         )
     if table.row_count:
         people.print(table)
+
+
+def _moment(difference: Difference) -> str:
+    return "" if difference.start is None else f" (from {difference.start:.2f} s)"
 
 
 def build_vote_table(result: Recognition) -> Table:

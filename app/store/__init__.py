@@ -1,25 +1,35 @@
 """Store of clips, languages, jobs and recognitions: a database, and files beside it."""
 
+from app.store.audit import AuditStore
 from app.store.clips import ClipStore, ClipWithJob
 from app.store.database import Database
 from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
 from app.store.folder_lock import FolderLock
 from app.store.jobs import JobStore
+from app.store.labelled_takes import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.languages import Draft, LanguageState, LanguageStore
 from app.store.models import (
+    AuditEntry,
     Clip,
     DemonstrationSource,
     Job,
     JobStatus,
+    LabelledResult,
+    LabelledTake,
     LanguageRecord,
     LanguageRevision,
+    PracticeTake,
     RecognitionRecord,
 )
+from app.store.practice import PracticeStore
 from app.store.recognitions import RecognitionStore
+from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
 
 __all__ = [
+    "AuditEntry",
+    "AuditStore",
     "Clip",
     "ClipStore",
     "ClipWithJob",
@@ -31,16 +41,26 @@ __all__ = [
     "Job",
     "JobStatus",
     "JobStore",
+    "LabelledResult",
+    "LabelledTake",
+    "LabelledTakeStore",
     "LanguageRecord",
     "LanguageRevision",
     "LanguageState",
     "LanguageStore",
+    "NamedToken",
     "NotFound",
+    "PracticeStore",
+    "PracticeTake",
     "RecognitionRecord",
     "RecognitionStore",
+    "Role",
     "SourceStore",
     "StoreError",
     "StoreUnavailable",
+    "TestSetFull",
+    "TestedTake",
+    "TokenFile",
     "Upload",
     "UploadStore",
 ]

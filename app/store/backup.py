@@ -6,6 +6,7 @@ file that a row of it refers to is on disk by then, and stays until the next sta
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import re
@@ -196,4 +197,9 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
     except FileNotFoundError as error:
         raise OsgError(f"cannot read {source}: {error.strerror}") from error
     except (zipfile.BadZipFile, KeyError, ValueError, AttributeError) as error:
+        raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
+    except OSError as error:
+        # A damaged directory of the archive points before its beginning.
+        if error.errno != errno.EINVAL:
+            raise
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error

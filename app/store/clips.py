@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy.exc import IntegrityError
-from sqlmodel import Session, col, select
+from sqlmodel import Session, col, func, select
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.database import Database
@@ -121,6 +121,15 @@ class ClipStore:
             if clip is None:
                 return None
             return ClipWithJob(clip, _newest_jobs([clip.id], session)[clip.id])
+
+    def usage(self, owner: str) -> tuple[int, int]:
+        """Return the number of clips that somebody keeps, and their bytes."""
+        query = select(func.count(), func.coalesce(func.sum(Clip.size), 0)).where(
+            Clip.owner == owner, col(Clip.deleted).is_(None)
+        )
+        with self._database.reading() as session:
+            clips, size = session.exec(query).one()
+            return int(clips), int(size)
 
     def delete(self, clip_id: str) -> None:
         """Hide a clip; its files stay until `purge`.

@@ -45,6 +45,13 @@ class JobStore:
             query = query.where(Job.client == client, col(Job.status).in_(_OPEN))
             return session.exec(query).one()
 
+    def count_by_status(self) -> dict[str, int]:
+        """Count the jobs that wait and those that run."""
+        with self._database.reading() as session:
+            query = select(col(Job.status), func.count()).where(col(Job.status).in_(_OPEN))
+            counts = dict(session.exec(query.group_by(col(Job.status))).all())
+        return {status: counts.get(status, 0) for status in _OPEN}
+
     def resume(self) -> list[Job]:
         """Queue again what was running when the server ended; return all that waits, oldest first.
 

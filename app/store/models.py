@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from uuid import uuid4
 
-from sqlalchemy import CheckConstraint, Column, DateTime, Text
+from sqlalchemy import CheckConstraint, Column, DateTime, Text, UniqueConstraint
 from sqlalchemy.types import TypeDecorator
 from sqlmodel import Field, SQLModel
 
@@ -83,6 +83,10 @@ class Clip(SQLModel, table=True):
     """Kind of the file that came: the name of its `app.clip_sources.ClipSource`."""
     options: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
     """How the file is read, as a JSON object (`app.clip_sources.ReadOptions`)."""
+    owner: str = Field(
+        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
+    )
+    """Name of the token that added it: a quota counts by it."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
@@ -184,6 +188,64 @@ class RecognitionRecord(SQLModel, table=True):
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 
+class LabelledTake(SQLModel, table=True):
+    """A take whose gesture is known: a query of its language's test set."""
+
+    __tablename__ = "labelled_take"
+    __table_args__ = (UniqueConstraint("language_id", "clip_id", "start", name="labelled_range"),)
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    start: float
+    """Seconds in the clip."""
+    end: float
+    expected: str = Field(max_length=200)
+    """The label that it should be recognised as."""
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
+class LabelledResult(SQLModel, table=True):
+    """How a labelled take is recognised by one revision of its language."""
+
+    __tablename__ = "labelled_result"
+
+    take_id: str = Field(
+        foreign_key="labelled_take.id", ondelete="CASCADE", primary_key=True, max_length=32
+    )
+    revision: int = Field(primary_key=True)
+    recognition_id: str | None = Field(default=None, max_length=32)
+    """The recognition; ``None`` where there is none, for the reason in `fault`."""
+    label: str | None = Field(default=None, max_length=200)
+    nearest: str | None = Field(default=None, max_length=200)
+    confidence: float = 0.0
+    fault: str | None = Field(default=None, sa_column=Column(Text))
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
+class PracticeTake(SQLModel, table=True):
+    """A gesture that a diver was asked to show, and how it was recognised."""
+
+    __tablename__ = "practice_take"
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    start: float
+    """Seconds in the clip."""
+    diver: str = Field(max_length=80)
+    expected: str = Field(max_length=200)
+    label: str | None = Field(default=None, max_length=200)
+    """The label recognised; ``None``: rejected."""
+    revision: int
+    recognition_id: str = Field(max_length=32)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
 class DemonstrationSource(SQLModel, table=True):
     """The clip that a demonstration was taken from; gone with the clip."""
 
@@ -206,3 +268,23 @@ class SeededSample(SQLModel, table=True):
 
     name: str = Field(primary_key=True, max_length=200)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
+class AuditEntry(SQLModel, table=True):
+    """One change, by name."""
+
+    __tablename__ = "audit_entry"
+
+    id: int | None = Field(default=None, primary_key=True)
+    time: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+    name: str = Field(max_length=80, index=True)
+    """Of the token; empty where none is needed."""
+    role: str = Field(max_length=16)
+    address: str = Field(max_length=64)
+    method: str = Field(max_length=16)
+    path: str = Field(max_length=300)
+    """What was changed, with the query: it names a gesture."""
+    status: int
+    """What was answered."""
+    request_id: str = Field(max_length=64)
+    """The same as in the log."""

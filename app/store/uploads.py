@@ -41,6 +41,8 @@ class Upload:
         Values that its sender gave beside the bytes, by name.
     client
         Address of its sender.
+    owner
+        Name of its sender's token.
 
     """
 
@@ -50,6 +52,7 @@ class Upload:
     path: Path
     fields: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     client: str = ""
+    owner: str = ""
 
     @property
     def offset(self) -> int:
@@ -78,11 +81,16 @@ class UploadStore:
         folder.mkdir(parents=True, exist_ok=True)
 
     def create(
-        self, name: str, size: int, fields: Mapping[str, str] | None = None, client: str = ""
+        self,
+        name: str,
+        size: int,
+        fields: Mapping[str, str] | None = None,
+        client: str = "",
+        owner: str = "",
     ) -> Upload:
         """Begin an upload of `size` bytes, with the values that its sender gave."""
         upload_id, given = new_id(), dict(fields or {})
-        about = {"name": name, "size": size, "fields": given, "client": client}
+        about = {"name": name, "size": size, "fields": given, "client": client, "owner": owner}
         path, partial = self._folder / upload_id, self._folder / f"{upload_id}{PARTIAL_SUFFIX}"
         try:
             partial.write_text(json.dumps(about))
@@ -93,7 +101,7 @@ class UploadStore:
             for made in (partial, self._about(upload_id), path):
                 made.unlink(missing_ok=True)
             raise
-        return Upload(upload_id, name, size, path, given, client)
+        return Upload(upload_id, name, size, path, given, client, owner)
 
     def active(self) -> list[Upload]:
         """Return the uploads that got bytes, or were begun, within the last `ACTIVE`."""
@@ -119,9 +127,10 @@ class UploadStore:
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
         about = json.loads(self._about(upload_id).read_text())
-        # An upload that an earlier version began has no fields or client.
+        # An upload that an earlier version began has no fields, client or owner.
         fields, client = about.get("fields", {}), about.get("client", "")
-        return Upload(upload_id, about["name"], about["size"], path, fields, client)
+        owner = about.get("owner", "")
+        return Upload(upload_id, about["name"], about["size"], path, fields, client, owner)
 
     def remove(self, upload_id: str) -> None:
         """Forget an upload and what came of it; does nothing where there is none."""

@@ -18,6 +18,11 @@ def add_gesture(
     )
 
 
+def listed(client: httpx.Client) -> dict[str, dict[str, object]]:
+    """Return the languages of the list by their ids."""
+    return {str(each["id"]): each for each in client.get(LANGUAGES).json()}
+
+
 def many_gestures(count: int) -> str:
     """Return a language file of so many gestures, alike but for their labels."""
     gesture = Gesture.from_demonstration("circle", takes_in(recording_of("circle"))[0].poses)

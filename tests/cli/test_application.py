@@ -1,6 +1,7 @@
 """The command line, run as a user runs it: files in, text and exit codes out."""
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -96,7 +97,7 @@ def test_a_crash_has_a_code_of_its_own(
     def fail(*_: object, **__: object) -> None:
         raise IndexError("index -1 is out of bounds")
 
-    monkeypatch.setattr("app.cli.robot.create_listener", fail)
+    monkeypatch.setattr("app.cli.robots.robot.create_listener", fail)
     a_language().save(tmp_path / "language.json")
     ended = osg_studio("robot", "--language", tmp_path / "language.json", "--source", "none")
     assert ended.code == 3
@@ -142,6 +143,30 @@ def test_exported_models_install_elsewhere_without_network(
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     assert osg_studio("models", "install", "--source", tmp_path / "stick").code == 0
     assert {line.split("\t")[1] for line in osg_studio("models").out.splitlines()} == {"ok"}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_completes_commands_and_options(shell: str) -> None:
+    # Otherwise the shell is looked for among the parents of the process, which tests may lack.
+    named = {"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
+    shown = run_with(named, "--show-completion", shell)
+    assert "osg-studio" in shown
+    typed = {"COMP_WORDS": "osg-studio rec", "COMP_CWORD": "1"}
+    typed |= {"_TYPER_COMPLETE_ARGS": "osg-studio rec", "_TYPER_COMPLETE_FISH_ACTION": "get-args"}
+    completed = run_with(typed | {"_OSG_STUDIO_COMPLETE": f"complete_{shell}"})
+    assert "recognize" in completed
+    assert "serve" not in completed
+
+
+def run_with(environment: dict[str, str], *arguments: str) -> str:
+    ended = subprocess.run(
+        [sys.executable, "-m", "app", *arguments],
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return ended.stdout
 
 
 @pytest.mark.slow
@@ -229,3 +254,17 @@ def test_a_demonstration_without_a_closed_take_is_refused(
     assert ended.code == 2
     assert "needs one closed take" in ended.error
     assert not file.exists()
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "words"),
+    [("OSG_PORT", "70000", "65535"), ("OSG_HOST", "0.0.0.0", "token")],
+)
+def test_serve_uses_the_settings_of_the_environment(
+    osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch, variable: str, value: str, words: str
+) -> None:
+    monkeypatch.delenv("OSG_TOKEN", raising=False)
+    monkeypatch.setenv(variable, value)
+    ended = osg_studio("serve", "--no-browser")
+    assert ended.code != 0
+    assert words in ended.error

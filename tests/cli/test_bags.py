@@ -26,6 +26,8 @@ from tests.command_line import OsgStudio
 from tests.documented import documented
 from tests.recognition.damaged_clips import picture
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def language(tmp_path: Path, osg_studio: OsgStudio) -> Path:
@@ -114,7 +116,6 @@ def test_the_documented_commands_do_what_they_say(
     assert checked(tmp_path / "session.mcap")["/recognitions"]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("installed_models")
 def test_the_documented_robot_looks_at_the_pictures_of_a_bag(
     tmp_path: Path, osg_studio: OsgStudio, language: Path, monkeypatch: pytest.MonkeyPatch
@@ -130,9 +131,9 @@ def test_the_documented_robot_looks_at_the_pictures_of_a_bag(
     (command,) = documented("robot", page="guides/dive-recordings.md")
     ended = osg_studio(*command)
     assert ended.code == 1, ended.error  # nobody is in these pictures
-    told = [json.loads(line) for line in ended.out.splitlines()]
-    assert (told[0]["event"], told[0]["live"]) == ("source_opened", False)
-    assert (told[-1]["event"], told[-1]["frames"]) == ("source_ended", 10)
+    events = [json.loads(line) for line in ended.out.splitlines()]
+    assert (events[0]["event"], events[0]["live"]) == ("source_opened", False)
+    assert (events[-1]["event"], events[-1]["frames"]) == ("source_ended", 10)
 
 
 def test_what_is_no_bag_is_told_in_one_line(

@@ -68,9 +68,9 @@ def test_a_language_of_mediapipe_is_understood_by_yolo_pose(
     ended = osg_studio("recognize", clip, "--language", file, "--json", *arguments(model))
     assert ended.code == 0, ended.error
     assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
-    told = " ".join(ended.error.split())
-    assert "this pose model gives no left_pinky, right_pinky, left_index" in told
-    assert "no hand" not in told
+    error = " ".join(ended.error.split())
+    assert "this pose model gives no left_pinky, right_pinky, left_index" in error
+    assert "no hand" not in error
 
 
 def test_a_language_that_follows_a_finger_is_refused_before_the_clip_is_read(
@@ -105,9 +105,9 @@ def test_the_robot_says_by_yolo_pose_what_recognize_says(
     ended = osg_studio("recognize", clip, "--json", *options)
     takes = json.loads(ended.out)["takes"]
     assert [take["label"] for take in takes] == ["line"]
-    told = osg_studio("robot", "--source", clip, *options)
-    assert told.code == 0, told.error
-    events = [json.loads(line) for line in told.out.splitlines()]
+    ended = osg_studio("robot", "--source", clip, *options)
+    assert ended.code == 0, ended.error
+    events = [json.loads(line) for line in ended.out.splitlines()]
     recognised = [event for event in events if event["event"] == "take_recognized"]
     for event, take in zip(recognised, takes, strict=True):
         for key in ("label", "start", "end", "confidence"):

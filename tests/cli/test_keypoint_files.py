@@ -112,7 +112,7 @@ def test_a_language_is_recognised_as_its_author_kept_it(
     report = json.loads(osg_studio(*command).out)
     assert (report["profile"], report["takes"][0]["weights"]["hu"]) == ("paper", 0.0)
     other = json.loads(osg_studio(*command, "--profile", "full").out)
-    assert (other["profile"], other["takes"][0]["weights"]["hu"] > 0) == ("full", True)
+    assert (other["profile"], other["takes"][0]["weights"]["velocity"] > 0) == ("full", True)
 
 
 @pytest.mark.parametrize("form", ["numbered", "named", "deeplabcut"])

@@ -124,6 +124,7 @@ def test_only_what_was_deleted_long_ago_is_purged(clips: ClipStore) -> None:
     assert clips.video(kept.clip.id).exists()
 
 
+@pytest.mark.withstands(row="H21")
 def test_sweeping_removes_what_crashes_left_and_nothing_else(
     clips: ClipStore, tmp_path: Path
 ) -> None:

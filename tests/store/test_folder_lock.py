@@ -36,6 +36,7 @@ def test_the_folder_is_free_again_when_the_lock_is_let_go(tmp_path: Path) -> Non
             pass
 
 
+@pytest.mark.withstands(row="H22")
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with (

@@ -1,5 +1,8 @@
 """The migrations make from nothing exactly the tables that the models describe."""
 
+import sqlite3
+from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -12,7 +15,8 @@ from sqlmodel import SQLModel
 
 from app.api.jobs.extraction import options_of
 from app.clip_sources import ReadOptions
-from app.store import ClipStore, Database, LanguageStore
+from app.recognition import Language
+from app.store import ClipStore, Database, LanguageStore, RecognitionStore
 from app.store.database import MIGRATIONS
 
 
@@ -37,6 +41,7 @@ def test_every_migration_can_be_taken_back(database: Database) -> None:
     assert inspect(database.engine).get_table_names() == ["alembic_version"]
 
 
+@pytest.mark.withstands(row="H21")
 def test_a_migration_that_breaks_off_leaves_the_database_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -104,3 +109,35 @@ def test_older_clips_get_the_source_that_they_came_as(tmp_path: Path) -> None:
     options = options_of(clips["keypoints"].clip)
     assert (options.ending, options.frame_rate, options.frame_size) == (".csv", 25.0, None)
     assert options_of(clips["video"].clip) == ReadOptions()
+
+
+@pytest.mark.parametrize("version", ["first", "0.2.0"])
+def test_a_database_of_a_former_version_keeps_all_that_is_in_it(
+    tmp_path: Path, version: str
+) -> None:
+    script = (Path(__file__).parent / "schemas" / f"{version}.sql").read_text("utf-8")
+    with closing(sqlite3.connect(tmp_path / "studio.db")) as former:
+        former.executescript(script)
+    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
+    database.migrate()
+    with database.engine.connect() as connection:
+        assert connection.exec_driver_sql("PRAGMA foreign_key_check").all() == []
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, SQLModel.metadata) == []
+    clips = ClipStore(database, tmp_path / "clips")
+    (kept,) = clips.all()
+    assert (kept.clip.name, kept.clip.size, kept.clip.duration) == ("dive 'one'.mp4", 1234, 2.5)
+    assert kept.clip.created == datetime(2026, 1, 2, 3, 4, 5, 678901, UTC)
+    assert (kept.clip.source, kept.clip.owner, kept.clip.idempotency_key) == ("video", "", "key-1")
+    assert (kept.job.status, kept.job.frames, kept.job.warnings) == ("done", 50, '["a warning"]')
+    clips.restore("d" * 32)
+    restored = clips.get("d" * 32)
+    assert (restored.clip.duration, restored.job.error_code) == (None, "decoder")
+    languages = LanguageStore(database)
+    state = languages.get("a" * 32)
+    assert (state.revision.revision, state.revision.author) == (2, "Ada")
+    assert Language.from_json(state.revision.document).name == "pool"
+    assert [each.change for each in languages.revisions("a" * 32)] == ["Renamed", "Created"]
+    (recognised,) = RecognitionStore(database).all(limit=10)
+    assert (recognised.clip_id, recognised.start, recognised.expected) == ("c" * 32, 0.5, "circle")
+    assert languages.seeded() == {"osg-table"}

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, parse
+from app.api.observation.metrics import Metrics
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
 from app.settings import Settings
 
@@ -29,8 +30,8 @@ IMPORT_SECONDS = 120
 """Most processor time for reading a language file: the largest one allowed takes a minute."""
 
 CHECK_SECONDS = 1800
-"""Most processor time for a health report: one of twenty gestures takes twenty seconds, and the
-time grows faster than their number."""
+"""Most processor time for a health report: one of twenty gestures takes twenty seconds,
+one of a thousand two minutes."""
 
 CHECK_SILENCE_SECONDS = 600.0
 """Most seconds between two reports of a check: its recogniser is prepared without one."""
@@ -58,11 +59,14 @@ class Workers:
     ----------
     settings
         Limits of memory, time and file size, and whether colours are corrected.
+    metrics
+        Counts the processes that are ended for their silence.
 
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, metrics: Metrics | None = None) -> None:
         self._settings = settings
+        self._metrics = metrics or Metrics()
         self._short = asyncio.Semaphore(MOST_SHORT_WORKERS)
         self._checks = asyncio.Semaphore(MOST_CHECKS)
 
@@ -167,6 +171,7 @@ class Workers:
                             return
                         yield parse(line)
                     except TimeoutError:
+                        self._metrics.stalls.inc()
                         yield hangs
                         return
                     except ValueError:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+import threading
+from collections.abc import Callable, Coroutine
 from typing import Any, TypeVar
 
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
 
 Result = TypeVar("Result")
@@ -31,6 +33,44 @@ async def while_connected(request: Request, work: Coroutine[Any, Any, Result]) -
         for task in (working, leaving):
             task.cancel()
         await asyncio.gather(working, leaving, return_exceptions=True)
+
+
+async def compute_while_connected(
+    request: Request,
+    places: asyncio.Semaphore,
+    compute: Callable[[Callable[[], None]], Result],
+) -> Result:
+    """Compute in a thread while the client waits for it; the request's body must have been read.
+
+    Parameters
+    ----------
+    request
+        Whose client waits.
+    places
+        Limits the computations that run at the same time; further ones wait.
+    compute
+        Called with a function to call between its steps, which raises once the client has left.
+
+    Raises
+    ------
+    ClientDisconnect
+        When the client has left.
+
+    """
+    left = threading.Event()
+
+    def advance() -> None:
+        if left.is_set():
+            raise ClientDisconnect
+
+    async def work() -> Result:
+        async with places:
+            return await run_in_threadpool(compute, advance)
+
+    try:
+        return await while_connected(request, work())
+    finally:
+        left.set()
 
 
 async def _disconnect(request: Request) -> None:

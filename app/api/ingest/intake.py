@@ -14,6 +14,7 @@ from app.api.extraction.messages import Failed, Probed
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
+from app.api.ingest.quotas import owner_of
 from app.api.services.studio import Studio
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.clip_sources.video_types import HEAD_BYTES
@@ -111,12 +112,13 @@ async def inspect(
     raise ProblemError(415, UNSUPPORTED, f"{name} is {supported_kinds()}")
 
 
-async def store(clip: Clip, partial: Path, studio: Studio, client: str) -> ClipAccepted:
-    """Store an inspected file as `clip`, queue its job, and publish the change.
+async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> ClipAccepted:
+    """Store an inspected file as its sender's `clip`, queue its job, and publish the change.
 
     The job of a dive recording whose topic nobody chose has failed already, for that reason.
     """
-    added = await run_in_threadpool(studio.clips.add, clip, partial, client)
+    clip.owner = owner_of(request)
+    added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
     if not added.clip.needs_topic:
         await studio.extractions.submit(added.job)
     studio.broadcast.publish("clips", id=added.clip.id)

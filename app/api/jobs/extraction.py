@@ -48,15 +48,15 @@ class ExtractionJob:
         """Return the event of a job, to which the stream adds how far it is."""
         return job_event(self._job)
 
-    async def run(self, report: Report) -> None:
-        """Extract the clip, unless it was cancelled or deleted meanwhile."""
+    async def run(self, report: Report) -> Failed | None:
+        """Extract the clip, unless it was cancelled or deleted meanwhile; return why it failed."""
         if not await persist(self._jobs.is_running, self._job.id):
-            return
+            return None
         report(Progress("starting"))
         try:
             clip = (await persist(self._clips.get, self._job.clip_id)).clip
         except NotFound:
-            return
+            return None
         messages = self._workers.record(
             source_named(clip.source),
             self._clips.received(clip),
@@ -79,6 +79,7 @@ class ExtractionJob:
                 await persist(
                     self._jobs.finish, self._job.id, JobStatus.FAILED, code=code, error=detail
                 )
+        return end if isinstance(end, Failed) else None
 
 
 def job_event(job: Job) -> Event:

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+import logging
+import re
+import time
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from app.api.events.broadcast import Broadcast
+from app.api.extraction.messages import Failed
 from app.api.jobs.job import Job, JobCancelled, Progress
+from app.api.observation.logs import FIELDS, job_id
+from app.api.observation.metrics import Metrics
 
 Result = TypeVar("Result")
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(eq=False)
@@ -36,11 +44,14 @@ class JobRunner:
     ----------
     broadcast
         Publishes every step as an event.
+    metrics
+        Measures how long jobs take.
 
     """
 
-    def __init__(self, broadcast: Broadcast) -> None:
+    def __init__(self, broadcast: Broadcast, metrics: Metrics | None = None) -> None:
         self._broadcast = broadcast
+        self._metrics = metrics or Metrics()
         self._runs: dict[str, tuple[_Run, asyncio.Task[Any]]] = {}
         self._closed = False
 
@@ -96,9 +107,27 @@ class JobRunner:
         if self._closed and not job.resumable:
             raise JobCancelled
         run = _Run(job, self._broadcast)
-        task = asyncio.create_task(job.run(run.report))
+        task = asyncio.create_task(self._observe(job, run))
         self._runs[job.key] = run, task
         task.add_done_callback(lambda _: self._end(run))
+
+    async def _observe(self, job: Job[Result], run: _Run) -> Result:
+        """Run a job; log and measure how it ends."""
+        kind = re.sub(r"(?<!^)(?=[A-Z])", "_", type(job).__name__.removesuffix("Job")).lower()
+        job_id.set(job.key)
+        began, outcome = time.monotonic(), "failed"
+        try:
+            result = await job.run(run.report)
+            outcome = "failed" if isinstance(result, Failed) else "done"
+            return result
+        except (asyncio.CancelledError, JobCancelled):
+            outcome = "cancelled"
+            raise
+        finally:
+            seconds = time.monotonic() - began
+            self._metrics.jobs.labels(kind, outcome).observe(seconds)
+            fields = {"kind": kind, "outcome": outcome, "seconds": round(seconds, 3)}
+            logger.info("job ended", extra={FIELDS: fields})
 
     def _end(self, run: _Run) -> None:
         if run.job.key in self._runs and self._runs[run.job.key][0] is run:

@@ -8,20 +8,20 @@ and websockets, which no same-origin policy covers, must name our own `Origin`.
 
 from __future__ import annotations
 
-import hashlib
-import hmac
 import time
 from collections import OrderedDict, deque
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from starlette.datastructures import Headers
-from starlette.responses import RedirectResponse, Response
+from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.http.problems import ProblemError
+from app.api.http.problems import ProblemError, problem_of
 from app.api.http.websockets import POLICY_VIOLATION
+from app.api.middleware.identities import ANYBODY, Identities, Identity
 from app.settings import Settings, is_loopback
+from app.store import StoreError
 
 COOKIE = "osg_studio_session"
 COOKIE_SECONDS = 30 * 24 * 60 * 60
@@ -38,6 +38,21 @@ GUESS_SECONDS = 60.0
 
 MOST_ADDRESSES = 4096
 """Addresses whose wrong tokens are remembered."""
+
+SIGN_IN = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>OSG Studio: sign in</title>
+<h1>OSG Studio</h1>
+<form action="/" method="get">
+<p><label>Token <input name="token" type="password" required autofocus
+autocomplete="current-password"></label> <button>Sign in</button></p>
+</form>
+<p>This server wants a token. Ask whoever runs it for one.</p>
+</html>
+"""
+"""Page shown to a browser that has no session; it works without scripts and styles."""
 
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -126,43 +141,58 @@ class Guesses:
 
 
 class TokenRequired:
-    """Requires the token: as bearer, or in the cookie that ``/?token=`` sets.
+    """Requires a token: as bearer, or in the cookie that ``/?token=`` sets.
+
+    It notes for the parts inside whose token it is, see `identities.identity_of`.
 
     Parameters
     ----------
     app
         What to guard.
     settings
-        Gives the token; without one everybody who reaches the server is let in.
+        Give the tokens; without any, everybody who reaches the server is let in.
 
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
-        self._token = settings.token.get_secret_value().encode() if settings.token else None
-        key = self._token or b""
+        self._identities = Identities(settings)
         self._guesses = Guesses()
-        # The cookie is not the token itself: what leaks from a browser does not open scripts.
-        self._session = hmac.new(key, b"osg-studio session", hashlib.sha256).hexdigest()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on requests with the token."""
-        if self._token is None or scope["type"] not in ("http", "websocket"):
+        """Pass on requests with a token."""
+        if scope["type"] not in ("http", "websocket"):
             return await self._app(scope, receive, send)
+        try:
+            answer = self._answer(scope)
+        except StoreError as error:
+            return await _refuse(problem_of(error), scope, receive, send)
+        match answer:
+            case Identity():
+                scope.setdefault("state", {})["identity"] = answer
+                return await self._app(scope, receive, send)
+            case ProblemError():
+                return await _refuse(answer, scope, receive, send)
+            case Response():
+                return await answer(scope, receive, send)
+
+    def _answer(self, scope: Scope) -> Identity | ProblemError | Response:
+        """Return who sends a request, or how it is answered instead."""
+        if scope["path"] in OPEN_PATHS or not self._identities.required:
+            return ANYBODY
         headers = Headers(scope=scope)
-        if scope["path"] in OPEN_PATHS or self._has_session(headers):
-            return await self._app(scope, receive, send)
+        if (found := self._of_session(headers)) is not None:
+            return found
         client = scope["client"][0] if scope.get("client") else "local"
         if self._guesses.too_many(client):
             # Not compared at all: of many guesses at once, none must learn more than the others.
             detail = "too many wrong tokens came from this address; try again in a minute"
             again = {"Retry-After": f"{GUESS_SECONDS:.0f}"}
-            problem = ProblemError(429, "too_many_guesses", detail, headers=again)
-            return await _refuse(problem, scope, receive, send)
-        if self._has_bearer(headers):
-            return await self._app(scope, receive, send)
+            return ProblemError(429, "too_many_guesses", detail, headers=again)
+        if (found := self._of_bearer(headers)) is not None:
+            return found
         if (response := self._welcome(scope)) is not None:
-            return await response(scope, receive, send)
+            return response
         detail = (
             "this server wants a token; open it as /?token=..., or send the header "
             "'Authorization: Bearer ...'"
@@ -170,33 +200,28 @@ class TokenRequired:
         if "authorization" in headers or b"token=" in scope["query_string"]:
             self._guesses.add(client)
         challenge = {"WWW-Authenticate": "Bearer"}
-        problem = ProblemError(401, "token_required", detail, headers=challenge)
-        return await _refuse(problem, scope, receive, send)
+        if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
+            return HTMLResponse(SIGN_IN, 401, headers=challenge)
+        return ProblemError(401, "token_required", detail, headers=challenge)
 
-    def _has_bearer(self, headers: Headers) -> bool:
+    def _of_bearer(self, headers: Headers) -> Identity | None:
         scheme, _, shown = headers.get("authorization", "").partition(" ")
-        return scheme.lower() == "bearer" and self._is_token(shown.strip())
+        return self._identities.of_token(shown.strip()) if scheme.lower() == "bearer" else None
 
-    def _has_session(self, headers: Headers) -> bool:
+    def _of_session(self, headers: Headers) -> Identity | None:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
         except CookieError:
-            return False
-        return cookie is not None and hmac.compare_digest(
-            cookie.value.encode(), self._session.encode()
-        )
-
-    def _is_token(self, shown: str) -> bool:
-        return self._token is not None and hmac.compare_digest(
-            shown.encode("utf-8", "surrogateescape"), self._token
-        )
+            return None
+        return None if cookie is None else self._identities.of_session(cookie.value)
 
     def _welcome(self, scope: Scope) -> Response | None:
         """Trade ``?token=`` in a page's address for the cookie, and take it out of the address."""
         if scope["type"] != "http" or scope["method"] != "GET":
             return None
         query = parse_qsl(scope["query_string"].decode("latin-1"))
-        if not self._is_token(dict(query).get("token", "")):
+        shown = dict(query).get("token", "")
+        if self._identities.of_token(shown) is None:
             return None
         rest = urlencode([(name, value) for name, value in query if name != "token"])
         # One leading slash only: `//host` would be another site.
@@ -204,7 +229,7 @@ class TokenRequired:
         response = RedirectResponse(f"{path}?{rest}" if rest else path, 303)
         response.set_cookie(
             COOKIE,
-            self._session,
+            self._identities.session(shown),
             max_age=COOKIE_SECONDS,
             httponly=True,
             samesite="strict",

@@ -1,1 +1,1 @@
-"""Routers under ``/api/v1``, one per noun."""
+"""Routers under ``/api/v1``: a package per noun, a module per concern of it."""

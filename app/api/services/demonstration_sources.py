@@ -7,6 +7,7 @@ import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.clip_ranges import Demonstration
+from app.api.services.demonstration_faults import describe_fault
 from app.api.services.salute_ranges import count_salutes_in_clip
 from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
@@ -58,8 +59,12 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
 
 
 def _view(studio: Studio, source: DemonstrationSource) -> SourceView:
-    salutes = count_salutes_in_clip(studio, source.clip_id, source.start, source.end)
-    return SourceView(**source.model_dump(exclude={"trajectory"}), salutes=salutes)
+    where = (source.clip_id, source.start, source.end)
+    return SourceView(
+        **source.model_dump(exclude={"trajectory"}),
+        salutes=count_salutes_in_clip(studio, *where),
+        fault=describe_fault(studio, *where),
+    )
 
 
 def _key(gesture: Gesture) -> str | None:

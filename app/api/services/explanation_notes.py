@@ -14,7 +14,7 @@ from app.store import RecognitionRecord
 def write_notes(
     studio: Studio, record: RecognitionRecord, language: Language, *labels: str
 ) -> list[str]:
-    """Return a sentence for the range and for each demonstration that contains salutes.
+    """Return a sentence for the range and for each demonstration with a fault.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def _describe_demonstrations(
     sources = sources_in(studio, language)
     for label in dict.fromkeys(labels):
         for source in sources.get(label, []):
-            if source is not None and source.salutes:
+            if source is not None and source.fault is not None:
                 yield (
-                    f"The demonstration of {label!r}, {source.start:.2f}-{source.end:.2f} s of its "
-                    f"clip, contains {_salutes(source.salutes)}; save it again from a take."
+                    f"The demonstration of {label!r} is a likely reason: {source.start:.2f}-"
+                    f"{source.end:.2f} s of its clip {source.fault}. Save it again from a take."
                 )
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from app.api.http.problems import Fault, ProblemError
 from app.api.http.schemas.gestures import (
     DemonstrationDraft,
     GestureChange,
+    GestureDraft,
     NewDemonstration,
     SwitchPosition,
 )
@@ -33,6 +35,73 @@ def demonstration_at(studio: Studio, where: NewDemonstration) -> Demonstration:
     """
     recording = studio.recording(where.clip_id)
     return demonstration_in(recording, where.start, where.end, keep_transit=where.keep_transit)
+
+
+def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
+    """Return the gesture that a draft describes.
+
+    Raises
+    ------
+    GestureError
+        When the demonstration is none.
+
+    """
+    gesture = Gesture.from_demonstration(
+        draft.label,
+        demonstration.poses,
+        salient=draft.salient or None,
+        description=draft.description,
+        command=draft.command,
+        diver=draft.diver,
+    )
+    switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
+    return replace(gesture, switches=switches)
+
+
+def gestures_from(
+    studio: Studio, drafts: Sequence[GestureDraft]
+) -> list[tuple[Gesture, Demonstration]]:
+    """Return the gestures that drafts describe, with their demonstrations.
+
+    Raises
+    ------
+    ProblemError
+        With the place of the draft, when its clip is not ready or its take cannot be a gesture.
+    NotFound
+        When there is no such clip.
+
+    """
+    made = []
+    for index, draft in enumerate(drafts):
+        try:
+            demonstration = demonstration_at(studio, draft)
+            made.append((gesture_from(draft, demonstration), demonstration))
+        except ProblemError as error:
+            raise _refusal(error.status_code, error.code, index, draft, error.detail) from error
+        except GestureError as error:
+            raise _refusal(422, "gesture_unusable", index, draft, str(error)) from error
+    return made
+
+
+def _refusal(status: int, code: str, index: int, draft: GestureDraft, reason: str) -> ProblemError:
+    detail = f"{draft.label}: {reason}"
+    fault = Fault(pointer=f"/gestures/{index}", detail=detail)
+    return ProblemError(status, code, detail, errors=[fault])
+
+
+def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language:
+    """Return a language with further gestures.
+
+    Raises
+    ------
+    ProblemError
+        409 when a label is taken, by the language or by another one of the gestures.
+
+    """
+    for index, gesture in enumerate(gestures):
+        require_free(language, gesture.label, f"/gestures/{index}/label")
+        language = language.with_gesture(gesture)
+    return language
 
 
 def set_switches(
@@ -168,8 +237,8 @@ def gesture_in(language: Language, label: str) -> Gesture:
     raise ProblemError(404, "not_found", f"there is no gesture {label[:80]!r} in this language")
 
 
-def require_free(language: Language, label: str) -> None:
-    """Refuse a label that a gesture of the language has.
+def require_free(language: Language, label: str, pointer: str = "/label") -> None:
+    """Refuse a label that a gesture of the language has; `pointer` is where it stands.
 
     Raises
     ------
@@ -179,7 +248,7 @@ def require_free(language: Language, label: str) -> None:
     """
     if label in language.labels:
         detail = f"the language has a gesture {label!r} already; choose another label"
-        fault = Fault(pointer="/label", detail=detail)
+        fault = Fault(pointer=pointer, detail=detail)
         raise ProblemError(409, "label_taken", detail, errors=[fault])
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import zip_longest
 from urllib.parse import urlencode
 
@@ -15,9 +16,14 @@ from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.studio import Studio
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.file import seal
 from app.recognition.language.grammar_entry import grammar_to_entry
+from app.recognition.language.short_code import short_code
 from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import LanguageState
+
+CACHED_CHECKSUMS = 64
+"""Checksums kept: those of the revisions that pages show."""
 
 
 def announce(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
@@ -37,10 +43,17 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
             view_gesture(state, gesture, sources[gesture.label]) for gesture in language.gestures
         ],
         grammar=None if language.grammar is None else grammar_to_entry(language.grammar),
+        sha256=(sha256 := _checksum(state.revision.document)),
+        code=short_code(sha256),
         profile=language.profile,
         tuning=tuning_to_entry(language.tuning),
         tuning_words=language.tuning.words,
     )
+
+
+@lru_cache(CACHED_CHECKSUMS)
+def _checksum(document: str) -> str:
+    return seal(json.loads(document))
 
 
 def view_summary(state: LanguageState) -> LanguageSummary:

@@ -3,17 +3,90 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
 from app.api.services.clip_ranges import demonstration_in, surroundings_in
+from app.api.services.clip_views import shows_pictures
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.studio import Studio
-from app.recognition import Language, Recognition, Recognizer
+from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
+from app.recognition.language.requirements import require_landmarks
 from app.recognition.language.schema import TuningEntry
 from app.recognition.language.tuning_entry import entry_to_tuning
-from app.store import LanguageState, RecognitionRecord
+from app.store import Clip, LanguageState, RecognitionRecord
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """A recognition that was just made, and its answer in plain JSON types."""
+
+    record: RecognitionRecord
+    answer: dict[str, Any]
+
+
+def recognize_range(
+    studio: Studio,
+    state: LanguageState,
+    clip_id: str,
+    start: float | None = None,
+    end: float | None = None,
+    *,
+    expected: str | None = None,
+    profile: str | None = None,
+    tuning: TuningEntry | None = None,
+    trial: GestureTrial | None = None,
+) -> Recognised:
+    """Recognise a range of a clip by a revision, and keep the answer.
+
+    Raises
+    ------
+    NotFound, ProblemError, OsgError
+        As `Studio.recording`, `demonstration_in`, `require_landmarks_of` and `make_recognizer`.
+
+    """
+    recording = studio.recording(clip_id)
+    language = studio.language(state)
+    profile = profile or language.profile
+    require_landmarks_of(studio.clips.get(clip_id).clip, recording.poses, language)
+    demonstration = demonstration_in(recording, start, end)
+    recognizer = make_recognizer(studio, state, profile, tuning, trial)
+    answer = recognizer.recognize(demonstration.poses).to_dict()
+    if tuning is not None:
+        answer["tuning"] = tuning.model_dump()
+    if trial is not None:
+        answer["trial"] = trial.model_dump(exclude_unset=True)
+    record = RecognitionRecord(
+        clip_id=clip_id,
+        language_id=state.record.id,
+        revision=state.revision.revision,
+        start=demonstration.start,
+        end=demonstration.end,
+        profile=profile,
+        expected=expected,
+        result=json.dumps(answer, allow_nan=False),
+    )
+    return Recognised(studio.recognitions.add(record), answer)
+
+
+def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:
+    """Refuse a clip that came as keypoints without those that a language follows.
+
+    What our models look at may show any landmark, and is judged when it is recognised.
+
+    Raises
+    ------
+    LandmarkError
+        Naming the landmark, and the gesture that follows it.
+
+    """
+    if not shows_pictures(clip):
+        given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
+        require_landmarks(language, given, clip.name)
 
 
 def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionContext:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -20,18 +21,22 @@ from app.api.extraction.worker_processes import Workers
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.runner import JobRunner
+from app.api.observation.metrics import Metrics
 from app.api.services.sample_library import Samples
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
 from app.settings import Settings
 from app.store import (
+    AuditStore,
     ClipStore,
     Database,
     FolderLock,
     JobStatus,
     JobStore,
+    LabelledTakeStore,
     LanguageState,
     LanguageStore,
+    PracticeStore,
     RecognitionStore,
     SourceStore,
     UploadStore,
@@ -44,6 +49,10 @@ CACHED_LANGUAGES = 16
 CACHED_RECORDINGS = 4
 """Recordings kept in memory: the clip on screen and those it is compared with."""
 
+MOST_COMPUTATIONS = 2
+"""Previews and pair differences computed at the same time: of a large language one takes seconds,
+and the threads of all other requests must not be taken."""
+
 logger = logging.getLogger(__name__)
 
 
@@ -55,7 +64,7 @@ class Studio:
     ----------
     settings
         How it was started.
-    clips, uploads, jobs, languages, sources, recognitions
+    clips, uploads, jobs, languages, sources, recognitions, audit, labelled, practice
         The store.
     workers
         Starts processes that read clips.
@@ -69,6 +78,10 @@ class Studio:
         The languages and clips that come with the program.
     stopping
         Set when the server is about to stop.
+    metrics
+        Counts what happens, for Prometheus.
+    computations
+        Places of previews and pair differences, which compute in threads.
 
     """
 
@@ -79,12 +92,19 @@ class Studio:
     languages: LanguageStore
     sources: SourceStore
     recognitions: RecognitionStore
+    audit: AuditStore
+    labelled: LabelledTakeStore
+    practice: PracticeStore
     workers: Workers
     runner: JobRunner
     extractions: ExtractionQueue
     broadcast: Broadcast
     samples: Samples
     stopping: Event = field(default_factory=Event)
+    metrics: Metrics = field(default_factory=Metrics)
+    computations: asyncio.Semaphore = field(
+        default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
+    )
 
     async def stop_soon(self) -> None:
         """Cancel the jobs that somebody waits for, and end the event streams."""
@@ -147,7 +167,7 @@ def _recognizer(document: str, profile: str | None) -> Recognizer:
 
 
 @asynccontextmanager
-async def open_studio(settings: Settings) -> AsyncIterator[Studio]:
+async def open_studio(settings: Settings, metrics: Metrics | None = None) -> AsyncIterator[Studio]:
     """Open and migrate the store, start the jobs; stop them at the end.
 
     Raises
@@ -157,7 +177,7 @@ async def open_studio(settings: Settings) -> AsyncIterator[Studio]:
 
     """
     with FolderLock(settings.data_dir):
-        async with _studio(settings) as studio:
+        async with _studio(settings, metrics or Metrics()) as studio:
             yield studio
 
 
@@ -172,12 +192,13 @@ def check_store(settings: Settings) -> None:
 
 
 @asynccontextmanager
-async def _studio(settings: Settings) -> AsyncIterator[Studio]:
+async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]:
     database = Database(settings.database)
     clips = ClipStore(database, settings.data_dir / "clips")
     jobs, languages = JobStore(database), LanguageStore(database)
     broadcast = Broadcast()
-    workers, runner = Workers(settings), JobRunner(broadcast)
+    workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
+    watching = asyncio.create_task(metrics.watch_loop())
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -186,6 +207,9 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
         languages=languages,
         sources=SourceStore(database),
         recognitions=RecognitionStore(database),
+        audit=AuditStore(database),
+        labelled=LabelledTakeStore(database),
+        practice=PracticeStore(database),
         workers=workers,
         runner=runner,
         extractions=ExtractionQueue(
@@ -193,12 +217,14 @@ async def _studio(settings: Settings) -> AsyncIterator[Studio]:
         ),
         broadcast=broadcast,
         samples=Samples(settings.samples_dir),
+        metrics=metrics,
     )
     try:
         await run_in_threadpool(_prepare, studio, database)
         await studio.extractions.start()
         yield studio
     finally:
+        watching.cancel()
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()

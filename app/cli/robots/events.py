@@ -41,7 +41,7 @@ def _describe_language(event: LanguageChanged | LanguageRefused) -> str:
             f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
         )
     return (
-        f"listening for {event.name!r}, revision {event.revision}, {event.sha256[:8]}: "
+        f"listening for {event.name!r}, revision {event.revision}, code {event.code}: "
         f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
     )
 

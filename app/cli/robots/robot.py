@@ -17,8 +17,8 @@ from typing import Annotated
 import typer
 
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
-from app.cli.robot_events import describe_event
-from app.cli.ros_arguments import BEGIN
+from app.cli.robots.events import describe_event
+from app.cli.robots.ros_arguments import BEGIN
 from app.cli.terminal import people
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
@@ -38,6 +38,7 @@ from app.robot import (
 from app.robot.messages import format_line
 from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
+from app.robot.sources.cameras import SCHEMES
 from app.robot.watched_language import WatchedLanguage
 
 NOTHING_RECOGNISED = 1
@@ -50,7 +51,8 @@ def robot(
     source: Annotated[
         str,
         typer.Option(
-            help="Camera number or device, rtsp:// or http:// address, clip, BAG or BAG@/TOPIC."
+            help="Camera number or device; address of a stream "
+            f"({', '.join(f'{scheme}://' for scheme in SCHEMES)}); clip, BAG or BAG@/TOPIC."
         ),
     ] = "0",
     profile: Annotated[
@@ -103,7 +105,7 @@ def robot(
         handlers = [print_event]
         observer: Observer | None = None
         if ros2:
-            from app.cli.ros2_topics import open_ros2_topics
+            from app.cli.robots.ros2_topics import open_ros2_topics
 
             topics = opened.enter_context(open_ros2_topics(context.obj))
             handlers.append(lambda event: topics.publish_event(event, listener.language))
@@ -144,7 +146,7 @@ def profile_until_stopped(
     water: WaterCorrection,
 ) -> None:
     """Print the costs of the stages when the source ends or a signal stops it."""
-    from app.cli.robot_stages import show_stages
+    from app.cli.robots.stages import show_stages
 
     stops: list[bool] = []
     with handle_signals(lambda: stops.append(True), lambda: None):

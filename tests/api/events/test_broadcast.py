@@ -30,9 +30,9 @@ def test_a_listener_that_does_not_read_keeps_the_newest() -> None:
             broadcast.close()
             return [news.data["id"] async for news in listener]
 
-    heard = asyncio.run(listen())
-    assert heard[-1] == 2 * MOST_UNREAD - 1
-    assert len(heard) < MOST_UNREAD
+    received = asyncio.run(listen())
+    assert received[-1] == 2 * MOST_UNREAD - 1
+    assert len(received) < MOST_UNREAD
 
 
 def test_who_comes_after_the_end_hears_nothing_and_waits_for_nothing() -> None:

@@ -14,8 +14,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.api.routes.test_clips import CLIPS, upload
-from tests.api.routes.test_jobs import JOBS
+from tests.api.routes.clips.test_clips import CLIPS, upload
+from tests.api.routes.clips.test_extraction_jobs import JOBS
 from tests.api.running import assert_problem, until
 from tests.api.serving import SERVE, served
 from tests.api.workers import alive, linux, workers_of
@@ -43,6 +43,7 @@ def finished(client: httpx.Client, job_id: str) -> Callable[[], bool]:
     return lambda: client.get(f"{JOBS}/{job_id}").json()["status"] in ("done", "failed")
 
 
+@pytest.mark.withstands(row="H21")
 def test_after_a_kill_the_job_is_taken_up_again(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=40)
     data = tmp_path / "data"
@@ -65,6 +66,7 @@ def test_after_a_kill_the_job_is_taken_up_again(tmp_path: Path) -> None:
         assert [path.name for path in (data / "clips").iterdir()] == [kept["id"]]
 
 
+@pytest.mark.withstands(row="H24")
 def test_sigterm_ends_server_and_workers_soon_and_the_job_waits(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=40)
     data = tmp_path / "data"
@@ -107,6 +109,7 @@ def test_a_stop_in_the_middle_of_work_is_told_and_leaves_no_traceback(
 
 
 @pytest.mark.parametrize("uploads", [1, 3])
+@pytest.mark.withstands(row="H21")
 def test_a_kill_right_after_the_answer_loses_nothing(tmp_path: Path, uploads: int) -> None:
     clip = write_clip(tmp_path / "clip.mp4")
     data = tmp_path / "data"

@@ -13,11 +13,13 @@ from app.api.extraction.messages import pose_in
 from app.recognition import Recording
 from tests.recognition.damaged_clips import write_clip
 
+pytestmark = pytest.mark.slow
+
 COMMAND = [sys.executable, "-m", "app.api.extraction.worker"]
 
 
 def answers(*arguments: str | Path) -> list[dict[str, Any]]:
-    """Run a worker to its end with its stdin open, and return what it told."""
+    """Run a worker to its end with its stdin open, and return its messages."""
     command = [*COMMAND, *(str(argument) for argument in arguments)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
@@ -42,10 +44,10 @@ def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
 def test_extracting_reports_progress_and_leaves_recording_and_pictures(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=5)
     recording, poster = tmp_path / "recording.npz", tmp_path / "poster.jpg"
-    told = answers("record", "video", clip, clip, recording, poster, tmp_path / "filmstrip.jpg")
-    assert told[-1]["kind"] == "finished"
-    assert told[-1]["frames"] == 5
-    last = [answer for answer in told if answer.get("stage") == "poses"][-1]
+    messages = answers("record", "video", clip, clip, recording, poster, tmp_path / "filmstrip.jpg")
+    assert messages[-1]["kind"] == "finished"
+    assert messages[-1]["frames"] == 5
+    last = [answer for answer in messages if answer.get("stage") == "poses"][-1]
     assert (last["done"], last["time"]) == (5, pytest.approx(4 / 25))
     assert last["pose"] is None  # Nobody is in this clip.
     assert len(Recording.load(recording).poses) == 5

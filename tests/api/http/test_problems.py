@@ -94,6 +94,18 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("POST", "/api/v1/languages/{language_id}/revert"): {"revision": 1},
     ("POST", "/api/v1/languages/{language_id}/gestures"): {"label": "x", "clip_id": "missing"},
     ("PATCH", "/api/v1/languages/{language_id}/gestures"): {"label": "x"},
+    ("POST", "/api/v1/languages/{language_id}/gestures/batch"): {
+        "gestures": [{"label": "x", "clip_id": "missing"}]
+    },
+    ("POST", "/api/v1/languages/{language_id}/test-set"): {
+        "takes": [{"clip_id": "missing", "expected": "x"}]
+    },
+    ("PATCH", "/api/v1/languages/{language_id}/test-set/{take_id}"): {"expected": "x"},
+    ("POST", "/api/v1/languages/{language_id}/practice"): {
+        "clip_id": "missing",
+        "expected": "x",
+        "diver": "Ben",
+    },
     ("POST", "/api/v1/languages/{language_id}/demonstrations"): {
         "label": "x",
         "clip_id": "missing",

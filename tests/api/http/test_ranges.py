@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from tests.api.routes.test_clips import CLIPS
+from tests.api.routes.clips.test_clips import CLIPS
 from tests.api.running import assert_problem
 
 
@@ -21,6 +21,7 @@ from tests.api.running import assert_problem
     ],
     ids=["first", "open", "last", "beyond", "reversed", "garbage", "unit", "thousands"],
 )
+@pytest.mark.withstands(row="H17")
 def test_a_video_is_sent_in_ranges(
     client: httpx.Client,
     circle_clip: str,

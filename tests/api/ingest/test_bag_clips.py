@@ -29,6 +29,8 @@ from tests.bags.bag_files import (
 )
 from tests.recognition.damaged_clips import picture, write_clip
 
+pytestmark = pytest.mark.slow
+
 CLIPS = "/api/v1/clips"
 
 
@@ -189,7 +191,6 @@ def test_what_packs_to_nothing_does_not_fill_the_disk(tmp_path: Path) -> None:
         assert_nothing_kept(client, settings)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("models")
 def test_a_topic_of_pictures_is_looked_at_like_a_video(
     client: httpx.Client, tmp_path: Path

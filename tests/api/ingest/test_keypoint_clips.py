@@ -24,6 +24,8 @@ from tests.keypoint_files.files import (
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import BODY, circle, line, recording
 
+pytestmark = pytest.mark.slow
+
 FRAMES = 40
 
 INVALID = "field_invalid"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
 from app.settings import Settings
-from tests.api.routes.test_clips import CLIPS, assert_nothing_kept, upload
+from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept, upload
 from tests.api.running import Running, assert_problem, running, until
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
@@ -39,6 +39,7 @@ def test_a_name_is_shown_without_what_could_do_harm(given_name: str, shown: str)
 
 
 @given(st.text(max_size=500))
+@pytest.mark.withstands(row="H06")
 def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
     shown = display_name(name)
     assert 1 <= len(shown) <= LONGEST_NAME
@@ -71,6 +72,7 @@ def test_a_shown_name_is_short_visible_and_no_path(name: str) -> None:
         "many headers",
     ],
 )
+@pytest.mark.withstands(row="H05")
 def test_a_malformed_form_is_400(
     client: httpx.Client, settings: Settings, headers: dict[str, str], body: bytes
 ) -> None:
@@ -92,6 +94,7 @@ def test_small_fields_beside_the_file_are_ignored(client: httpx.Client, small_cl
     assert answer.status_code == 202
 
 
+@pytest.mark.withstands(row="H06")
 def test_a_name_that_looks_like_a_path_is_only_shown(
     client: httpx.Client, settings: Settings, small_clip: Path
 ) -> None:
@@ -115,6 +118,7 @@ def partials(settings: Settings) -> list[Path]:
     return list((settings.data_dir / "clips").glob("*.part"))
 
 
+@pytest.mark.withstands(row="H04")
 def test_a_sender_that_vanishes_leaves_nothing(
     client: httpx.Client, server: Running, settings: Settings
 ) -> None:
@@ -135,6 +139,7 @@ def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
             assert_nothing_kept(client, impatient)
 
 
+@pytest.mark.withstands(row="H03")
 def test_a_sender_that_trickles_is_dismissed(settings: Settings) -> None:
     impatient = settings.model_copy(
         update={"upload_grace_seconds": 0.5, "upload_bytes_per_second": 1_000_000}

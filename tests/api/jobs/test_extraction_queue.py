@@ -15,6 +15,8 @@ from app.settings import Settings
 from app.store import Clip
 from tests.api.running import Running, running, until
 
+pytestmark = pytest.mark.slow
+
 JOBS = "/api/v1/jobs"
 
 
@@ -44,6 +46,7 @@ def status(client: httpx.Client, job_id: str) -> str:
     return str(client.get(f"{JOBS}/{job_id}").json()["status"])
 
 
+@pytest.mark.withstands(row="H22")
 def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
     impatient: Running, settings: Settings, small_clip: Path
 ) -> None:

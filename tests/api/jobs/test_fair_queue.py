@@ -2,6 +2,7 @@
 
 import asyncio
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,6 +16,7 @@ async def drained(entries: list[tuple[str, str]]) -> list[str]:
     return [await queue.get() for _ in entries]
 
 
+@pytest.mark.withstands(row="H23")
 def test_one_job_does_not_wait_for_anothers_hundred() -> None:
     entries = [("many", str(index)) for index in range(100)] + [("few", "x"), ("few", "y")]
     order = asyncio.run(drained(entries))

@@ -75,23 +75,23 @@ def live(server: Running, origin: str | None = None) -> Iterator[Connection]:
 def answer(view: Connection, kind: str) -> dict[str, Any]:
     """Wait for the next answer of a kind."""
     while True:
-        told: dict[str, Any] = json.loads(view.recv(timeout=60))
-        if told["kind"] == kind:
-            return told
+        message: dict[str, Any] = json.loads(view.recv(timeout=60))
+        if message["kind"] == kind:
+            return message
 
 
 def watch(view: Connection, clip: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Send a clip frame by frame, waiting for each; return what was seen and recognised."""
-    told = []
+    messages = []
     for time, jpeg in frames_of(clip):
         view.send(message_of(time, jpeg))
-        told.append(json.loads(view.recv(timeout=60)))
-        if told[-1]["state"] == "done" and told[-2]["state"] == "recording":
-            told.append(json.loads(view.recv(timeout=60)))
+        messages.append(json.loads(view.recv(timeout=60)))
+        if messages[-1]["state"] == "done" and messages[-2]["state"] == "recording":
+            messages.append(json.loads(view.recv(timeout=60)))
             break
     return (
-        [each for each in told if each["kind"] == "seen"],
-        [each for each in told if each["kind"] == "recognized"],
+        [each for each in messages if each["kind"] == "seen"],
+        [each for each in messages if each["kind"] == "recognized"],
     )
 
 
@@ -100,6 +100,7 @@ def sample_language(client: httpx.Client) -> str:
     return str(next(each["id"] for each in listed if "Table 2" in each["name"]))
 
 
+@pytest.mark.slow
 def test_a_gesture_shown_to_the_camera_is_recognised_when_its_second_salute_is_held(
     server: Running, client: httpx.Client, sample_clips: Path
 ) -> None:
@@ -151,8 +152,8 @@ def test_a_view_too_many_is_told_so_and_one_that_leaves_makes_room(server: Runni
         for other in [view, *(others.enter_context(live(server)) for _ in range(MOST_VIEWS - 1))]:
             other.send(json.dumps({"do": "listen"}))
             answer(other, "listening")
-        told = closing(server)
-        assert told == (TRY_AGAIN_LATER, f"{MOST_VIEWS} live views are open already; close one")
+        closed = closing(server)
+        assert closed == (TRY_AGAIN_LATER, f"{MOST_VIEWS} live views are open already; close one")
     until(lambda: closing(server, "{")[0] != TRY_AGAIN_LATER)
 
 
@@ -182,9 +183,9 @@ def closing(server: Running, *messages: str | bytes) -> tuple[int, str]:
 def test_what_is_no_frame_ends_the_view_with_a_reason(
     server: Running, message: str | bytes, code: int, reason: str
 ) -> None:
-    told = closing(server, message)
-    assert told[0] == code
-    assert reason in told[1]
+    closed = closing(server, message)
+    assert closed[0] == code
+    assert reason in closed[1]
 
 
 def test_pages_of_other_sites_may_not_watch(server: Running) -> None:

@@ -63,6 +63,7 @@ def stranger(guarded: Running) -> Iterator[httpx.Client]:
     ],
     ids=str,
 )
+@pytest.mark.withstands(row="H16")
 def test_changes_from_elsewhere_are_refused(client: httpx.Client, headers: dict[str, str]) -> None:
     answer = client.post(LANGUAGES, json={"name": "theirs"}, headers=headers)
     assert_problem(answer, 403, "foreign_origin")
@@ -80,6 +81,7 @@ def test_changes_from_elsewhere_are_refused(client: httpx.Client, headers: dict[
     ids=str,
 )
 @pytest.mark.parametrize("path", [LANGUAGES, "/healthz", "/openapi.json", "/viser/x/", "/nothing"])
+@pytest.mark.withstands(row="H16")
 def test_other_sites_read_nothing(client: httpx.Client, path: str, headers: dict[str, str]) -> None:
     assert_problem(client.get(path, headers=headers), 403, "foreign_origin")
 
@@ -121,6 +123,7 @@ def test_more_host_names_can_be_allowed(settings: Settings) -> None:
 
 @pytest.mark.parametrize("path", ["/viser/x", "/anything"])
 @pytest.mark.parametrize("origin", ["http://evil.example", "null"])
+@pytest.mark.withstands(row="H16")
 def test_websockets_from_foreign_pages_are_refused(server: Running, path: str, origin: str) -> None:
     address = f"ws://127.0.0.1:{server.port}{path}"
     with (

@@ -23,11 +23,13 @@ def narrow(settings: Settings) -> Iterator[httpx.Client]:
 
 
 @pytest.mark.parametrize("path", ["/api/v1/languages", "/api/v1/languages/import"])
+@pytest.mark.withstands(row="H01")
 def test_a_body_that_says_it_is_too_large_is_413(narrow: httpx.Client, path: str) -> None:
     assert_problem(narrow.post(path, content=BODY), 413, "too_large")
 
 
 @pytest.mark.parametrize("path", ["/api/v1/languages", "/api/v1/languages/import"])
+@pytest.mark.withstands(row="H02")
 def test_a_body_that_does_not_say_is_413_at_the_limit(narrow: httpx.Client, path: str) -> None:
     chunks = iter([BODY[:900]] * 20)
     headers = {"Content-Type": "application/json"}

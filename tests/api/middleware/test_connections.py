@@ -74,6 +74,7 @@ def test_a_head_that_trickles_is_closed(impatient: Running) -> None:
         until(closed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "more"),
     [
@@ -87,6 +88,7 @@ def test_a_head_that_trickles_is_closed(impatient: Running) -> None:
         ),
     ],
 )
+@pytest.mark.withstands(row="H03")
 def test_a_body_that_stalls_is_ended_wherever_it_goes(
     impatient: Running, small_clip: Path, path: str, more: str
 ) -> None:
@@ -127,6 +129,7 @@ def test_at_the_limit_idle_connections_give_way(settings: Settings) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a limit of open files")
+@pytest.mark.withstands(row="H03")
 def test_few_files_are_enough_for_many_idle_connections(tmp_path: Path) -> None:
     code = (
         "import resource, sys; resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256))\n"

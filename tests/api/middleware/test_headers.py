@@ -5,6 +5,7 @@ import pytest
 
 
 @pytest.mark.parametrize("path", ["/api/v1/clips", "/healthz", "/nothing", "/api/v1/nothing"])
+@pytest.mark.withstands(row="H17")
 def test_every_answer_carries_the_security_headers(client: httpx.Client, path: str) -> None:
     headers = client.get(path).headers
     assert headers["x-content-type-options"] == "nosniff"

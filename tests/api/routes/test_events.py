@@ -8,12 +8,12 @@ import httpx
 from sqlalchemy import event
 
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.routes.test_clips import CLIPS
+from tests.api.routes.clips.test_clips import CLIPS
 from tests.api.running import Running
 
 
 def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> None:
-    heard: list[tuple[str, dict[str, Any]]] = []
+    received: list[tuple[str, dict[str, Any]]] = []
     with client.stream("GET", "/api/v1/events") as stream:
         lines = stream.iter_lines()
         while "listening" not in next(lines):
@@ -26,11 +26,11 @@ def test_all_pages_hear_of_changes(client: httpx.Client, server: Running) -> Non
         for line in lines:
             kind = line.removeprefix("event:").strip() if line.startswith("event:") else kind
             if line.startswith("data:"):
-                heard.append((kind, json.loads(line.removeprefix("data:"))))
+                received.append((kind, json.loads(line.removeprefix("data:"))))
                 if kind == "clips":
                     break
-    assert ("languages", {"id": language["id"]}) in heard
-    assert heard[-1] == ("clips", {"id": clip_id})
+    assert ("languages", {"id": language["id"]}) in received
+    assert received[-1] == ("clips", {"id": clip_id})
 
 
 def test_the_database_is_read_once_for_all_streams(client: httpx.Client, server: Running) -> None:
@@ -55,6 +55,6 @@ def test_the_database_is_read_once_for_all_streams(client: httpx.Client, server:
                 pass
         server.studio.broadcast.publish("jobs", id=job, clip_id=clip_id)
         for lines in streams:
-            told = next(line for line in lines if line.startswith("data:"))
-            assert json.loads(told.removeprefix("data:"))["status"] == "done"
+            line = next(line for line in lines if line.startswith("data:"))
+            assert json.loads(line.removeprefix("data:"))["status"] == "done"
     assert len(reads) == 1

@@ -27,6 +27,7 @@ def saved(client: httpx.Client, language_id: str, circle_clip: str) -> dict[str,
     (take,) = client.get(f"{CLIPS}/{circle_clip}/takes").json()
     (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
     expected = {"start": take["start"], "end": take["end"], "keep_transit": False, "salutes": 0}
+    expected |= {"fault": None}
     assert gesture["source"] == {"clip_id": circle_clip, **expected}
     found: dict[str, Any] = gesture["source"]
     return found

@@ -38,6 +38,7 @@ def test_what_was_deleted_just_now_can_be_restored_after_a_restart(settings: Set
 
 
 @pytest.mark.slow
+@pytest.mark.withstands(row="H22")
 def test_while_the_database_is_locked_changes_are_503_and_reading_goes_on(
     settings: Settings, client: httpx.Client
 ) -> None:

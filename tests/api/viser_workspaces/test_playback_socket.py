@@ -1,4 +1,4 @@
-"""Playback over the websocket: what is asked is done, and told to who follows."""
+"""Playback over the websocket: what one client asks for is done and sent to all."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def clock_of(server: Running, workspace_id: str, origin: str | None = None) -> I
         yield connection
 
 
-def told(clock: Connection, **wanted: object) -> dict[str, Any]:
-    """Wait until the clock tells what is wanted, and return all it told then."""
+def position(clock: Connection, **wanted: object) -> dict[str, Any]:
+    """Wait for a position with these values, and return all of it."""
     while True:
         position: dict[str, Any] = json.loads(clock.recv(timeout=60))
         if wanted.items() <= position.items():
@@ -53,24 +53,24 @@ def test_who_follows_is_told_where_the_clock_stands(
 ) -> None:
     times = client.get(f"/api/v1/clips/{circle_clip}/timeline").json()["time"]
     with clock_of(server, workspace_id) as clock:
-        first = told(clock)
+        first = position(clock)
         assert first["frames"] == len(times)
         assert 1.0 <= first["time"] <= 2.0
         for frame in (0, 40, len(times) - 1):
             clock.send(json.dumps({"do": "seek", "frame": frame}))
-            assert told(clock, frame=frame)["time"] == pytest.approx(times[frame])
+            assert position(clock, frame=frame)["time"] == pytest.approx(times[frame])
         clock.send(json.dumps({"do": "step", "frames": -10}))
-        told(clock, frame=len(times) - 11, playing=False)
+        position(clock, frame=len(times) - 11, playing=False)
 
 
 def test_playing_and_looping_are_told(server: Running, workspace_id: str) -> None:
     with clock_of(server, workspace_id) as clock, clock_of(server, workspace_id) as other:
         clock.send(json.dumps({"do": "play", "speed": -0.5}))
-        told(other, playing=True, speed=-0.5)
+        position(other, playing=True, speed=-0.5)
         clock.send(json.dumps({"do": "loop", "on": False}))
-        told(other, loop=False)
+        position(other, loop=False)
         other.send(json.dumps({"do": "play", "speed": 0}))
-        told(clock, playing=False)
+        position(clock, playing=False)
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_what_is_no_wish_ends_the_connection(
     with clock_of(server, workspace_id) as clock:
         clock.send(message)
         with pytest.raises(ConnectionClosed) as closed:
-            told(clock, frame="never")
+            position(clock, frame="never")
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == UNSUPPORTED_DATA
 
@@ -93,9 +93,9 @@ def test_pages_of_other_sites_may_not_follow(server: Running, workspace_id: str)
         pytest.raises(InvalidHandshake),
         clock_of(server, workspace_id, origin="https://evil.example") as clock,
     ):
-        told(clock)
+        position(clock)
 
 
 def test_there_is_no_clock_without_a_workspace(server: Running) -> None:
     with pytest.raises(InvalidHandshake), clock_of(server, "nothing") as clock:
-        told(clock)
+        position(clock)

@@ -16,7 +16,7 @@ import pytest
 from typer.main import get_command
 
 from app.cli.application import command_line
-from app.cli.ros_arguments import split_ros_arguments
+from app.cli.robots.ros_arguments import split_ros_arguments
 from app.robot.messages import read_schema
 from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
@@ -62,7 +62,7 @@ def until(process: subprocess.Popen[str], event: str) -> dict[str, Any]:
         content: dict[str, Any] = json.loads(line)
         if content["event"] == event:
             return content
-    raise AssertionError(f"no {event!r} was told")
+    raise AssertionError(f"no {event!r} was printed")
 
 
 @pytest.fixture
@@ -91,22 +91,22 @@ def test_of_a_clip_the_robot_says_what_recognize_says_and_needs_no_web_app(
     with running(*ON_A_CLIP) as process:
         out, error = process.communicate()
     assert process.returncode == 0, error
-    told = [json.loads(line) for line in out.splitlines()]
+    events = [json.loads(line) for line in out.splitlines()]
     schema = jsonschema.Draft202012Validator(json.loads(read_schema()))
-    for each in told:
+    for each in events:
         schema.validate(each)
     language, clip = (
         ON_A_CLIP[ON_A_CLIP.index(option) + 1] for option in ("--language", "--source")
     )
     recognized = osg_studio("recognize", ROOT / clip, "--language", ROOT / language, "--json")
     takes = json.loads(recognized.out)["takes"]
-    said = [each for each in told if each["event"].startswith("take_")]
+    said = [each for each in events if each["event"].startswith("take_")]
     compared = ("start", "end", "closed", "label", "nearest", "confidence")
     assert takes
     assert [[each[key] for key in compared] for each in said] == [
         [take[key] for key in compared] for take in takes
     ]
-    assert told[-1]["event"] == "source_ended"
+    assert events[-1]["event"] == "source_ended"
     assert f"{said[0]['label']} (" in error
 
 
@@ -154,6 +154,7 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
     assert "Traceback" not in error
 
 
+@pytest.mark.slow
 def test_the_cost_of_each_stage_is_one_object_and_a_table(
     osg_studio: OsgStudio,
     installed_models: None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.cli.ros_arguments import split_ros_arguments
+from app.cli.robots.ros_arguments import split_ros_arguments
 from tests.command_line import OsgStudio
 
 

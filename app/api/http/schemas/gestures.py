@@ -45,6 +45,16 @@ class GestureDraft(NewDemonstration):
     command: Command = None
 
 
+MOST_GESTURES_AT_ONCE = 64
+"""Gestures of one request: more than any language for divers has."""
+
+
+class GesturesDraft(Body):
+    """Several gestures to save from clips, in one revision."""
+
+    gestures: Annotated[list[GestureDraft], Field(min_length=1, max_length=MOST_GESTURES_AT_ONCE)]
+
+
 class DemonstrationDraft(NewDemonstration):
     """A further demonstration of a gesture."""
 
@@ -82,6 +92,10 @@ class SourceView(BaseModel):
     keep_transit: bool
     salutes: int = Field(
         default=0, description="Vulcan salutes in the demonstration, which should have none"
+    )
+    fault: str | None = Field(
+        default=None,
+        description="Why it is a bad demonstration, as a clause: salutes or rests in it, cut short",
     )
 
 

@@ -57,6 +57,8 @@ class LanguageView(LanguageSummary):
     """A language with its gestures."""
 
     gestures: list[GestureView]
+    sha256: str = Field(description="Checksum of the language file, which the robot reports")
+    code: str = Field(description="Short code of `sha256`, to compare with the robot's")
     grammar: GrammarEntry | None = Field(description="Null: every gesture is a message of its own")
     profile: ProfileName = Field(description="The voters that recognise it")
     tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")

@@ -68,6 +68,13 @@ class RecognitionView(BaseModel):
     )
     findings: list[str] = Field(default_factory=list, description="What was repaired, in sentences")
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
+    facing: float | None = Field(
+        None, description="Degrees by which the diver is turned to the own left; null: not known"
+    )
+    views: list[float] = Field(
+        default_factory=list,
+        description="Degrees by which each gesture's demonstration was turned to be compared",
+    )
 
 
 class ExplanationView(BaseModel):
@@ -89,7 +96,13 @@ class ExplanationView(BaseModel):
     verdicts: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
     alignments: list[dict[str, Any]]
     differences: list[dict[str, Any]]
-    counterfactuals: list[dict[str, Any]] = Field(description="Verified, the smallest first")
+    lesson: dict[str, Any] | None = Field(
+        default=None, description="The difference to avoid when it is shown again; null: none known"
+    )
+    counterfactuals: list[dict[str, Any]] = Field(
+        description="Verified; by none does a gesture of the language lose a take. What teaches "
+        "most comes first, weights and a replaced demonstration last"
+    )
     tried: int
     notes: list[str] = Field(
         default_factory=list,

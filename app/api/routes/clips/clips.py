@@ -19,7 +19,8 @@ from app.api.http.ranges import keep_single_range
 from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import receive_file
+from app.api.ingest.multipart import FRAME_BYTES, receive_file
+from app.api.ingest.quotas import require_quota
 from app.api.services.clip_views import view_clip
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
@@ -85,6 +86,9 @@ async def upload_clip(
     ):
         return await _repeat(request, studio, earlier)
     reserved = await require_place_in_queue(request, studio)
+    stated = request.headers.get("content-length", "")
+    least = int(stated) - FRAME_BYTES if stated.isdecimal() else 0
+    await require_quota(request, studio, max(0, least))
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
@@ -92,7 +96,8 @@ async def upload_clip(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         clip.idempotency_key = idempotency_key
-        return await store(clip, partial, studio, client_of(request))
+        await require_quota(request, studio, upload.size)
+        return await store(clip, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)
 

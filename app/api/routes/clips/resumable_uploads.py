@@ -27,6 +27,7 @@ from app.api.ingest.intake import (
     store,
 )
 from app.api.ingest.multipart import display_name, require_space
+from app.api.ingest.quotas import owner_of, require_quota
 from app.api.middleware.body_limit import too_large
 from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -90,9 +91,15 @@ async def begin_upload(
     # One at a time: between the check and the file that reserves the space nobody else may begin.
     async with _beginning.setdefault(str(studio.clips.folder), asyncio.Lock()):
         reserved = await require_place_in_queue(request, studio)
+        await require_quota(request, studio, upload_length)
         require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)
         upload = await run_in_threadpool(
-            studio.uploads.create, name, upload_length, texts, client_of(request)
+            studio.uploads.create,
+            name,
+            upload_length,
+            texts,
+            client_of(request),
+            owner_of(request),
         )
     location = f"{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
@@ -248,7 +255,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
                 await run_in_threadpool(studio.uploads.remove, upload.id)
                 raise
             made.idempotency_key = upload.id
-            await store(made, upload.path, studio, client_of(request))
+            await store(made, upload.path, studio, request)
             await run_in_threadpool(studio.uploads.remove, upload.id)
             clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     if clip is None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Query, Response
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
@@ -27,6 +27,8 @@ from app.api.services.language_views import announce, view_demonstrations
 from app.api.services.studio import CurrentStudio
 from app.recognition.features.png import encode_png
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.ui.charts import png
+from app.ui.direction_marks import mark_gesture
 
 router = APIRouter(prefix="/languages/{language_id}/demonstrations", tags=["gestures"])
 
@@ -87,11 +89,17 @@ def remove_demonstration(
     },
 )
 def get_demonstration_image(
-    language_id: str, index: Index, label: str, studio: CurrentStudio, revision: Revision = None
+    language_id: str,
+    index: Index,
+    label: str,
+    studio: CurrentStudio,
+    revision: Revision = None,
+    marks: Annotated[bool, Query(description="With start dot and arrow, for people")] = False,
 ) -> Response:
     """Send the trajectory image of a demonstration."""
     language = studio.language(studio.languages.get(language_id, revision))
     shown = require_demonstration(gesture_in(language, label), index)
     # A revision never changes, so its pictures can be kept.
     headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
-    return Response(encode_png(shown.image), media_type="image/png", headers=headers)
+    image = png(mark_gesture(shown)) if marks else encode_png(shown.image)
+    return Response(image, media_type="image/png", headers=headers)

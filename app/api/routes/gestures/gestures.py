@@ -6,7 +6,6 @@ they send it. The label as the last part of the path works too, for every other 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import Annotated
 
@@ -14,20 +13,22 @@ from fastapi import APIRouter, Query, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
-from app.api.http.schemas.gestures import GestureChange, GestureDraft
+from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import (
+    add_gestures_to,
     change_gesture_of,
     demonstration_at,
+    gesture_from,
     gesture_in,
+    gestures_from,
     require_free,
-    set_switches,
 )
 from app.api.services.language_documents import edit_document
 from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio
-from app.recognition import Gesture, Language, LanguageError
+from app.recognition import Language, LanguageError
 from app.recognition.features.png import encode_png
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture
@@ -50,16 +51,7 @@ def add_gesture(
 ) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
     demonstration = demonstration_at(studio, draft)
-    gesture = Gesture.from_demonstration(
-        draft.label,
-        demonstration.poses,
-        salient=draft.salient or None,
-        description=draft.description,
-        command=draft.command,
-        diver=draft.diver,
-    )
-    switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
-    gesture = replace(gesture, switches=switches)
+    gesture = gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
         require_free(language, gesture.label)
@@ -68,6 +60,25 @@ def add_gesture(
     edit = edit_document(f"Add {gesture.label}", edit_language)
     state = studio.languages.edit(language_id, edit, expected)
     keep_source(studio, state, gesture.label, draft, demonstration)
+    return announce(studio, state, response)
+
+
+@router.post("/batch", status_code=201, responses=problem_responses(404, 409, 412))
+def add_gestures(
+    language_id: str,
+    draft: GesturesDraft,
+    studio: CurrentStudio,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Save several demonstrations as new gestures in one revision: all of them, or none."""
+    made = gestures_from(studio, draft.gestures)
+    gestures = [gesture for gesture, _ in made]
+    title = f"Add {', '.join(gesture.label for gesture in gestures)}"
+    edit = edit_document(title, partial(add_gestures_to, gestures=gestures))
+    state = studio.languages.edit(language_id, edit, expected)
+    for where, (gesture, demonstration) in zip(draft.gestures, made, strict=True):
+        keep_source(studio, state, gesture.label, where, demonstration)
     return announce(studio, state, response)
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field
 
+from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
@@ -120,10 +122,28 @@ class OutlookView(BaseModel):
 
 
 @router.post("/preview", responses=problem_responses(404, 409))
-def preview_gesture(
-    language_id: str, request: PreviewRequest, studio: CurrentStudio
+async def preview_gesture(
+    language_id: str, request: PreviewRequest, connection: Request, studio: CurrentStudio
 ) -> PreviewView:
     """Return what a gesture would be; nothing is written."""
+    return await compute_while_connected(
+        connection, studio.computations, lambda _: _preview(language_id, request, studio)
+    )
+
+
+@router.post("/preview/health", responses=problem_responses(404, 409))
+async def preview_health(
+    language_id: str, request: PreviewRequest, connection: Request, studio: CurrentStudio
+) -> OutlookView:
+    """Return how a gesture would change its language's report; nothing is written."""
+    return await compute_while_connected(
+        connection,
+        studio.computations,
+        lambda advance: _outlook(language_id, request, studio, advance),
+    )
+
+
+def _preview(language_id: str, request: PreviewRequest, studio: Studio) -> PreviewView:
     language = studio.language(studio.languages.get(language_id))
     draft = _draft(language, request, studio)
     try:
@@ -133,14 +153,16 @@ def preview_gesture(
     return _view(gesture, draft, None)
 
 
-@router.post("/preview/health", responses=problem_responses(404, 409))
-def preview_health(language_id: str, request: PreviewRequest, studio: CurrentStudio) -> OutlookView:
-    """Return how a gesture would change its language's report; nothing is written."""
+def _outlook(
+    language_id: str, request: PreviewRequest, studio: Studio, advance: Callable[[], None]
+) -> OutlookView:
     language = studio.language(studio.languages.get(language_id))
+    advance()
     draft = _draft(language, request, studio)
     gesture = draft.gesture()
+    advance()
     recognizer = Recognizer(draft.language(), "full")
-    found = estimate_gesture(recognizer, gesture.label)
+    found = estimate_gesture(recognizer, gesture.label, advance=advance)
     return OutlookView(
         switches=_switch_views(gesture, recognizer.sensitivity(gesture.label)),
         pairs=[] if found is None else [pair.to_dict() for pair in found.pairs],

@@ -21,7 +21,7 @@ from app.api.ingest.multipart import receive_body
 from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio, Studio
-from app.recognition.language.file_format import FileFormat
+from app.recognition.language.export_format import FileFormat
 from app.recognition.language.requirements import find_requirements
 from app.recognition.language.schema import FORMAT, VERSION
 from app.store import Draft, LanguageState

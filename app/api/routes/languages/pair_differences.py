@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 
+from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label
 from app.api.services.studio import CurrentStudio
+from app.recognition import Recognizer
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
 
@@ -50,23 +53,36 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 
 @router.get("/{language_id}/contrast", responses=problem_responses(404))
-def contrast_gestures(
+async def contrast_gestures(
     language_id: str,
+    request: Request,
     studio: CurrentStudio,
     one: Annotated[Label, Query(description="A gesture's label")],
     other: Annotated[Label, Query(description="Another one's")],
     revision: Revision = None,
 ) -> ContrastView:
     """Return in what two gestures differ, and which of their moments correspond."""
-    state = studio.languages.get(language_id, revision)
-    recognizer = studio.recognizer(state, "full")
+
+    def compute(advance: Callable[[], None]) -> ContrastView:
+        state = studio.languages.get(language_id, revision)
+        return _contrast(studio.recognizer(state, "full"), one, other, advance)
+
+    return await compute_while_connected(request, studio.computations, compute)
+
+
+def _contrast(
+    recognizer: Recognizer, one: str, other: str, advance: Callable[[], None]
+) -> ContrastView:
     labels = recognizer.language.labels
     for label in (one, other):
         if label not in labels:
             detail = f"there is no gesture {label[:80]!r} in this language"
             raise ProblemError(404, "not_found", detail)
     first, second = labels.index(one), labels.index(other)
-    forth, back = compare_pair(recognizer, first, second), compare_pair(recognizer, second, first)
+    advance()
+    forth = compare_pair(recognizer, first, second)
+    advance()
+    back = compare_pair(recognizer, second, first)
     gestures = recognizer.language.gestures
     return ContrastView(
         gestures=(_paths(gestures[first]), _paths(gestures[second])),

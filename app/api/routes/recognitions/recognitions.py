@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from typing import Annotated
 
-import numpy as np
 from fastapi import APIRouter, Query, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label
-from app.api.services.clip_ranges import demonstration_in
-from app.api.services.clip_views import shows_pictures
 from app.api.services.explanation_notes import write_notes
 from app.api.services.stored_recognitions import (
     load_situation,
-    make_recognizer,
+    recognize_range,
     view_recognition,
 )
 from app.api.services.studio import CurrentStudio
-from app.recognition import Language, PoseSequence
 from app.recognition.explanation.explanation import explain
-from app.recognition.language.requirements import require_landmarks
-from app.store import Clip, RecognitionRecord
 
 MOST_LISTED = 500
 """Recognitions in one answer; the page shows the newest of one clip or language."""
@@ -35,29 +28,17 @@ router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 def recognize(request: RecognitionRequest, studio: CurrentStudio) -> RecognitionView:
     """Recognise a take, a range or all of a clip, and keep the answer."""
     state = studio.languages.get(request.language_id)
-    recording = studio.recording(request.clip_id)
-    language = studio.language(state)
-    profile = request.profile or language.profile
-    require_landmarks_of(studio.clips.get(request.clip_id).clip, recording.poses, language)
-    demonstration = demonstration_in(recording, request.start, request.end)
-    recognizer = make_recognizer(studio, state, profile, request.tuning, request.trial)
-    result = recognizer.recognize(demonstration.poses).to_dict()
-    if request.tuning is not None:
-        result["tuning"] = request.tuning.model_dump()
-    if request.trial is not None:
-        result["trial"] = request.trial.model_dump(exclude_unset=True)
-    record = studio.recognitions.add(
-        RecognitionRecord(
-            clip_id=request.clip_id,
-            language_id=state.record.id,
-            revision=state.revision.revision,
-            start=demonstration.start,
-            end=demonstration.end,
-            profile=profile,
-            expected=request.expected,
-            result=json.dumps(result, allow_nan=False),
-        )
-    )
+    record = recognize_range(
+        studio,
+        state,
+        request.clip_id,
+        request.start,
+        request.end,
+        expected=request.expected,
+        profile=request.profile,
+        tuning=request.tuning,
+        trial=request.trial,
+    ).record
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
     return view_recognition(record)
 
@@ -103,19 +84,3 @@ def explain_recognition(
     explanation = explain(situation, meant)
     notes = write_notes(studio, record, situation.language, meant, explanation.nearest)
     return ExplanationView(id=record.id, **explanation.to_dict(), notes=notes)
-
-
-def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:
-    """Refuse a clip that came as keypoints without those that a language follows.
-
-    What our models look at may show any landmark, and is judged when it is recognised.
-
-    Raises
-    ------
-    LandmarkError
-        Naming the landmark, and the gesture that follows it.
-
-    """
-    if not shows_pictures(clip):
-        given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
-        require_landmarks(language, given, clip.name)

@@ -12,6 +12,8 @@ from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, running, until
 from tests.recognition.damaged_clips import IMPOSTORS, flipped, sound_only, write_clip
 
+pytestmark = pytest.mark.slow
+
 CLIPS = "/api/v1/clips"
 
 
@@ -53,6 +55,7 @@ def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: 
     assert poster.content[:2] == b"\xff\xd8"
 
 
+@pytest.mark.withstands(row="H25")
 def test_without_models_the_app_works_and_the_job_says_what_is_missing(
     settings: Settings, small_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -72,6 +75,7 @@ def test_without_models_the_app_works_and_the_job_says_what_is_missing(
 
 
 @pytest.mark.parametrize("kind", sorted(IMPOSTORS))
+@pytest.mark.withstands(row="H07")
 def test_what_is_no_video_is_refused_whatever_its_name(
     client: httpx.Client, settings: Settings, tmp_path: Path, kind: str
 ) -> None:
@@ -107,7 +111,6 @@ def test_sound_alone_is_422(client: httpx.Client, settings: Settings, tmp_path: 
     assert_nothing_kept(client, settings)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_clip_with_flipped_bytes_is_taken_or_refused_but_never_an_error(
     client: httpx.Client, tmp_path: Path, seed: int
@@ -121,6 +124,7 @@ def test_a_clip_with_flipped_bytes_is_taken_or_refused_but_never_an_error(
 
 
 @pytest.mark.parametrize("share", [0, 0.02, 0.5], ids=["empty", "header only", "half"])
+@pytest.mark.withstands(row="H08")
 def test_a_damaged_video_is_422(
     client: httpx.Client, settings: Settings, small_clip: Path, share: float
 ) -> None:
@@ -131,6 +135,7 @@ def test_a_damaged_video_is_422(
 
 
 @pytest.mark.parametrize("form", ["multipart", "chunked"])
+@pytest.mark.withstands(row="H02")
 def test_a_clip_beyond_the_limit_is_413(settings: Settings, tmp_path: Path, form: str) -> None:
     small = settings.model_copy(update={"max_clip_bytes": 50_000})
     path = tmp_path / "large.mp4"
@@ -158,6 +163,7 @@ def test_a_full_disk_is_507_and_says_when_to_come_back(
         assert_nothing_kept(client, full)
 
 
+@pytest.mark.withstands(row="H19")
 def test_a_repeated_upload_is_one_clip(client: httpx.Client, small_clip: Path) -> None:
     key = {"Idempotency-Key": "7f3c"}
     first = upload(client, small_clip, **key).json()
@@ -180,10 +186,12 @@ def test_a_key_that_was_used_for_another_file_is_refused(
 
 
 @pytest.mark.parametrize("path", [f"{CLIPS}/%00", f"{CLIPS}/a%00b/video", "/%00"])
+@pytest.mark.withstands(row="H18")
 def test_a_path_with_a_nul_names_nothing(client: httpx.Client, path: str) -> None:
     assert_problem(client.get(path), 404, "not_found")
 
 
+@pytest.mark.withstands(row="H23")
 def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"max_jobs_per_client": 1})
     with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
@@ -210,6 +218,7 @@ def test_a_deleted_clip_can_be_restored(client: httpx.Client, circle_clip: str) 
     assert client.get(f"{place}/takes").json() != []
 
 
+@pytest.mark.withstands(row="H17")
 def test_what_users_gave_us_cannot_run_in_a_browser(client: httpx.Client, studio: Studio) -> None:
     clip_id = add_recorded_clip(studio, recording_of("line"), name='"><b>\u202e.mp4')
     headers = client.get(f"{CLIPS}/{clip_id}/video").headers
@@ -228,6 +237,7 @@ def test_takes_give_seconds_of_salutes_and_stroke(client: httpx.Client, studio: 
 
 
 @pytest.mark.parametrize("clip_id", ["x", "0" * 32, "..%2F..%2Fetc%2Fpasswd", "a" * 5000, "%00"])
+@pytest.mark.withstands(row="H18")
 def test_an_id_that_names_nothing_is_404(client: httpx.Client, clip_id: str) -> None:
     assert_problem(client.get(f"{CLIPS}/{clip_id}"), 404, "not_found")
     assert_problem(client.delete(f"{CLIPS}/{clip_id}"), 404, "not_found")

@@ -12,19 +12,21 @@ import numpy as np
 import pytest
 
 from app.settings import Settings
-from tests.api.routes.test_clips import CLIPS, upload
+from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import assert_problem, running, until
 from tests.api.workers import alive, linux, workers_of
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
 
+pytestmark = pytest.mark.slow
+
 JOBS = "/api/v1/jobs"
 
 
-@pytest.fixture
-def long_clip(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def long_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a clip that takes longer than a test needs to disturb its job."""
-    return write_clip(tmp_path / "long.mp4", frames=2000, size=(320, 240))
+    return write_clip(tmp_path_factory.mktemp("clips") / "long.mp4", frames=2000)
 
 
 def events_of(client: httpx.Client, job_id: str) -> Iterator[dict[str, Any]]:
@@ -45,17 +47,16 @@ def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
     return job_id, worker
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("models")
 def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None:
     accepted = upload(client, ROOT / "languages" / "clips" / "circle-demonstration.mp4").json()
     clip_id, job_id = accepted["id"], accepted["job_id"]
-    told = list(events_of(client, job_id))
-    assert told[-1]["status"] == "done"
+    events = list(events_of(client, job_id))
+    assert events[-1]["status"] == "done"
     poses = client.get(f"{CLIPS}/{clip_id}/poses").json()
     frames = len(poses["time"])
-    assert (told[-1]["done"], told[-1]["total"]) == (frames, frames)
-    arriving = [event for event in told if event["stage"] == "poses"]
+    assert (events[-1]["done"], events[-1]["total"]) == (frames, frames)
+    arriving = [event for event in events if event["stage"] == "poses"]
     counted = [event["done"] for event in arriving]
     assert counted == sorted(counted)
     assert 0 < counted[-1] <= frames  # who listens slowly hears of the newest alone
@@ -65,8 +66,8 @@ def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None
         assert np.multiply(event["pose"], poses["frame_size"]) == pytest.approx(
             np.array(poses["xy"][frame]), abs=0.1
         )
-    assert told[-1]["time"] is told[-1]["pose"] is None
-    for event in told:
+    assert events[-1]["time"] is events[-1]["pose"] is None
+    for event in events:
         assert {"stage", "done", "total", "eta_s"} <= set(event)
         assert 0 <= event["done"] <= event["total"]
     job = client.get(f"{JOBS}/{job_id}").json()
@@ -76,13 +77,14 @@ def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None
 
 def test_a_job_that_is_over_tells_so_once(client: httpx.Client, circle_clip: str) -> None:
     job_id = client.get(f"{CLIPS}/{circle_clip}").json()["job_id"]
-    (told,) = events_of(client, job_id)
-    assert told["status"] == "done"
+    (event,) = events_of(client, job_id)
+    assert event["status"] == "done"
     again = client.get(f"{JOBS}/{job_id}/events", headers={"Last-Event-ID": "final"})
     assert again.status_code == 204
 
 
 @linux
+@pytest.mark.withstands(row="H23")
 def test_a_running_job_can_be_cancelled_and_tried_again(
     client: httpx.Client, long_clip: Path
 ) -> None:
@@ -114,6 +116,7 @@ def test_deleting_a_clip_ends_its_job_and_its_streams(
 
 
 @linux
+@pytest.mark.withstands(row="H10")
 def test_a_worker_that_crashes_fails_its_job_and_nothing_else(
     client: httpx.Client, long_clip: Path
 ) -> None:
@@ -141,6 +144,7 @@ def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> No
 
 
 @pytest.mark.skipif(os.name != "posix", reason="POSIX resource limits")
+@pytest.mark.withstands(row="H10")
 def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"worker_memory_bytes": 100 * 1024 * 1024})
     with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import httpx
+import pytest
 
 from app.settings import Settings
 from tests.api.ingest.test_bag_clips import finished, upload
@@ -13,6 +14,8 @@ from tests.api.recordings import recording_of
 from tests.api.running import assert_problem
 from tests.bags.bag_files import file_of, published_rows, write_bag
 from tests.bags.sessions import checked
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_session_holds_what_was_seen_and_recognised(

@@ -57,6 +57,9 @@ def test_a_take_becomes_a_further_demonstration(
     assert all(decode_png(each.content, (224, 224)).any() for each in pictures)
     assert pictures[0].content == client.get(gesture["thumbnail"]).content
     assert pictures[0].content != pictures[1].content
+    marked = client.get(f"{second['thumbnail']}&marks=true").content
+    assert marked.startswith(b"\x89PNG")
+    assert marked != pictures[1].content
 
 
 def test_the_document_keeps_it_through_export_copy_and_import(

@@ -64,6 +64,7 @@ def test_a_label_of_any_characters_can_be_addressed(
 @pytest.mark.parametrize(
     "label", [".", "..", "/", "//", "%2e", "%2E%2e", "../..", "a/", "\U0001f42c" * 80]
 )
+@pytest.mark.withstands(row="H13")
 def test_no_label_means_anything_in_an_address(
     client: httpx.Client, language_id: str, circle_clip: str, label: str
 ) -> None:
@@ -216,3 +217,39 @@ def test_a_gesture_can_be_shown_anew_and_keeps_what_it_says(
     assert (after["label"], after["command"], after["direction"]) == ("circle", "Go", "on")
     pictures = [client.get(each["thumbnail"]).content for each in (before, after)]
     assert pictures[0] != pictures[1]
+
+
+def test_several_gestures_are_one_revision(
+    client: httpx.Client, studio: Studio, language_id: str, circle_clip: str
+) -> None:
+    line_clip = add_recorded_clip(studio, recording_of("line"), "line.mp4")
+    body = {
+        "gestures": [
+            {"label": "circle", "clip_id": circle_clip},
+            {"label": "line", "clip_id": line_clip},
+        ]
+    }
+    before = client.get(f"{LANGUAGES}/{language_id}").json()["revision"]
+    saved = client.post(f"{place(language_id)}/batch", json=body)
+    assert saved.status_code == 201
+    language = saved.json()
+    assert language["revision"] == before + 1
+    assert language["labels"] == ["circle", "line"]
+    sources = [gesture["source"]["clip_id"] for gesture in language["gestures"]]
+    assert sources == [circle_clip, line_clip]
+
+
+def test_of_several_gestures_none_is_saved_when_one_cannot_be(
+    client: httpx.Client, studio: Studio, language_id: str, circle_clip: str
+) -> None:
+    still = add_recorded_clip(studio, recording_of(), "still.mp4")
+    for second, code in (
+        ({"label": "circle", "clip_id": circle_clip}, "label_taken"),
+        ({"label": "still", "clip_id": still}, "gesture_unusable"),
+        ({"label": "empty", "clip_id": circle_clip, "start": 900.0, "end": 901.0}, "range_empty"),
+    ):
+        body = {"gestures": [{"label": "circle", "clip_id": circle_clip}, second]}
+        refused = client.post(f"{place(language_id)}/batch", json=body)
+        assert refused.json()["code"] == code, refused.text
+        assert refused.json()["errors"][0]["pointer"].startswith("/gestures/1")
+    assert client.get(f"{LANGUAGES}/{language_id}").json()["labels"] == []

@@ -16,6 +16,8 @@ from tests.conftest import ROOT
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
+pytestmark = pytest.mark.slow
+
 LANGUAGES = "/api/v1/languages"
 
 
@@ -79,9 +81,9 @@ def test_a_check_tells_its_progress_and_can_be_cancelled_and_begun_anew(
             running = [
                 pool.submit(httpx.get, server.address + check, timeout=60) for _ in range(callers)
             ]
-            told = checks(lines)
-            begun = next(each for each in told if each["done"] == 1)
-            later = list(islice(told, 10))[-1]
+            progress = checks(lines)
+            begun = next(each for each in progress if each["done"] == 1)
+            later = list(islice(progress, 10))[-1]
             assert begun["id"] == later["id"] == language
             assert begun["stage"] == later["stage"] == "rehearsing"
             assert 1 < later["done"] <= later["total"]
@@ -91,7 +93,7 @@ def test_a_check_tells_its_progress_and_can_be_cancelled_and_begun_anew(
 
 
 def checks(lines: Iterator[str]) -> Iterator[dict[str, Any]]:
-    """Yield what is told about the progress of checks, as it comes."""
+    """Yield progress events of checks, as they come."""
     for written in lines:
         if written == "event: checks":
             yield json.loads(next(lines).removeprefix("data: "))
@@ -117,7 +119,6 @@ def test_a_check_whose_client_leaves_ends(server: Running, client: httpx.Client)
     until(lambda: not list(folder.glob(".unpacked-*")))
 
 
-@pytest.mark.slow
 def test_a_check_of_many_gestures_leaves_the_server_free(
     server: Running, client: httpx.Client
 ) -> None:

@@ -7,9 +7,9 @@ import socket
 import httpx
 import pytest
 
-from app.api.routes.language_files import SMALL_BYTES
+from app.api.routes.languages.language_files import SMALL_BYTES
 from app.recognition import Language
-from tests.api.languages import LANGUAGES, add_gesture, many_gestures
+from tests.api.languages import LANGUAGES, add_gesture, listed, many_gestures
 from tests.api.running import Running, assert_problem, until
 
 
@@ -58,14 +58,16 @@ def test_the_published_file_goes_out_and_comes_in_without_trajectories(
 def test_a_file_that_is_no_language_is_422_and_names_the_place(
     client: httpx.Client, content: bytes, pointer: str
 ) -> None:
+    before = listed(client)
     answer = client.post(f"{LANGUAGES}/import", content=content)
     problem = assert_problem(answer, 422, "language_invalid")
     errors = problem["errors"]
     assert isinstance(errors, list)
     assert errors[0]["pointer"] == pointer
-    assert client.get(LANGUAGES).json() == []
+    assert listed(client) == before
 
 
+@pytest.mark.slow
 def test_a_large_file_is_read_like_a_small_one(client: httpx.Client) -> None:
     document = many_gestures(60)
     assert len(document) > SMALL_BYTES
@@ -76,6 +78,7 @@ def test_a_large_file_is_read_like_a_small_one(client: httpx.Client) -> None:
     assert exported.text == document
 
 
+@pytest.mark.slow
 def test_a_large_file_that_is_no_language_names_the_place(client: httpx.Client) -> None:
     document = json.loads(many_gestures(60))
     document["gestures"][59]["label"] = 3
@@ -86,20 +89,23 @@ def test_a_large_file_that_is_no_language_names_the_place(client: httpx.Client) 
     assert_problem(client.post(f"{LANGUAGES}/import", content=twice), 422, "language_invalid")
 
 
+@pytest.mark.slow
+@pytest.mark.withstands(row="H04")
 def test_an_import_whose_client_leaves_ends_and_is_no_error(
     server: Running, client: httpx.Client, caplog: pytest.LogCaptureFixture
 ) -> None:
-    document = many_gestures(200).encode()
+    before, document = listed(client), many_gestures(200).encode()
     head = f"POST {LANGUAGES}/import HTTP/1.1\r\nHost: 127.0.0.1\r\n"
     head += f"Content-Length: {len(document)}\r\n\r\n"
     folder = server.studio.clips.folder
+    files = set(folder.iterdir())
     with caplog.at_level(logging.WARNING):
         for said in (head.encode() + document[:-1], head.encode() + document):
             with socket.create_connection(("127.0.0.1", server.port)) as connection:
                 connection.sendall(said)
                 until(lambda: list(folder.glob("*.part")))
-            until(lambda: not list(folder.iterdir()))
-    assert client.get(LANGUAGES).json() == []
+            until(lambda: set(folder.iterdir()) == files)
+    assert listed(client) == before
     assert [record.message for record in caplog.records] == []
 
 

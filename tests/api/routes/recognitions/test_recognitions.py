@@ -85,7 +85,9 @@ def test_a_recognition_is_explained_by_what_was_meant(
     assert (why["id"], why["expected"], why["label"]) == (kept["id"], "circle", "line")
     assert (why["right"], why["other"]) == (False, "line")
     assert {verdict["voter"] for verdict in why["verdicts"]} == set(kept["voters"])
-    assert why["counterfactuals"][0]["label"] == "circle"
+    assert why["tried"] > 0
+    assert all(each["effect"]["lost"] == [] for each in why["counterfactuals"] if each["effect"])
+    assert why["lesson"] == max(why["differences"], key=lambda each: each["share"])
     assert "instead of 'circle'" in why["sentence"]
     start, end = kept["start"], kept["end"]
     assert all(start <= moment <= end for moment in why["alignments"][0]["time"])
@@ -184,3 +186,22 @@ def test_a_trial_of_a_gesture_that_is_not_there_is_refused(
     trial = {"label": "square", "change": {"direction": "off"}}
     body = {"clip_id": circle_clip, "language_id": spoken, "trial": trial}
     assert_problem(client.post(RECOGNITIONS, json=body), 404, "not_found")
+
+
+def test_a_bad_demonstration_is_named_as_the_reason(
+    client: httpx.Client, studio: Studio, language_id: str, circle_clip: str
+) -> None:
+    gestures = f"/api/v1/languages/{language_id}/gestures"
+    (take,) = client.get(f"/api/v1/clips/{circle_clip}/takes").json()
+    half = take["stroke_start"] + 0.5 * (take["stroke_end"] - take["stroke_start"])
+    cut = {"clip_id": circle_clip, "start": take["stroke_start"], "end": half}
+    saved = client.post(gestures, json={"label": "circle", **cut}).json()
+    assert saved["gestures"][0]["source"]["fault"].startswith("is cut short: it keeps 1.0 of")
+    line = add_recorded_clip(studio, recording_of("line"), "line.mp4")
+    client.post(gestures, json={"label": "line", "clip_id": line}).raise_for_status()
+    other = add_recorded_clip(studio, recording_of("circle"), "other.mp4")
+    body = {"clip_id": other, "language_id": language_id, "expected": "circle"}
+    recognised = client.post("/api/v1/recognitions", json=body).json()
+    why = client.get(f"/api/v1/recognitions/{recognised['id']}/explanation").json()
+    assert "The demonstration of 'circle' is a likely reason" in why["notes"][0]
+    assert "cut short" in why["notes"][0]

@@ -1,0 +1,92 @@
+"""Schemas of test sets: labelled takes, how they are recognised, and rates."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, Field
+
+from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.store.labelled_takes import MOST_TAKES
+
+
+class LabelledTakeDraft(Body):
+    """A clip, or a range of it, with the gesture that it shows."""
+
+    clip_id: Identifier
+    expected: Label
+    start: Seconds | None = Field(
+        default=None, description="Null, with `end`: every take of the clip, or all of it"
+    )
+    end: Seconds | None = None
+
+
+class LabelledTakesDraft(Body):
+    """Takes to add to a test set; one that it has gets the new label."""
+
+    takes: Annotated[list[LabelledTakeDraft], Field(min_length=1, max_length=MOST_TAKES)]
+
+
+class LabelledTakeChange(Body):
+    """Another label for a take."""
+
+    expected: Label
+
+
+class LabelledResultView(BaseModel):
+    """How a revision recognises a labelled take."""
+
+    revision: int
+    recognition_id: str | None = Field(description="Null: it could not be recognised, see `fault`")
+    label: str | None = Field(description="Null: rejected")
+    nearest: str | None
+    confidence: float
+    right: bool
+    fault: str | None = Field(description="Why it could not be recognised, in words")
+
+
+class LabelledTakeView(BaseModel):
+    """A take of a test set."""
+
+    id: str
+    clip_id: str
+    clip: str = Field(description="Name of the clip")
+    start: float
+    end: float
+    expected: str
+    demonstration: bool = Field(
+        description="It is a demonstration of the language, which does not count"
+    )
+    result: LabelledResultView | None = Field(description="The newest; null: none yet")
+    before: LabelledResultView | None = Field(description="By an older revision than `result`")
+
+
+class RateView(BaseModel):
+    """Rate of right answers, with Wilson's 95 % interval; null without any answer."""
+
+    right: int
+    asked: int
+    rate: float | None
+    low: float | None
+    high: float | None
+
+
+class GestureRateView(RateView):
+    """Rate of one gesture."""
+
+    label: str
+
+
+class TestSetView(BaseModel):
+    """The test set of a language, with the newest result of each take."""
+
+    __test__ = False
+
+    language_id: str
+    revision: int = Field(description="The language's newest")
+    takes: list[LabelledTakeView]
+    overall: RateView
+    gestures: list[GestureRateView] = Field(description="The lowest rate first")
+    better: list[str] = Field(description="Ids of takes that are right now and were wrong before")
+    worse: list[str] = Field(description="Ids of takes that are wrong now and were right before")
+    waiting: int = Field(description="Takes without a result of the newest revision")

@@ -1,0 +1,59 @@
+"""ASGI middleware: refuses what a token's role does not allow."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.api.http.problems import ProblemError
+from app.api.middleware.identities import identity_of
+from app.store import Role
+
+SAFE_METHODS: Final = frozenset({"GET", "HEAD", "OPTIONS"})
+
+ADMIN_PATHS: Final = frozenset({"/metrics", "/api/v1/audit"})
+
+READING: Final = re.compile(
+    r"/api/v1/(recognitions|session|workspaces(/.*)?|languages/[^/]+/preview(/health)?)"
+)
+"""Paths where no method changes what others see: a recognition is kept as a record of its own, a
+workspace is one browser tab's picture."""
+
+
+class RoleRequired:
+    """Answers 403 where the role of the request's token is not enough.
+
+    Parameters
+    ----------
+    app
+        What answers all other requests.
+
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on what is allowed."""
+        if scope["type"] == "http":
+            identity, needed = identity_of(scope), needed_role(scope["method"], scope["path"])
+            roles = [*Role]
+            if roles.index(identity.role) < roles.index(needed):
+                detail = (
+                    f"the token {identity.name!r} has the role {identity.role.value}, and this "
+                    f"needs {needed.value}; ask an administrator for such a token"
+                )
+                problem = ProblemError(403, "role_required", detail, role=needed.value)
+                return await problem.response()(scope, receive, send)
+        return await self._app(scope, receive, send)
+
+
+def needed_role(method: str, path: str) -> Role:
+    """Return the least role that a request needs."""
+    if path in ADMIN_PATHS:
+        return Role.ADMIN
+    if method in SAFE_METHODS or READING.fullmatch(path):
+        return Role.READ
+    return Role.EDIT

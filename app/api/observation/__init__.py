@@ -1,0 +1,1 @@
+"""Observation of a server: request and job ids, structured logs, metrics."""

@@ -1,0 +1,87 @@
+"""Metrics of a server for Prometheus, by the client library of that project."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Mapping
+
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client.exposition import CONTENT_TYPE_PLAIN_0_0_4
+
+MEDIA_TYPE = CONTENT_TYPE_PLAIN_0_0_4
+
+REQUEST_SECONDS = (0.005, 0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 60.0)
+JOB_SECONDS = (1.0, 3.0, 10.0, 30.0, 60.0, 300.0, 1800.0, 7200.0)
+LAG_SECONDS = (0.005, 0.02, 0.1, 0.3, 1.0, 3.0)
+
+LAG_EVERY = 1.0
+"""Seconds between two measurements of the event loop's lag."""
+
+
+class Metrics:
+    """Counts of one server.
+
+    Attributes
+    ----------
+    requests, request_seconds
+        By method, route (its pattern, so that their number is bounded) and status.
+    jobs
+        Seconds of jobs by kind and outcome.
+    stalls
+        Worker processes that were ended because they said nothing for too long.
+    loop_lag
+        Seconds by which the event loop was late: while it is, nobody is answered.
+
+    """
+
+    def __init__(self) -> None:
+        self._registry = CollectorRegistry()
+        registry = self._registry
+        self.requests = Counter(
+            "osg_requests", "Requests answered", ["method", "route", "status"], registry=registry
+        )
+        self.request_seconds = Histogram(
+            "osg_request_seconds",
+            "Seconds until the answer began",
+            ["method", "route"],
+            buckets=REQUEST_SECONDS,
+            registry=registry,
+        )
+        self.jobs = Histogram(
+            "osg_job_seconds",
+            "Seconds of a job by its kind and how it ended",
+            ["kind", "outcome"],
+            buckets=JOB_SECONDS,
+            registry=registry,
+        )
+        self.stalls = Counter(
+            "osg_worker_stalls", "Worker processes ended for their silence", registry=registry
+        )
+        self.loop_lag = Histogram(
+            "osg_event_loop_lag_seconds",
+            "Seconds by which the event loop was late",
+            buckets=LAG_SECONDS,
+            registry=registry,
+        )
+        self._gauges: dict[str, Gauge] = {}
+
+    def set(self, name: str, meaning: str, values: Mapping[str, float]) -> None:
+        """Set a value, or several by their label ``of``; the empty one has no label."""
+        if name not in self._gauges:
+            labels = [] if "" in values else ["of"]
+            self._gauges[name] = Gauge(name, meaning, labels, registry=self._registry)
+        for label, value in values.items():
+            gauge = self._gauges[name]
+            (gauge.labels(label) if label else gauge).set(value)
+
+    def write(self) -> bytes:
+        """Return all of it as text of Prometheus."""
+        return generate_latest(self._registry)
+
+    async def watch_loop(self) -> None:
+        """Measure the event loop's lag until cancelled."""
+        while True:
+            began = time.monotonic()
+            await asyncio.sleep(LAG_EVERY)
+            self.loop_lag.observe(max(0.0, time.monotonic() - began - LAG_EVERY))

@@ -1,0 +1,1 @@
+"""Routers of clips: upload, timeline, export."""

@@ -1,0 +1,1 @@
+"""Routers of languages: files, revisions, health reports, phrases, pairs of gestures."""

@@ -1,0 +1,79 @@
+"""Route of a language's settings: its profile and voters' weights beside the defaults."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from app.api.http.problems import problem_responses
+from app.api.http.revisions import Revision
+from app.api.services.studio import CurrentStudio
+from app.recognition import Recognizer
+from app.recognition.decision.fused_vote import FusedVote
+from app.recognition.features.trajectory_image import SIMPLIFICATION
+from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
+from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
+from app.recognition.language.schema import TuningEntry
+from app.recognition.language.tuning_entry import tuning_to_entry
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+class ProfileView(BaseModel):
+    """A profile that a language can choose."""
+
+    name: ProfileName
+    rejects: bool = Field(description="Whether it rejects movements that are no gesture")
+    repairs_keypoints: bool = Field(description="Whether bad keypoints are repaired first")
+    voters: list[str]
+
+
+class SettingsView(BaseModel):
+    """How a language is recognised, and what it would be by default."""
+
+    profile: ProfileName
+    default_profile: ProfileName
+    profiles: list[ProfileView]
+    tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
+    simplification: float = Field(description="Default tolerance of drawings, pixels of 224")
+    most_simplification: float
+    weights: dict[str, float] = Field(
+        description="Each voter's normalised weight in this language, with its weight factor; "
+        "empty without gestures"
+    )
+
+
+@router.get("/{language_id}/settings", responses=problem_responses(404))
+def get_settings(
+    language_id: str, studio: CurrentStudio, revision: Revision = None
+) -> SettingsView:
+    """Return profile and tuning of a language beside the defaults; `PATCH` changes them."""
+    state = studio.languages.get(language_id, revision)
+    language = studio.language(state)
+    weights = _weights_of(studio.recognizer(state)) if language.gestures else {}
+    return SettingsView(
+        profile=language.profile,
+        default_profile=DEFAULT_PROFILE,
+        profiles=[
+            ProfileView(
+                name=each.name,
+                rejects=each.rejects,
+                repairs_keypoints=each.repairs_keypoints,
+                voters=[voter.name for voter in each.voters],
+            )
+            for each in PROFILES.values()
+        ],
+        tuning=tuning_to_entry(language.tuning),
+        simplification=SIMPLIFICATION,
+        most_simplification=MAX_SIMPLIFICATION,
+        weights=weights,
+    )
+
+
+def _weights_of(recognizer: Recognizer) -> dict[str, float]:
+    """Return the voters' weights; in a majority vote each has its weight factor's share."""
+    if isinstance(recognizer.vote, FusedVote):
+        return dict(recognizer.vote.weights)
+    voters = [voter.name for voter in PROFILES[recognizer.profile].voters]
+    factors = recognizer.tuning.weights_of(voters)
+    return dict(zip(voters, (factors / factors.sum()).tolist(), strict=True))

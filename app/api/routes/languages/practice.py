@@ -1,0 +1,157 @@
+"""Routes of practice: a diver shows a gesture, learns what to change, and is kept a record of."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.services.demonstration_sources import sources_in
+from app.api.services.explanation_notes import write_notes
+from app.api.services.stored_recognitions import load_situation, recognize_range
+from app.api.services.studio import CurrentStudio, Studio
+from app.evaluation.acceptance import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
+from app.recognition.explanation.explanation import explain
+from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
+from app.store import LanguageState, PracticeTake
+
+router = APIRouter(prefix="/languages/{language_id}/practice", tags=["languages"])
+
+
+class PracticeDraft(Body):
+    """A gesture that a diver shows in a clip."""
+
+    diver: Annotated[str, Field(min_length=1, max_length=MAX_DIVER_LENGTH, pattern=r"\S")]
+    expected: Label
+    clip_id: Identifier
+    start: Seconds | None = None
+    end: Seconds | None = None
+
+
+class PracticeTakeView(BaseModel):
+    """One take of practice."""
+
+    id: str
+    expected: str
+    label: str | None = Field(description="Null: rejected")
+    right: bool
+    clip_id: str
+    recognition_id: str
+    revision: int
+
+
+class PracticeRecordView(BaseModel):
+    """A diver's record with the newest revision: evidence of acceptance."""
+
+    diver: str
+    takes: int = Field(description="Takes recognised by the newest revision")
+    errors: int
+    bound: float = Field(description="Upper bound of the error rate (Clopper and Pearson)")
+    limit: float = Field(description="Error rate to be below")
+    confidence: float = Field(description="Confidence of the bound")
+    reached: bool = Field(description="Whether the bound is below the limit")
+    more: int = Field(description="Further takes without an error until it is; 0 when reached")
+    older: int = Field(description="Takes with older revisions, which do not count")
+    shown: list[PracticeTakeView] = Field(description="All takes, the newest first")
+
+
+class PracticeAnswerView(BaseModel):
+    """What is said about a take at once."""
+
+    take: PracticeTakeView
+    sentence: str
+    lesson: dict[str, Any] | None = Field(description="The difference to avoid the next time")
+    notes: list[str]
+    record: PracticeRecordView
+
+
+@router.get("", responses=problem_responses(404))
+def list_records(language_id: str, studio: CurrentStudio) -> list[PracticeRecordView]:
+    """Return the record of every diver."""
+    return _records(studio, studio.languages.get(language_id))
+
+
+@router.post("", status_code=201, responses=problem_responses(404, 409))
+def show_gesture(
+    language_id: str, draft: PracticeDraft, studio: CurrentStudio
+) -> PracticeAnswerView:
+    """Recognise what a diver shows, say what to change, and keep it in the diver's record."""
+    state = studio.languages.get(language_id)
+    language = studio.language(state)
+    if draft.expected not in language.labels:
+        raise ProblemError(404, "not_found", f"there is no gesture {draft.expected[:80]!r}")
+    if any(
+        source is not None and source.clip_id == draft.clip_id
+        for row in sources_in(studio, language).values()
+        for source in row
+    ):
+        detail = "this clip is a demonstration of the language, which is recognised by construction"
+        raise ProblemError(409, "is_demonstration", detail)
+    made = recognize_range(
+        studio, state, draft.clip_id, draft.start, draft.end, expected=draft.expected
+    )
+    record = made.record
+    take = studio.practice.keep(
+        PracticeTake(
+            language_id=language_id,
+            clip_id=draft.clip_id,
+            start=record.start,
+            diver=draft.diver.strip(),
+            expected=draft.expected,
+            label=made.answer["label"],
+            revision=record.revision,
+            recognition_id=record.id,
+        )
+    )
+    why = explain(load_situation(record, studio), draft.expected, with_counterfactuals=False)
+    records = _records(studio, state)
+    return PracticeAnswerView(
+        take=_view(take),
+        sentence=why.sentence,
+        lesson=None if why.lesson is None else why.lesson.to_dict(),
+        notes=[] if why.right else write_notes(studio, record, language, draft.expected),
+        record=next(each for each in records if each.diver == take.diver),
+    )
+
+
+@router.delete("/{take_id}", responses=problem_responses(404))
+def remove_take(language_id: str, take_id: str, studio: CurrentStudio) -> list[PracticeRecordView]:
+    """Remove a take that was no attempt, such as a wrong clip."""
+    state = studio.languages.get(language_id)
+    studio.practice.remove(language_id, take_id)
+    return _records(studio, state)
+
+
+def _records(studio: Studio, state: LanguageState) -> list[PracticeRecordView]:
+    by_diver: dict[str, list[PracticeTake]] = {}
+    for take in studio.practice.of(state.record.id):
+        by_diver.setdefault(take.diver, []).append(take)
+    return [
+        _record(diver, takes, state.revision.revision) for diver, takes in sorted(by_diver.items())
+    ]
+
+
+def _record(diver: str, takes: list[PracticeTake], revision: int) -> PracticeRecordView:
+    counted = [take for take in takes if take.revision == revision]
+    errors = sum(take.label != take.expected for take in counted)
+    bound = bound_error_rate(errors, len(counted))
+    return PracticeRecordView(
+        diver=diver,
+        takes=len(counted),
+        errors=errors,
+        bound=bound,
+        limit=LIMIT,
+        confidence=CONFIDENCE,
+        reached=bound < LIMIT,
+        more=max(0, count_takes_needed(errors) - len(counted)),
+        older=len(takes) - len(counted),
+        shown=[_view(take) for take in takes],
+    )
+
+
+def _view(take: PracticeTake) -> PracticeTakeView:
+    shown = take.model_dump(exclude={"language_id", "start", "diver", "created"})
+    return PracticeTakeView(**shown, right=take.label == take.expected)

@@ -1,0 +1,56 @@
+"""Routes of slates: a language as one printable page."""
+
+from __future__ import annotations
+
+from urllib.parse import quote
+
+from fastapi import APIRouter, Response
+
+from app.api.http.problems import problem_responses
+from app.api.http.revisions import Revision
+from app.api.services.studio import CurrentStudio
+from app.ui.slate.layout import lay_out
+from app.ui.slate.pdf import to_pdf
+from app.ui.slate.svg import to_svg
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+@router.get(
+    "/{language_id}/slate.svg",
+    response_class=Response,
+    responses={
+        **problem_responses(404),
+        200: {"description": "The slate", "content": {"image/svg+xml": {}}},
+    },
+)
+def get_slate_as_svg(
+    language_id: str, studio: CurrentStudio, revision: Revision = None
+) -> Response:
+    """Send a language as one printable page, in the fonts of whoever opens it."""
+    state = studio.languages.get(language_id, revision)
+    content = to_svg(lay_out(studio.language(state)))
+    return _file(content.encode("utf-8"), "image/svg+xml", f"{state.revision.name}.svg")
+
+
+@router.get(
+    "/{language_id}/slate.pdf",
+    response_class=Response,
+    responses={
+        **problem_responses(404),
+        200: {"description": "The slate", "content": {"application/pdf": {}}},
+    },
+)
+def get_slate_as_pdf(
+    language_id: str, studio: CurrentStudio, revision: Revision = None
+) -> Response:
+    """Send a language as one printable page, with its fonts inside."""
+    state = studio.languages.get(language_id, revision)
+    content = to_pdf(lay_out(studio.language(state)))
+    return _file(content, "application/pdf", f"{state.revision.name}.pdf")
+
+
+def _file(content: bytes, media_type: str, name: str) -> Response:
+    # Never shown in the page's own origin: a label is a stranger's text.
+    disposition = f"attachment; filename*=utf-8''{quote(name, safe='')}"
+    return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})

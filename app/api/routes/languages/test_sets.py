@@ -1,0 +1,103 @@
+"""Routes of a language's test set: labelled takes, recognised again after every change."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from fastapi import APIRouter, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.http.connection import while_connected
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
+from app.api.jobs.job import JobCancelled
+from app.api.jobs.test_run import TestRunJob
+from app.api.middleware.shutdown import stopping
+from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.test_sets import (
+    add_labelled,
+    list_waiting,
+    recognize_labelled,
+    view_test_set,
+)
+from app.store import LanguageState
+
+router = APIRouter(prefix="/languages/{language_id}/test-set", tags=["languages"])
+
+
+@router.get("", responses=problem_responses(404))
+def get_test_set(language_id: str, studio: CurrentStudio) -> TestSetView:
+    """Return the labelled takes of a language, how each is recognised, and the rates."""
+    return view_test_set(studio, studio.languages.get(language_id))
+
+
+@router.post("", status_code=201, responses=problem_responses(404, 409))
+def add_labelled_takes(
+    language_id: str, draft: LabelledTakesDraft, studio: CurrentStudio
+) -> TestSetView:
+    """Add takes with the gesture that each shows; `POST .../run` recognises them."""
+    state = studio.languages.get(language_id)
+    add_labelled(studio, language_id, draft.takes)
+    return _changed(studio, state)
+
+
+@router.post("/run", responses=problem_responses(404, 409))
+async def run_test_set(request: Request, language_id: str, studio: CurrentStudio) -> TestSetView:
+    """Recognise the takes that the newest revision has not recognised yet.
+
+    Its progress comes as `tests` among the events; `DELETE` cancels it, which is answered here by
+    409, and keeps what is done.
+    """
+    state = await run_in_threadpool(studio.languages.get, language_id)
+    takes = await run_in_threadpool(list_waiting, studio, state)
+    job = TestRunJob(
+        language_id,
+        state.revision.revision,
+        takes,
+        partial(recognize_labelled, studio, state),
+    )
+    try:
+        await while_connected(request, studio.runner.run(job))
+    except JobCancelled as error:
+        raise _refusal(studio) from error
+    return await run_in_threadpool(_changed, studio, state)
+
+
+@router.delete("/run", status_code=204, responses=problem_responses(404))
+async def cancel_test_run(language_id: str, studio: CurrentStudio) -> Response:
+    """Cancel the run of the newest revision, for all who wait for it."""
+    state = await run_in_threadpool(studio.languages.get, language_id)
+    key = TestRunJob(language_id, state.revision.revision, [], lambda _: None).key
+    await studio.runner.cancel(key)
+    return Response(status_code=204)
+
+
+@router.patch("/{take_id}", responses=problem_responses(404))
+def label_take(
+    language_id: str, take_id: str, change: LabelledTakeChange, studio: CurrentStudio
+) -> TestSetView:
+    """Give a take another label."""
+    state = studio.languages.get(language_id)
+    studio.labelled.label(language_id, take_id, change.expected)
+    return _changed(studio, state)
+
+
+@router.delete("/{take_id}", responses=problem_responses(404))
+def remove_labelled_take(language_id: str, take_id: str, studio: CurrentStudio) -> TestSetView:
+    """Take a take out of the test set; its clip stays."""
+    state = studio.languages.get(language_id)
+    studio.labelled.remove(language_id, take_id)
+    return _changed(studio, state)
+
+
+def _changed(studio: Studio, state: LanguageState) -> TestSetView:
+    """Tell the open pages, and return the test set."""
+    studio.broadcast.publish("test-sets", id=state.record.id)
+    return view_test_set(studio, state)
+
+
+def _refusal(studio: Studio) -> ProblemError:
+    if studio.stopping.is_set():
+        return stopping()
+    detail = "the test run was cancelled; what is done is kept, start it again for the rest"
+    return ProblemError(409, "test_run_cancelled", detail)

@@ -1,0 +1,1 @@
+"""Routers of the samples that come with the program."""

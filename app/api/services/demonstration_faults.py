@@ -1,0 +1,39 @@
+"""Demonstration faults: salutes and rests inside a demonstration, and strokes cut short."""
+
+from __future__ import annotations
+
+from app.api.services.salute_ranges import Outline, count_salutes, outline_of
+from app.api.services.studio import Studio
+
+CUT_SHARE = 0.2
+"""Share of a stroke that is missing when a demonstration counts as cut short: what is left is
+another gesture, as in `counterfactual_candidates.LEAST_KEPT`."""
+
+REST_SHARE = 1 / 3
+"""Share of a demonstration that is rest before and after the movement when it counts as a fault: a
+third more duration is beyond what divers differ by in tempo."""
+
+LEAST_REST = 0.5
+"""Seconds of rest that count; a hand stops for less between two strokes."""
+
+
+def describe_fault(studio: Studio, clip_id: str, start: float, end: float) -> str | None:
+    """Return what is wrong with a range as a demonstration, as a clause; None: nothing known."""
+    outline = outline_of(studio, clip_id)
+    return None if outline is None else fault_in(outline, start, end)
+
+
+def fault_in(outline: Outline, start: float, end: float) -> str | None:
+    """Return the fault of a range of a clip with these parts, see `describe_fault`."""
+    if salutes := count_salutes(outline.salutes, start, end):
+        contained = "a Vulcan salute" if salutes == 1 else f"{salutes} Vulcan salutes"
+        whole = start <= outline.start + LEAST_REST and end >= outline.end - LEAST_REST
+        return f"is the whole clip, with {contained}" if whole else f"contains {contained}"
+    for first, last in outline.strokes:
+        kept = min(end, last) - max(start, first)
+        if 0 < kept < (1 - CUT_SHARE) * (last - first):
+            return f"is cut short: it keeps {kept:.1f} of {last - first:.1f} s of the stroke"
+    rest = max(0.0, outline.moving[0] - start) + max(0.0, end - outline.moving[1])
+    if rest >= max(LEAST_REST, REST_SHARE * (end - start)):
+        return f"contains {rest:.1f} s of rest before and after the gesture"
+    return None

@@ -1,0 +1,186 @@
+"""Test sets: which takes they have, how each is recognised, and what that amounts to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from app.api.http.problems import ProblemError, problem_of
+from app.api.http.schemas.test_sets import (
+    GestureRateView,
+    LabelledResultView,
+    LabelledTakeDraft,
+    LabelledTakeView,
+    RateView,
+    TestSetView,
+)
+from app.api.services.clip_ranges import demonstration_in
+from app.api.services.demonstration_sources import sources_in
+from app.api.services.stored_recognitions import recognize_range
+from app.api.services.studio import Studio
+from app.evaluation.proportion import Share
+from app.recognition import OsgError
+from app.recognition.recording.segmentation import takes_in
+from app.store import (
+    LabelledResult,
+    LabelledTake,
+    LanguageState,
+    StoreError,
+    TestedTake,
+    TestSetFull,
+)
+
+SAME_TAKE = 0.5
+"""Share of a take that a demonstration covers when the take is that demonstration."""
+
+
+def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft]) -> None:
+    """Add takes to the test set of a language.
+
+    Raises
+    ------
+    NotFound
+        When there is no such clip.
+    ProblemError
+        409 while a clip's poses are not extracted or when the set is full, 422 for an empty range.
+
+    """
+    takes = [
+        LabelledTake(
+            language_id=language_id,
+            clip_id=draft.clip_id,
+            start=start,
+            end=end,
+            expected=draft.expected,
+        )
+        for draft in drafts
+        for start, end in _ranges(studio, draft)
+    ]
+    try:
+        studio.labelled.add(takes)
+    except TestSetFull as error:
+        raise ProblemError(409, "test_set_full", str(error)) from error
+
+
+def recognize_labelled(studio: Studio, state: LanguageState, take: LabelledTake) -> None:
+    """Recognise a take by a revision and keep the result, also that it cannot be recognised."""
+    result = LabelledResult(take_id=take.id, revision=state.revision.revision)
+    try:
+        record = recognize_range(
+            studio, state, take.clip_id, take.start, take.end, expected=take.expected
+        )
+    except (OsgError, ProblemError, StoreError) as error:
+        result.fault = problem_of(error).detail
+    else:
+        answer: dict[str, Any] = record.answer
+        result.recognition_id = record.record.id
+        result.label, result.nearest = answer["label"], answer["nearest"]
+        result.confidence = answer["confidence"]
+    studio.labelled.keep(result, take.expected)
+
+
+def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:
+    """Return the takes that the revision has not recognised yet."""
+    revision = state.revision.revision
+    return [
+        tested.take
+        for tested in studio.labelled.of(state.record.id)
+        if all(result.revision != revision for result in tested.results)
+    ]
+
+
+def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
+    """Return the test set of a language, as of its newest revision."""
+    shown = _Demonstrations(studio, state)
+    takes = [_view(tested, shown) for tested in studio.labelled.of(state.record.id)]
+    counted = [
+        (take, take.result) for take in takes if take.result is not None and not take.demonstration
+    ]
+    labels = dict.fromkeys(take.expected for take, _ in counted)
+    gestures = [
+        GestureRateView(
+            label=label,
+            **_rate([result for take, result in counted if take.expected == label]),
+        )
+        for label in labels
+    ]
+    compared = [(take, result, take.before) for take, result in counted if take.before is not None]
+    return TestSetView(
+        language_id=state.record.id,
+        revision=state.revision.revision,
+        takes=takes,
+        overall=RateView(**_rate([result for _, result in counted])),
+        gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
+        better=[take.id for take, now, before in compared if now.right and not before.right],
+        worse=[take.id for take, now, before in compared if before.right and not now.right],
+        waiting=sum(
+            take.result is None or take.result.revision != state.revision.revision for take in takes
+        ),
+    )
+
+
+def _ranges(studio: Studio, draft: LabelledTakeDraft) -> Iterator[tuple[float, float]]:
+    """Yield start and end of what a draft means."""
+    recording = studio.recording(draft.clip_id)
+    if draft.start is None and draft.end is None:
+        takes = takes_in(recording)
+        yield from ((take.start, take.end) for take in takes)
+        if not takes:
+            yield float(recording.poses.time[0]), float(recording.poses.time[-1])
+        return
+    meant = demonstration_in(recording, draft.start, draft.end)
+    yield (
+        meant.start if draft.start is None else draft.start,
+        meant.end if draft.end is None else draft.end,
+    )
+
+
+def _rate(results: Sequence[LabelledResultView]) -> dict[str, Any]:
+    share = Share(sum(result.right for result in results), len(results))
+    low, high = share.interval() or (None, None)
+    return {
+        "right": share.correct,
+        "asked": share.asked,
+        "rate": share.value,
+        "low": low,
+        "high": high,
+    }
+
+
+class _Demonstrations:
+    """The ranges of clips that are demonstrations of a language."""
+
+    def __init__(self, studio: Studio, state: LanguageState) -> None:
+        sources = sources_in(studio, studio.language(state)).values()
+        self._ranges = [
+            (source.clip_id, source.start, source.end)
+            for row in sources
+            for source in row
+            if source is not None
+        ]
+
+    def have(self, take: LabelledTake) -> bool:
+        """Whether one of them covers most of a take."""
+        least = SAME_TAKE * (take.end - take.start)
+        return any(
+            clip_id == take.clip_id and min(take.end, end) - max(take.start, start) > least
+            for clip_id, start, end in self._ranges
+        )
+
+
+def _view(tested: TestedTake, shown: _Demonstrations) -> LabelledTakeView:
+    take = tested.take
+    results = [
+        LabelledResultView(
+            **result.model_dump(exclude={"take_id", "created"}),
+            right=result.label == take.expected,
+        )
+        for result in tested.results
+    ]
+    return LabelledTakeView(
+        **take.model_dump(exclude={"language_id", "created"}),
+        clip=tested.clip,
+        demonstration=shown.have(take),
+        result=results[0] if results else None,
+        before=results[1] if len(results) > 1 else None,
+    )

@@ -1,0 +1,124 @@
+"""Report of ``osg-studio recognize --json``: one JSON object, and its published JSON Schema."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from importlib import resources
+from itertools import zip_longest
+from typing import Annotated, Any, Final
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.recognition import Recognition, Take
+from app.recognition.explanation.explanation import Explanation
+from app.recognition.gestures.profile import ProfileName
+
+VERSION: Final = 1
+"""Version of the report; raised when a reader of this version could misunderstand one. New keys do
+not raise it."""
+
+SCHEMA_ID = f"urn:osg-studio:recognition-report:{VERSION}"
+SCHEMA_FILE = f"recognition-report-{VERSION}.schema.json"
+
+Number = Annotated[float | None, Field(description="null: it cannot be compared.")]
+Share = Annotated[float, Field(ge=0, le=1)]
+Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
+
+
+class _Entry(BaseModel):
+    """Base of the objects; programs that read a report ignore keys that they do not know."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class TakeEntry(_Entry):
+    """A take and its recognition. G gestures and V voters are in the order of their lists."""
+
+    start: Seconds
+    end: Seconds
+    closed: Annotated[bool, Field(description="Whether a salute ended it.")]
+    profile: ProfileName
+    label: Annotated[str | None, Field(description="The gesture; null where it was rejected.")]
+    nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]
+    confidence: Share
+    votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]
+    weights: Annotated[dict[str, float], Field(description="Per voter its normalised weight.")]
+    findings: Annotated[list[str], Field(description="Repairs of keypoints, as sentences.")]
+    fault: Annotated[
+        str | None, Field(description="Why the keypoints are too poor to judge; null: they are not")
+    ]
+    voters: list[str]
+    gestures: list[str]
+    distances: Annotated[
+        list[list[Number]], Field(description="V rows of G, each voter in its own unit.")
+    ]
+    scores: Annotated[list[Number], Field(description="G fused scores, smaller is more alike.")]
+    novelty: Annotated[list[Number], Field(description="G values; above 1 a take is rejected.")]
+    novelty_by_view: Annotated[
+        dict[str, list[Number]], Field(description="The same per group of cues.")
+    ]
+    facing: Annotated[
+        Number,
+        Field(description="Degrees by which the diver is turned to the own left; null: not known."),
+    ]
+    views: Annotated[
+        list[float],
+        Field(
+            description="G degrees by which the demonstrations were turned to be compared; empty "
+            "in profile paper."
+        ),
+    ]
+    explanation: Annotated[
+        dict[str, Any] | None,
+        Field(description="Why, and what would change it; only with --expected."),
+    ] = None
+
+
+class RecognitionReport(_Entry):
+    """What ``osg-studio recognize --json`` prints."""
+
+    clip: Annotated[str, Field(description="The file, as it was given.")]
+    language: Annotated[str, Field(description="The language's name.")]
+    profile: Annotated[ProfileName, Field(description="The set of voters.")]
+    takes: list[TakeEntry]
+
+
+def build_report(
+    clip: str,
+    language: str,
+    profile: str,
+    results: Sequence[tuple[Take, Recognition]],
+    explanations: Sequence[Explanation],
+) -> dict[str, Any]:
+    """Build the JSON object; `explanations` may be empty."""
+    return {
+        "clip": clip,
+        "language": language,
+        "profile": profile,
+        "takes": [
+            report_take(take, result, explanation)
+            for (take, result), explanation in zip_longest(results, explanations)
+        ],
+    }
+
+
+def report_take(
+    take: Take, result: Recognition, explanation: Explanation | None = None
+) -> dict[str, Any]:
+    """Build the JSON object of one recognised take."""
+    span = {"start": take.start, "end": take.end, "closed": take.closed}
+    explained = {} if explanation is None else {"explanation": explanation.to_dict()}
+    return span | result.to_dict() | explained
+
+
+def generate_schema() -> str:
+    """Generate the JSON Schema 2020-12 of the report, as text."""
+    schema = RecognitionReport.model_json_schema(mode="validation")
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
+    return json.dumps(head | schema, indent=2) + "\n"
+
+
+def read_schema() -> str:
+    """Read the JSON Schema that is checked in and shipped."""
+    return (resources.files("app.cli") / "schema" / SCHEMA_FILE).read_text("utf-8")

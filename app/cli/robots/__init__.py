@@ -1,0 +1,1 @@
+"""Commands for robots: the runtime, its events and stages, and ROS 2."""

@@ -1,0 +1,183 @@
+"""Store of test sets: labelled takes of each language, and how they were recognised."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import delete
+from sqlmodel import Session, col, select
+
+from app.store.database import Database
+from app.store.errors import NotFound, StoreError
+from app.store.models import Clip, LabelledResult, LabelledTake, RecognitionRecord
+
+MOST_TAKES = 500
+"""Takes of a language's test set: more would make every change of the language wait for minutes."""
+
+KEPT_RESULTS = 3
+"""Newest results kept of a take: the present one, the one before, and one more for an undo."""
+
+
+class TestSetFull(StoreError):
+    """Raised when a test set would have more than `MOST_TAKES` takes."""
+
+    __test__ = False
+
+
+@dataclass(frozen=True)
+class TestedTake:
+    """A take of a test set with its results, the newest revision first.
+
+    Attributes
+    ----------
+    take
+        The take.
+    clip
+        Name of its clip.
+    results
+        At most `KEPT_RESULTS`.
+
+    """
+
+    __test__ = False
+
+    take: LabelledTake
+    clip: str
+    results: tuple[LabelledResult, ...]
+
+
+class LabelledTakeStore:
+    """Keeps the test sets of languages in `database`; takes of deleted clips are hidden."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def add(self, takes: Sequence[LabelledTake]) -> list[LabelledTake]:
+        """Add takes of one language; one that is there gets the new label.
+
+        Raises
+        ------
+        TestSetFull
+            When there would be too many.
+
+        """
+        with self._database.writing() as session:
+            kept = [_put(session, take) for take in takes]
+            session.flush()
+            for language_id in {take.language_id for take in takes}:
+                query = select(LabelledTake.id).where(LabelledTake.language_id == language_id)
+                if len(session.exec(query).all()) > MOST_TAKES:
+                    raise TestSetFull(
+                        f"a test set has at most {MOST_TAKES} takes; remove some first"
+                    )
+        return kept
+
+    def label(self, language_id: str, take_id: str, expected: str) -> None:
+        """Give a take another label; its results were for the one before.
+
+        Raises
+        ------
+        NotFound
+            When the language's test set has no such take.
+
+        """
+        with self._database.writing() as session:
+            take = _load(session, language_id, take_id)
+            if take.expected != expected:
+                take.expected = expected
+                session.add(take)
+                _forget(session, take_id)
+
+    def remove(self, language_id: str, take_id: str) -> None:
+        """Remove a take and its results.
+
+        Raises
+        ------
+        NotFound
+            When the language's test set has no such take.
+
+        """
+        with self._database.writing() as session:
+            take = _load(session, language_id, take_id)
+            _forget(session, take_id)
+            session.delete(take)
+
+    def of(self, language_id: str) -> list[TestedTake]:
+        """Return the takes of a language's test set, by clip and moment."""
+        with self._database.reading() as session:
+            rows = session.exec(
+                select(LabelledTake, Clip.name)
+                .join(Clip)
+                .where(LabelledTake.language_id == language_id, col(Clip.deleted).is_(None))
+                .order_by(Clip.name, LabelledTake.clip_id, col(LabelledTake.start))
+            ).all()
+            found = session.exec(
+                select(LabelledResult)
+                .join(LabelledTake)
+                .where(LabelledTake.language_id == language_id)
+                .order_by(col(LabelledResult.revision).desc())
+            ).all()
+        results: dict[str, list[LabelledResult]] = defaultdict(list)
+        for result in found:
+            results[result.take_id].append(result)
+        return [TestedTake(take, name, tuple(results[take.id])) for take, name in rows]
+
+    def keep(self, result: LabelledResult, expected: str) -> bool:
+        """Keep a result, and drop old ones; False when the take is gone or has another label."""
+        with self._database.writing() as session:
+            take = session.get(LabelledTake, result.take_id)
+            if take is None or take.expected != expected:
+                return False
+            session.merge(result)
+            session.flush()
+            old = session.exec(
+                select(LabelledResult)
+                .where(LabelledResult.take_id == result.take_id)
+                .order_by(col(LabelledResult.revision).desc())
+                .offset(KEPT_RESULTS)
+            ).all()
+            for each in old:
+                _drop(session, each)
+        return True
+
+
+def _put(session: Session, take: LabelledTake) -> LabelledTake:
+    """Add a take, or label the one of the same range."""
+    there = session.exec(
+        select(LabelledTake).where(
+            LabelledTake.language_id == take.language_id,
+            LabelledTake.clip_id == take.clip_id,
+            LabelledTake.start == take.start,
+        )
+    ).first()
+    if there is None:
+        session.add(take)
+        return take
+    if there.expected != take.expected or there.end != take.end:
+        _forget(session, there.id)
+    there.expected, there.end = take.expected, take.end
+    session.add(there)
+    return there
+
+
+def _load(session: Session, language_id: str, take_id: str) -> LabelledTake:
+    take = session.get(LabelledTake, take_id)
+    if take is None or take.language_id != language_id:
+        raise NotFound(f"there is no take {take_id!r} in the test set of this language")
+    return take
+
+
+def _forget(session: Session, take_id: str) -> None:
+    for result in session.exec(select(LabelledResult).where(LabelledResult.take_id == take_id)):
+        _drop(session, result)
+
+
+def _drop(session: Session, result: LabelledResult) -> None:
+    """Remove a result, with the recognition that was made for it."""
+    session.delete(result)
+    if result.recognition_id is not None:
+        session.execute(
+            delete(RecognitionRecord).where(col(RecognitionRecord.id) == result.recognition_id)
+        )

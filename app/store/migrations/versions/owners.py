@@ -1,0 +1,37 @@
+"""Who added each clip, for quotas; and the audit log of changes."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0007"
+down_revision = "0006"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Add the column, empty for clips so far, and the table."""
+    op.add_column("clip", sa.Column("owner", sa.String(80), nullable=False, server_default=""))
+    op.create_index("ix_clip_owner", "clip", ["owner"])
+    op.create_table(
+        "audit_entry",
+        sa.Column("id", sa.Integer(), nullable=False),
+        sa.Column("time", sa.DateTime(), nullable=False),
+        sa.Column("name", sa.String(80), nullable=False),
+        sa.Column("role", sa.String(16), nullable=False),
+        sa.Column("address", sa.String(64), nullable=False),
+        sa.Column("method", sa.String(16), nullable=False),
+        sa.Column("path", sa.String(300), nullable=False),
+        sa.Column("status", sa.Integer(), nullable=False),
+        sa.Column("request_id", sa.String(64), nullable=False),
+        sa.PrimaryKeyConstraint("id"),
+    )
+    op.create_index("ix_audit_entry_name", "audit_entry", ["name"])
+
+
+def downgrade() -> None:
+    """Drop them."""
+    op.drop_table("audit_entry")
+    op.drop_index("ix_clip_owner", "clip")
+    with op.batch_alter_table("clip") as table:
+        table.drop_column("owner")

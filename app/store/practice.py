@@ -1,0 +1,61 @@
+"""Store of practice: what divers were asked to show, and how it was recognised."""
+
+from __future__ import annotations
+
+from sqlmodel import col, select
+
+from app.store.database import Database
+from app.store.errors import NotFound
+from app.store.models import PracticeTake
+
+MOST_TAKES = 5000
+"""Newest takes of a language that are counted: a hundred divers' acceptance."""
+
+
+class PracticeStore:
+    """Keeps takes of practice in `database`; those of clips that are gone for good go with them."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def keep(self, take: PracticeTake) -> PracticeTake:
+        """Keep a take; the same one, shown again to the same revision, takes its place."""
+        with self._database.writing() as session:
+            same = session.exec(
+                select(PracticeTake).where(
+                    PracticeTake.language_id == take.language_id,
+                    PracticeTake.revision == take.revision,
+                    PracticeTake.clip_id == take.clip_id,
+                    PracticeTake.start == take.start,
+                )
+            )
+            for each in same:
+                session.delete(each)
+            session.add(take)
+        return take
+
+    def remove(self, language_id: str, take_id: str) -> None:
+        """Remove a take.
+
+        Raises
+        ------
+        NotFound
+            When the language has no such take.
+
+        """
+        with self._database.writing() as session:
+            take = session.get(PracticeTake, take_id)
+            if take is None or take.language_id != language_id:
+                raise NotFound(f"there is no practice take {take_id!r} of this language")
+            session.delete(take)
+
+    def of(self, language_id: str) -> list[PracticeTake]:
+        """Return the takes of a language, the newest first."""
+        with self._database.reading() as session:
+            query = (
+                select(PracticeTake)
+                .where(PracticeTake.language_id == language_id)
+                .order_by(col(PracticeTake.created).desc())
+                .limit(MOST_TAKES)
+            )
+            return list(session.exec(query))

@@ -1,0 +1,104 @@
+"""Work for a client ends when the client leaves, in threads too."""
+
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable
+from urllib.parse import urlencode
+
+import httpx
+import pytest
+
+from app.api.routes.gestures import previews
+from app.api.routes.languages import pair_differences
+from app.api.services.studio import MOST_COMPUTATIONS
+from app.recognition.explanation.pair_difference import compare_pair
+from app.recognition.health.gesture_estimate import GestureEstimate
+from app.recognition.recognizer import Recognizer
+from tests.api.languages import LANGUAGES
+from tests.api.running import Running, until
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line
+
+
+@pytest.fixture
+def language(client: httpx.Client) -> str:
+    document = pool(circle=circle, line=line).to_json()
+    return str(client.post(f"{LANGUAGES}/import", content=document).json()["id"])
+
+
+def begin(server: Running, method: str, path: str, body: bytes = b"") -> socket.socket:
+    connection = socket.create_connection(("127.0.0.1", server.port))
+    head = f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
+    head += f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    connection.sendall(head.encode() + body)
+    return connection
+
+
+def test_a_preview_ends_when_its_client_leaves(
+    server: Running, client: httpx.Client, language: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    began, ended = threading.Event(), threading.Event()
+
+    def estimate(
+        _recognizer: Recognizer, _label: str, *, advance: Callable[[], None]
+    ) -> GestureEstimate | None:
+        began.set()
+        try:
+            while True:  # what takes minutes on a slow machine
+                advance()
+                time.sleep(0.01)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(previews, "estimate_gesture", estimate)
+    body = json.dumps({"label": "circle", "change": {}}).encode()
+    with begin(server, "POST", f"{LANGUAGES}/{language}/preview/health", body):
+        until(began.is_set)
+        assert not ended.is_set()
+    until(ended.is_set)
+    monkeypatch.undo()
+    again = client.post(f"{LANGUAGES}/{language}/preview/health", json=json.loads(body))
+    assert again.status_code == 200
+
+
+def test_a_pair_difference_ends_when_its_client_leaves(
+    server: Running, language: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    began, go_on, compared = threading.Event(), threading.Event(), []
+
+    def compare(recognizer: Recognizer, first: int, second: int) -> object:
+        compared.append((first, second))
+        began.set()
+        go_on.wait(60)
+        return compare_pair(recognizer, first, second)
+
+    monkeypatch.setattr(pair_differences, "compare_pair", compare)
+    query = urlencode({"one": "circle", "other": "line"})
+    with begin(server, "GET", f"{LANGUAGES}/{language}/contrast?{query}"):
+        until(began.is_set)
+        assert server.studio.computations._value < MOST_COMPUTATIONS
+    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
+    go_on.set()
+    time.sleep(0.3)
+    assert compared == [(0, 1)]
+
+
+def test_more_previews_than_places_wait_and_are_all_answered(
+    client: httpx.Client, language: str
+) -> None:
+    body = {"label": "circle", "change": {}}
+    statuses: list[int] = []
+
+    def ask() -> None:
+        with httpx.Client(base_url=client.base_url, timeout=60) as own:
+            answer = own.post(f"{LANGUAGES}/{language}/preview", json=body)
+            statuses.append(answer.status_code)
+
+    threads = [threading.Thread(target=ask) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert statuses == [200] * 6

@@ -1,0 +1,225 @@
+"""Named tokens: what each role may, quotas, log-out, and the audit log of changes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from pydantic import SecretStr
+
+from app.api.middleware.roles import READING, SAFE_METHODS, needed_role
+from app.server import create_app
+from app.settings import Settings
+from app.store import Role, TokenFile
+from tests.api.running import Running, assert_problem, running
+
+API = "/api/v1"
+LANGUAGES, CLIPS, UPLOADS = f"{API}/languages", f"{API}/clips", f"{API}/uploads"
+ADMIN = "correct-horse-battery"
+TUS = {"Tus-Resumable": "1.0.0"}
+
+
+@pytest.fixture
+def guarded(settings: Settings) -> Iterator[Running]:
+    """Return a server with one token of its settings; named ones come while it runs."""
+    with running(settings.model_copy(update={"token": SecretStr(ADMIN)})) as server:
+        yield server
+
+
+@pytest.fixture
+def tokens(settings: Settings) -> TokenFile:
+    return TokenFile(settings.tokens)
+
+
+def client_with(server: Running, token: str) -> httpx.Client:
+    headers = {"Authorization": f"Bearer {token}"}
+    return httpx.Client(base_url=server.address, headers=headers, timeout=60)
+
+
+def test_a_token_of_the_settings_administers(guarded: Running) -> None:
+    with client_with(guarded, ADMIN) as admin:
+        session = admin.get(f"{API}/session").json()
+        assert session == {"name": "admin", "role": "admin", "signed_in": False}
+        assert admin.post(LANGUAGES, json={"name": "pool"}).status_code == 201
+        assert admin.get(f"{API}/audit").status_code == 200
+        assert admin.get("/metrics").status_code == 200
+
+
+def test_a_reader_reads_and_is_told_why_it_may_not_change(
+    guarded: Running, tokens: TokenFile
+) -> None:
+    with client_with(guarded, tokens.add("Ada", Role.READ)) as reader:
+        assert reader.get(LANGUAGES).status_code == 200
+        refused = assert_problem(reader.post(LANGUAGES, json={"name": "x"}), 403, "role_required")
+        assert "'Ada' has the role read" in str(refused["detail"])
+        assert refused["role"] == "edit"
+        assert_problem(reader.delete(f"{CLIPS}/x"), 403, "role_required")
+        assert_problem(reader.get("/metrics"), 403, "role_required")
+        assert_problem(reader.get(f"{API}/audit"), 403, "role_required")
+        # What writes nothing that others see.
+        answer = reader.post(f"{LANGUAGES}/x/preview", json={"change": {}})
+        assert_problem(answer, 404, "not_found")
+
+
+def test_an_editor_edits_and_does_not_administer(guarded: Running, tokens: TokenFile) -> None:
+    with client_with(guarded, tokens.add("Bo", Role.EDIT)) as editor:
+        assert editor.post(LANGUAGES, json={"name": "pool"}).status_code == 201
+        assert_problem(editor.get(f"{API}/audit"), 403, "role_required")
+
+
+def test_a_token_that_is_withdrawn_lets_nobody_in(guarded: Running, tokens: TokenFile) -> None:
+    with client_with(guarded, tokens.add("Cy", Role.READ)) as client:
+        assert client.get(LANGUAGES).status_code == 200
+        tokens.remove("Cy")
+        assert_problem(client.get(LANGUAGES), 401, "token_required")
+
+
+def test_named_tokens_alone_guard_a_server(settings: Settings) -> None:
+    token = TokenFile(settings.tokens).add("Di", Role.ADMIN)
+    with running(settings) as server:
+        assert_problem(httpx.get(server.address + LANGUAGES), 401, "token_required")
+        with client_with(server, token) as admin:
+            assert admin.get(LANGUAGES).status_code == 200
+
+
+def test_a_damaged_file_of_tokens_lets_nobody_in(guarded: Running, settings: Settings) -> None:
+    settings.tokens.write_text('{"tokens": 1}')
+    with client_with(guarded, "no-token-of-anybody") as client:
+        assert_problem(client.get(LANGUAGES), 503, "store_unavailable")
+
+
+def test_a_browser_signs_in_and_out(guarded: Running, tokens: TokenFile) -> None:
+    secret = tokens.add("Eve", Role.EDIT)
+    with httpx.Client(base_url=guarded.address, timeout=60) as browser:
+        assert browser.get("/", params={"token": secret}).status_code == 303
+        session = browser.get(f"{API}/session").json()
+        assert session == {"name": "Eve", "role": "edit", "signed_in": True}
+        assert secret not in str(browser.cookies)
+        assert browser.delete(f"{API}/session").status_code == 204
+        assert_problem(browser.get(f"{API}/session"), 401, "token_required")
+
+
+def test_without_tokens_everybody_administers(client: httpx.Client) -> None:
+    assert client.get(f"{API}/session").json() == {
+        "name": "",
+        "role": "admin",
+        "signed_in": False,
+    }
+    assert client.get("/metrics").status_code == 200
+    assert client.get(f"{API}/audit").json() == []
+
+
+def test_changes_are_noted_by_name_and_refusals_are_not(
+    guarded: Running, tokens: TokenFile
+) -> None:
+    with client_with(guarded, tokens.add("Flo", Role.EDIT)) as editor:
+        made = editor.post(
+            LANGUAGES, json={"name": "pool"}, headers={"X-Request-ID": "from-flo"}
+        ).json()
+        place = f"{LANGUAGES}/{made['id']}"
+        assert editor.patch(place, json={"wrong": 1}).status_code == 422
+        assert editor.delete(place).status_code == 204
+        assert editor.get(LANGUAGES).status_code == 200
+    with client_with(guarded, tokens.add("Gus", Role.ADMIN)) as admin:
+        deleted, added = admin.get(f"{API}/audit").json()
+        assert (added["name"], added["role"], added["address"]) == ("Flo", "edit", "127.0.0.1")
+        assert (added["method"], added["path"], added["status"]) == ("POST", LANGUAGES, 201)
+        assert added["request_id"] == "from-flo"
+        assert (deleted["method"], deleted["path"]) == ("DELETE", place)
+        older = admin.get(f"{API}/audit", params={"before": deleted["id"]}).json()
+        assert older == [added]
+        assert admin.get(f"{API}/audit", params={"name": "Gus"}).json() == []
+        assert len(admin.get(f"{API}/audit", params={"limit": 1}).json()) == 1
+
+
+def test_an_upload_in_parts_is_noted_once(client: httpx.Client, small_clip: Path) -> None:
+    content = small_clip.read_bytes()
+    headers = TUS | {"Upload-Length": str(len(content))}
+    place = client.post(UPLOADS, headers=headers).headers["location"]
+    half = len(content) // 2
+    for start, part in ((0, content[:half]), (half, content[half:])):
+        headers = TUS | {
+            "Upload-Offset": str(start),
+            "Content-Type": "application/offset+octet-stream",
+        }
+        assert client.patch(place, content=part, headers=headers).status_code == 204
+    noted = [(each["method"], each["path"]) for each in client.get(f"{API}/audit").json()]
+    assert noted == [("PATCH", place), ("POST", UPLOADS)]
+
+
+def upload(client: httpx.Client, clip: Path) -> httpx.Response:
+    return client.post(CLIPS, files={"file": ("dive.mp4", clip.read_bytes())})
+
+
+def test_a_quota_of_clips_is_kept_and_deleting_makes_room(
+    guarded: Running, tokens: TokenFile, small_clip: Path
+) -> None:
+    with client_with(guarded, tokens.add("Hal", Role.EDIT, quota_clips=1)) as editor:
+        first = upload(editor, small_clip)
+        assert first.status_code == 202
+        refused = assert_problem(upload(editor, small_clip), 507, "quota_exceeded")
+        assert refused["used"] == {"clips": 1, "bytes": small_clip.stat().st_size}
+        assert refused["limit"] == 1
+        headers = TUS | {"Upload-Length": "10"}
+        assert_problem(editor.post(UPLOADS, headers=headers), 507, "quota_exceeded")
+        assert editor.delete(f"{CLIPS}/{first.json()['id']}").status_code == 204
+        assert upload(editor, small_clip).status_code == 202
+    with client_with(guarded, ADMIN) as admin:
+        assert upload(admin, small_clip).status_code == 202
+
+
+def test_a_quota_of_bytes_counts_what_is_kept_and_what_is_under_way(
+    guarded: Running, tokens: TokenFile, small_clip: Path
+) -> None:
+    size = small_clip.stat().st_size
+    secret = tokens.add("Ida", Role.EDIT, quota_bytes=2 * size + 10)
+    with client_with(guarded, secret) as editor:
+        too_large = TUS | {"Upload-Length": str(3 * size)}
+        assert_problem(editor.post(UPLOADS, headers=too_large), 413, "quota_exceeded")
+        assert upload(editor, small_clip).status_code == 202
+        headers = TUS | {"Upload-Length": str(size)}
+        begun = editor.post(UPLOADS, headers=headers)
+        assert begun.status_code == 201
+        refused = assert_problem(upload(editor, small_clip), 507, "quota_exceeded")
+        assert "delete clips" in str(refused["detail"])
+        assert len(editor.get(CLIPS).json()) == 1
+        editor.delete(begun.headers["location"], headers=TUS)
+        assert upload(editor, small_clip).status_code == 202
+
+
+def test_a_quota_of_the_settings_is_for_every_name(settings: Settings, small_clip: Path) -> None:
+    limited = settings.model_copy(update={"quota_clips": 1})
+    tokens = TokenFile(settings.tokens)
+    with running(limited) as server:
+        for name in ("Jo", "Kim"):
+            with client_with(server, tokens.add(name, Role.EDIT)) as editor:
+                assert upload(editor, small_clip).status_code == 202
+                assert_problem(upload(editor, small_clip), 507, "quota_exceeded")
+
+
+def test_every_operation_has_the_role_that_it_needs(settings: Settings) -> None:
+    needed = {
+        (method.upper(), path): needed_role(method.upper(), re.sub(r"\{.*?\}", "x", path))
+        for path, methods in create_app(settings).openapi()["paths"].items()
+        for method in methods
+    }
+    assert {path for (_, path), role in needed.items() if role is Role.ADMIN} == {"/api/v1/audit"}
+    reading = {
+        (method, path)
+        for (method, path), role in needed.items()
+        if role is Role.READ and method not in SAFE_METHODS
+    }
+    assert reading == {
+        ("POST", "/api/v1/recognitions"),
+        ("DELETE", "/api/v1/session"),
+        ("POST", "/api/v1/languages/{language_id}/preview"),
+        ("POST", "/api/v1/languages/{language_id}/preview/health"),
+        ("POST", "/api/v1/workspaces"),
+        ("PATCH", "/api/v1/workspaces/{workspace_id}"),
+        ("DELETE", "/api/v1/workspaces/{workspace_id}"),
+        ("PUT", "/api/v1/workspaces/{workspace_id}/view"),
+    }
+    assert not READING.fullmatch("/api/v1/languages/x/gestures")

@@ -1,0 +1,56 @@
+"""Practice over HTTP: what a diver is told, and the record that is evidence of acceptance."""
+
+from __future__ import annotations
+
+import httpx
+import pytest
+
+from app.api.services.studio import Studio
+from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import assert_problem
+
+
+@pytest.fixture
+def place(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+    add_gesture(client, language_id, circle_clip, "circle")
+    add_gesture(client, language_id, line_clip, "line")
+    return f"{LANGUAGES}/{language_id}/practice"
+
+
+def test_a_diver_is_told_what_to_change_and_has_a_record(
+    client: httpx.Client, studio: Studio, place: str, language_id: str
+) -> None:
+    assert client.get(place).json() == []
+    circle = add_recorded_clip(studio, recording_of("circle"), "circle.mp4")
+    line = add_recorded_clip(studio, recording_of("line"), "line.mp4")
+    right = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": circle})
+    assert right.status_code == 201
+    record = right.json()["record"]
+    assert (record["takes"], record["errors"], record["more"]) == (1, 0, 58)
+    assert not record["reached"]
+    wrong = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": line}).json()
+    assert (wrong["take"]["label"], wrong["take"]["right"]) == ("line", False)
+    assert wrong["lesson"]["words"]
+    assert "instead of 'circle'" in wrong["sentence"]
+    assert (wrong["record"]["errors"], wrong["record"]["more"]) == (1, 91)
+    # The same take again is no further evidence.
+    again = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": circle})
+    assert again.json()["record"]["takes"] == 2
+    (left,) = client.delete(f"{place}/{wrong['take']['id']}").json()
+    assert (left["takes"], left["errors"]) == (1, 0)
+    # Another revision is another language.
+    client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"}).raise_for_status()
+    (older,) = client.get(place).json()
+    assert (older["takes"], older["older"]) == (0, 1)
+
+
+def test_what_is_no_evidence_is_refused(
+    client: httpx.Client, studio: Studio, place: str, circle_clip: str
+) -> None:
+    shown = {"diver": "Ana", "expected": "circle", "clip_id": circle_clip}
+    assert_problem(client.post(place, json=shown), 409, "is_demonstration")
+    own = add_recorded_clip(studio, recording_of("circle"), "own.mp4")
+    unknown = {**shown, "clip_id": own, "expected": "wave"}
+    assert_problem(client.post(place, json=unknown), 404, "not_found")
+    assert_problem(client.delete(f"{place}/none"), 404, "not_found")

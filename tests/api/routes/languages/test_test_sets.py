@@ -1,0 +1,117 @@
+"""Test sets over HTTP: labelled takes, their results after every change, and their rates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx
+import pytest
+
+from app.api.services.studio import Studio
+from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import assert_problem
+
+
+@pytest.fixture
+def place(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+    """Return the address of the test set of a language with a circle and a line."""
+    add_gesture(client, language_id, circle_clip, "circle")
+    add_gesture(client, language_id, line_clip, "line")
+    return f"{LANGUAGES}/{language_id}/test-set"
+
+
+def labelled(client: httpx.Client, place: str, *takes: dict[str, Any]) -> httpx.Response:
+    return client.post(place, json={"takes": list(takes)})
+
+
+def run(client: httpx.Client, place: str) -> Any:
+    answer = client.post(f"{place}/run")
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_takes_are_recognised_and_demonstrations_do_not_count(
+    client: httpx.Client, studio: Studio, place: str, circle_clip: str
+) -> None:
+    other = add_recorded_clip(studio, recording_of("circle", "line"), "two.mp4")
+    added = labelled(
+        client,
+        place,
+        {"clip_id": other, "expected": "circle"},
+        {"clip_id": circle_clip, "expected": "circle"},
+    )
+    assert added.status_code == 201
+    assert added.json()["waiting"] == 3
+    assert added.json()["overall"]["rate"] is None
+    found = run(client, place)
+    assert found["waiting"] == 0
+    kinds = [
+        (take["clip"], take["demonstration"], take["result"]["right"]) for take in found["takes"]
+    ]
+    assert kinds == [("dive.mp4", True, True), ("two.mp4", False, True), ("two.mp4", False, False)]
+    assert (found["overall"]["right"], found["overall"]["asked"]) == (1, 2)
+    assert 0 < found["overall"]["low"] < 0.5 < found["overall"]["high"] < 1
+    (rate,) = found["gestures"]
+    assert (rate["label"], rate["right"], rate["asked"]) == ("circle", 1, 2)
+    recognition = found["takes"][2]["result"]["recognition_id"]
+    kept = client.get(f"/api/v1/recognitions/{recognition}").json()
+    assert (kept["label"], kept["expected"]) == ("line", "circle")
+
+
+def test_a_change_of_the_language_says_what_got_better_and_worse(
+    client: httpx.Client, studio: Studio, language_id: str, place: str
+) -> None:
+    backwards = add_recorded_clip(studio, recording_of("circle backwards"), "backwards.mp4")
+    labelled(client, place, {"clip_id": backwards, "expected": "circle"})
+    gestures = f"{LANGUAGES}/{language_id}/gestures"
+
+    def count_direction(position: str) -> None:
+        changed = client.patch(gestures, params={"label": "circle"}, json={"direction": position})
+        assert changed.status_code == 200
+
+    count_direction("off")
+    assert run(client, place)["overall"]["right"] == 1
+    count_direction("on")
+    assert client.get(place).json()["waiting"] == 1
+    stricter = run(client, place)
+    (take,) = stricter["takes"]
+    assert (stricter["better"], stricter["worse"]) == ([], [take["id"]])
+    assert (take["before"]["right"], take["result"]["right"]) == (True, False)
+    count_direction("off")
+    relaxed = run(client, place)
+    assert (relaxed["better"], relaxed["worse"]) == ([take["id"]], [])
+
+
+def test_a_take_gets_another_label_and_is_removed(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of("circle"), "own.mp4")
+    (take,) = labelled(client, place, {"clip_id": clip, "expected": "line"}).json()["takes"]
+    assert run(client, place)["overall"]["right"] == 0
+    changed = client.patch(f"{place}/{take['id']}", json={"expected": "circle"}).json()
+    assert changed["waiting"] == 1
+    assert run(client, place)["overall"]["right"] == 1
+    assert client.delete(f"{place}/{take['id']}").json()["takes"] == []
+    assert_problem(client.delete(f"{place}/{take['id']}"), 404, "not_found")
+    assert_problem(client.patch(f"{place}/none", json={"expected": "a"}), 404, "not_found")
+
+
+def test_a_take_that_cannot_be_recognised_says_why(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    still = add_recorded_clip(studio, recording_of(), "still.mp4")
+    labelled(client, place, {"clip_id": still, "expected": "circle"})
+    found = run(client, place)
+    (take,) = found["takes"]
+    assert take["result"]["fault"]
+    assert take["result"]["recognition_id"] is None
+    assert (found["overall"]["right"], found["overall"]["asked"], found["waiting"]) == (0, 1, 0)
+
+
+def test_a_run_without_takes_or_of_nothing_new_does_nothing(
+    client: httpx.Client, place: str
+) -> None:
+    assert run(client, place)["takes"] == []
+    assert client.delete(f"{place}/run").status_code == 204
+    assert_problem(client.post(f"{LANGUAGES}/none/test-set/run"), 404, "not_found")

@@ -1,0 +1,56 @@
+"""The report of ``recognize --json``: what is printed fits the schema that is published."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from app.cli.recognition_report import (
+    SCHEMA_FILE,
+    RecognitionReport,
+    generate_schema,
+    read_schema,
+)
+from tests.command_line import OsgStudio
+from tests.conftest import ROOT
+from tests.shortened import shortened
+
+LANGUAGE = ROOT / "languages" / "osg-table-2.json"
+
+
+def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
+    assert read_schema() == generate_schema(), (
+        f"write generate_schema() to app/cli/schema/{SCHEMA_FILE}; a change that refuses reports "
+        "that were written before needs a new version"
+    )
+
+
+def test_the_schema_is_one() -> None:
+    jsonschema.Draft202012Validator.check_schema(json.loads(read_schema()))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("clip", "options"),
+    [
+        ("line-test-1.mp4", []),
+        ("line-test-1.mp4", ["--profile", "paper"]),
+        ("line-test-1.mp4", ["--expected", "circle"]),
+        ("ordinary-movement.mp4", ["--without-salutes"]),
+    ],
+)
+def test_real_reports_fit_the_schema_and_have_no_key_beside_it(
+    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path, clip: str, options: list[str]
+) -> None:
+    file = sample_clips / clip
+    if clip.startswith("ordinary"):
+        file = shortened(file, tmp_path / clip, 1.5)
+    ended = osg_studio("recognize", file, "--language", LANGUAGE, "--json", *options)
+    report = json.loads(ended.out)
+    jsonschema.validate(report, json.loads(read_schema()))
+    assert report["takes"] or options == ["--without-salutes"]
+    read = RecognitionReport.model_validate(report)
+    assert read.model_extra == {}
+    assert all(take.model_extra == {} for take in read.takes)
+    assert all((take.explanation is not None) is ("--expected" in options) for take in read.takes)

@@ -1,0 +1,152 @@
+"""Test sets: labelled takes of a language, their results, and those of older versions."""
+
+from pathlib import Path
+
+import pytest
+from alembic import command
+from alembic.config import Config
+
+from app.store import (
+    ClipStore,
+    Database,
+    LabelledResult,
+    LabelledTake,
+    LabelledTakeStore,
+    LanguageStore,
+    NotFound,
+    RecognitionRecord,
+    RecognitionStore,
+    TestSetFull,
+)
+from app.store.database import MIGRATIONS
+from app.store.labelled_takes import KEPT_RESULTS
+from tests.store.conftest import add_clip
+from tests.store.test_languages import draft
+
+
+@pytest.fixture
+def store(database: Database) -> LabelledTakeStore:
+    return LabelledTakeStore(database)
+
+
+@pytest.fixture
+def take(clips: ClipStore, languages: LanguageStore) -> LabelledTake:
+    clip, language = add_clip(clips).clip.id, languages.create(draft()).record.id
+    return LabelledTake(language_id=language, clip_id=clip, start=0.5, end=2.5, expected="circle")
+
+
+def again(take: LabelledTake, **changes: object) -> LabelledTake:
+    """Return a further draft of the same range."""
+    return LabelledTake(**(take.model_dump(exclude={"id", "created"}) | changes))
+
+
+def test_a_range_is_in_the_set_once_with_its_newest_label(
+    store: LabelledTakeStore, take: LabelledTake
+) -> None:
+    (kept,) = store.add([take])
+    store.keep(LabelledResult(take_id=kept.id, revision=1, label="circle"), "circle")
+    (relabelled,) = store.add([again(take, expected="line")])
+    (tested,) = store.of(take.language_id)
+    assert relabelled.id == kept.id == tested.take.id
+    assert (tested.clip, tested.take.expected, tested.results) == ("dive.mp4", "line", ())
+
+
+def test_results_are_kept_newest_first_and_only_the_newest(
+    store: LabelledTakeStore, database: Database, take: LabelledTake
+) -> None:
+    (kept,) = store.add([take])
+    recognitions = RecognitionStore(database)
+    for revision in range(1, KEPT_RESULTS + 3):
+        record = recognitions.add(
+            RecognitionRecord(
+                clip_id=take.clip_id,
+                language_id=take.language_id,
+                revision=revision,
+                start=0.5,
+                end=2.5,
+                profile="full",
+                expected="circle",
+                result="{}",
+            )
+        )
+        result = LabelledResult(take_id=kept.id, revision=revision, recognition_id=record.id)
+        assert store.keep(result, "circle")
+    (tested,) = store.of(take.language_id)
+    newest = [result.revision for result in tested.results]
+    assert newest == [KEPT_RESULTS + 2, KEPT_RESULTS + 1, KEPT_RESULTS]
+    assert len(recognitions.all(language_id=take.language_id, limit=99)) == KEPT_RESULTS
+
+
+def test_a_result_for_another_label_is_not_kept(
+    store: LabelledTakeStore, take: LabelledTake
+) -> None:
+    (kept,) = store.add([take])
+    store.label(take.language_id, kept.id, "line")
+    assert not store.keep(LabelledResult(take_id=kept.id, revision=1), "circle")
+    store.remove(take.language_id, kept.id)
+    assert not store.keep(LabelledResult(take_id=kept.id, revision=1), "line")
+    assert store.of(take.language_id) == []
+
+
+def test_a_take_of_another_language_is_not_found(
+    store: LabelledTakeStore, languages: LanguageStore, take: LabelledTake
+) -> None:
+    (kept,) = store.add([take])
+    other = languages.create(draft()).record.id
+    with pytest.raises(NotFound):
+        store.label(other, kept.id, "line")
+    with pytest.raises(NotFound):
+        store.remove(other, kept.id)
+
+
+def test_takes_of_deleted_clips_are_hidden_and_come_back(
+    store: LabelledTakeStore, clips: ClipStore, take: LabelledTake
+) -> None:
+    store.add([take])
+    clips.delete(take.clip_id)
+    assert store.of(take.language_id) == []
+    clips.restore(take.clip_id)
+    assert len(store.of(take.language_id)) == 1
+
+
+def test_a_set_that_is_full_takes_none_of_the_new_ones(
+    store: LabelledTakeStore, take: LabelledTake, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.store.labelled_takes.MOST_TAKES", 2)
+    store.add([take])
+    with pytest.raises(TestSetFull, match="at most 2"):
+        store.add([again(take, start=3.0), again(take, start=4.0)])
+    assert len(store.of(take.language_id)) == 1
+
+
+def test_the_recognitions_that_were_the_test_become_the_test_set(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    moment = "2026-01-01 00:00:0"
+    with database.engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, "0007")
+        connection.exec_driver_sql(
+            "INSERT INTO clip (id, name, media_type, size, width, height, topics, source, created) "
+            f"VALUES ('c', 'dive', 'video/mp4', 1, 64, 48, '[]', 'video', '{moment}0')"
+        )
+        connection.exec_driver_sql(
+            "INSERT INTO language (id, head, sample, created) VALUES ('l', 1, 0, ?)",
+            (f"{moment}0",),
+        )
+        rows = [
+            ("old", 1.0, "circle", "{}", 1),
+            ("new", 1.0, "line", "{}", 2),
+            ("on trial", 1.0, "wave", '{"trial": {}}', 3),
+            ("left out", 5.0, None, "{}", 4),
+            ("before it", 5.0, "circle", "{}", 3),
+        ]
+        for name, start, expected, result, second in rows:
+            connection.exec_driver_sql(
+                "INSERT INTO recognition VALUES (?, 'c', 'l', 1, ?, 2.0, 'full', ?, ?, ?)",
+                (name, start, expected, result, f"{moment}{second}"),
+            )
+        command.upgrade(config, "0008")
+        found = connection.exec_driver_sql("SELECT start, expected FROM labelled_take").all()
+    assert [tuple(row) for row in found] == [(1.0, "line")]
