@@ -1,8 +1,8 @@
 /** The rooms of the page, from the bottom: a room imports from those before it and from itself. */
-const ROOMS = ["core", "clips", "languages", "upload", "export", "studio"];
+const ROOMS = ["core", "clips", "languages", "upload", "export", "gestures", "studio"];
 
 /** Views that build on the rooms; they do not import each other. */
-const VIEWS = ["editor", "health", "live", "phrases"];
+const VIEWS = ["editor", "health", "live", "phrases", "practice"];
 
 const inside = (names) => `^static/js/(${names.join("|")})/`;
 

@@ -2,7 +2,7 @@ import js from "@eslint/js";
 import globals from "globals";
 
 export default [
-  { ignores: ["**/*.d.ts", "test-output/", "build/", "dist/", ".venv*/"] },
+  { ignores: ["htmlcov/", "**/*.d.ts", "test-output/", "build/", "dist/", ".venv*/"] },
   js.configs.recommended,
   {
     languageOptions: { ecmaVersion: 2024, sourceType: "module" },

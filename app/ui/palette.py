@@ -16,6 +16,7 @@ Rgb = tuple[int, int, int]
 
 _DECLARATION = re.compile(r"--([\w-]+):\s*([^;]+);")
 _LIGHT = "@media (prefers-color-scheme: light)"
+_SUN = ':root[data-look="sun"]'
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def read_tokens() -> str:
 @cache
 def load_palette() -> Palette:
     """Load the colours of both schemes; the light scheme inherits what it does not define."""
-    dark, _, light = read_tokens().partition(_LIGHT)
+    dark, _, light = read_tokens().partition(_SUN)[0].partition(_LIGHT)
     base = dict(_DECLARATION.findall(dark))
     return Palette(base, base | dict(_DECLARATION.findall(light)))
 

@@ -115,9 +115,18 @@ def _why(explanation: Explanation | None) -> str:
         else ""
     )
     return (
-        f"<section class='why' aria-label='Why'><p>{escape(explanation.sentence)}</p>{listed}"
+        f"<section class='why' aria-label='Why'><p>{escape(explanation.sentence)}</p>"
+        f"{_lesson(explanation)}{listed}"
         "</section>"
     )
+
+
+def _lesson(explanation: Explanation) -> str:
+    """Return what to show differently the next time."""
+    if (lesson := explanation.lesson) is None:
+        return ""
+    moment = "" if lesson.start is None else f" (from {lesson.start:.2f} s)"
+    return f"<p><b>Show it again:</b> in this take {escape(lesson.words)}{moment}.</p>"
 
 
 def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:

@@ -10,7 +10,9 @@ import { byId, icon } from "./core/dom.js";
 import { bindKeyList } from "./core/key-list.js";
 import { listenToKeys } from "./core/keys.js";
 import { drawConnection, followServer } from "./core/server-events.js";
+import { showSession } from "./core/session.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./core/state.js";
+import { bindSun } from "./core/sun.js";
 import { attempt, toast } from "./core/toasts.js";
 import { bindUndo } from "./core/undo.js";
 import { followViews, go, loadViews } from "./core/views.js";
@@ -18,8 +20,10 @@ import { bindExport, drawExportButton } from "./export/export-dialog.js";
 import { bindPicker, drawPicker } from "./languages/language-picker.js";
 import { reloadLanguages, reloadOneLanguage } from "./languages/language-store.js";
 import { drawTuning } from "./languages/language-tuning.js";
+import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
-import { drawGestures } from "./studio/gesture-cards.js";
+import { drawGestures } from "./gestures/gesture-cards.js";
+import { openGestureTable } from "./gestures/gesture-table.js";
 import { rememberFrame } from "./studio/playback.js";
 import {
   answerQuestion,
@@ -55,6 +59,7 @@ const VIEWS = [
   },
   { name: "phrases", title: "Phrases", load: () => import("./phrases/phrases-view.js") },
   { name: "health", title: "Health", load: () => import("./health/health-view.js") },
+  { name: "practice", title: "Practice", load: () => import("./practice/practice-view.js") },
   { name: "live", title: "Live", load: () => import("./live/live-view.js") },
 ];
 
@@ -64,6 +69,9 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
   follow(["clips", "jobs"], drawBatch);
+  follow(["clips"], ({ clips }) => {
+    byId("make-gestures").hidden = !clips.length;
+  });
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
@@ -134,10 +142,14 @@ async function start() {
   followViews(VIEWS);
   listenToKeys();
   byId("copy-link").append(icon("link"));
+  byId("sun").append(icon("sun"));
+  bindSun();
   byId("copy-link").onclick = copyLink;
   bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });
+  byId("make-gestures").onclick = openGestureTable;
   bindUndo();
+  showSession();
   acceptFiles();
   findClips();
   bindPicker();
@@ -157,6 +169,7 @@ async function start() {
     update({ clip: null, take: null, start: null, end: null, recognition: null });
   if (!state.clip && clips?.length) update({ clip: clips[0].id });
   loadWithSelection();
+  followTestSet();
   followServer({
     clips: reloadClip,
     languages: reloadOneLanguage,

@@ -43,11 +43,11 @@ class Screen:
         """Check that this frame's number, seconds and picture are shown."""
         expect(self.clock).to_have_text(re.compile(rf"frame {frame}\b"))
         until(lambda: number_on(self.picture.screenshot()) == frame)
-        shown, seconds = self.told()
+        shown, seconds = self.position()
         assert shown == frame
         assert seconds == pytest.approx(self.times[frame], abs=0.0051)
 
-    def told(self) -> tuple[int, float]:
+    def position(self) -> tuple[int, float]:
         """Read number and seconds off the clock."""
         text = self.clock.inner_text()
         (frame,) = re.findall(r"frame (\d+)", text)
@@ -65,7 +65,7 @@ class Screen:
         expect(self.clock).not_to_have_text(re.compile(rf"frame {at}\b"))
         page.keyboard.press("Space")
         expect(page.get_by_role("button", name="Pause", exact=True)).to_have_count(0)
-        self.shows(self.told()[0])
+        self.shows(self.position()[0])
 
 
 def drag_to(page: Page, share: float) -> None:
@@ -90,7 +90,7 @@ def test_number_and_seconds_are_those_of_the_picture_on_the_screen(
     expect(clock).to_have_text(re.compile(f"frame .* of {FRAMES}$"), timeout=EXTRACTION_MS)
     lab = page.frame_locator("#lab")
     scene = Screen(lab.locator("canvas[data-engine]"), clock, times)
-    scene.steps_and_plays(page, scene.told()[0])
+    scene.steps_and_plays(page, scene.position()[0])
     for frame in (0, 7, FRAMES - 1):
         drag_to(page, times[frame] / times[-1])
         scene.shows(frame)
@@ -100,8 +100,8 @@ def test_number_and_seconds_are_those_of_the_picture_on_the_screen(
     # The editor's pictures are decoded by the browser, which has a clock of its own.
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_role("button", name="Save into the sample").click()
-    told = page.locator(".take-panel .scrub output")
-    video = Screen(page.locator(".take-panel .figure"), told, times)
+    output = page.locator(".take-panel .scrub output")
+    video = Screen(page.locator(".take-panel .figure"), output, times)
     video.shows(0)
     page.get_by_label("Start frame").fill("5")
     page.get_by_role("heading", name="New gesture").click()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -106,14 +107,14 @@ def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Libr
     eight = next(each["id"] for each in listed if each["name"] == "Table 2: eight signs")
     copy = client.post(f"/api/v1/languages/{eight}/duplicate").json()["id"]
     page = open_page({"view": "health", "language": copy}, scene=False)
-    told = page.get_by_text(re.compile(r"Simulating trials of every gesture, \d+ of \d+"))
+    progress = page.get_by_text(re.compile(r"Simulating trials of every gesture, \d+ of \d+"))
     cancelled = page.get_by_text("The check was cancelled")
-    expect(told).to_be_visible()
+    expect(progress).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
     expect(cancelled).to_be_visible()
     page.get_by_role("button", name="Check again").click()
     expect(cancelled).to_have_count(0)
-    expect(told).to_be_visible()
+    expect(progress).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
     expect(cancelled).to_be_visible()
 
@@ -159,7 +160,9 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
     with httpx.Client(base_url=server.address, timeout=60) as client:
         library = library_of(server, client, "test set")
         add_clip(server, "circle", name="circle-other.mp4")
-        library.recognise("circle")  # of the demonstration itself
+        test_set = f"/api/v1/languages/{library.language}/test-set"
+        demonstration = {"clip_id": library.clip, "expected": "circle"}
+        client.post(test_set, json={"takes": [demonstration]}).raise_for_status()
         page = open_page(health_of(library), scene=False)
         page.get_by_role("button", name="Test with clips").click()
         expect(page.get_by_role("heading", name="Test with clips")).to_be_in_viewport()
@@ -178,6 +181,28 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
         page.get_by_label("What circle-other.mp4 shows").select_option("line")
         wrong = page.get_by_role("gridcell", name="1 take of line read as circle")
         expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
+
+
+def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
+    open_page: OpenPage, server: Running
+) -> None:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        library = library_of(server, client, "changed")
+        gesture = f"/api/v1/languages/{library.language}/gestures?label=circle"
+        client.patch(gesture, json={"direction": "off"}).raise_for_status()
+        clip = add_clip(server, "circle backwards", name="other way.mp4")
+        tested = replace(library, clip=clip)
+        query = {**tested.address, "recognition": tested.recognise("circle")}
+        page = open_page(query, scene=False)
+        page.get_by_role("button", name="Keep as a test").click()
+        expect(page.get_by_text("In the test set")).to_be_visible()
+        client.patch(gesture, json={"direction": "on"}).raise_for_status()
+        expect(page.get_by_text("1 take worse since the revision before")).to_be_visible()
+        page.get_by_role("button", name="Show", exact=True).last.click()
+        section = page.get_by_role("region", name="Test with clips")
+        expect(section).to_contain_text("since the revision before: 1 take worse")
+        expect(section.get_by_role("row").filter(has_text="other way.mp4")).to_contain_text("worse")
+        assert faults(page) == []
 
 
 def test_a_dropped_clip_is_labelled_by_its_name(

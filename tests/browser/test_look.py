@@ -72,7 +72,7 @@ def test_every_control_has_a_name_and_shows_the_focus(
     )
     assert nameless == []
     seen = set()
-    for _ in range(14):
+    for _ in range(20):
         page.keyboard.press("Tab")
         focused = page.evaluate(
             """() => {

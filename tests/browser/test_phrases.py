@@ -107,16 +107,16 @@ def test_an_ambiguity_is_told_at_once_and_can_be_tried(
     page = open_page(query, scene=False)
     expect(page.get_by_text("Nothing ambiguous")).to_be_visible()
     page.get_by_label("Ends with").select_option("")
-    told = page.get_by_role("list", name="Ambiguities")
-    expect(told).to_contain_text("the message is complete, but may continue")
+    ambiguities = page.get_by_role("list", name="Ambiguities")
+    expect(ambiguities).to_contain_text("the message is complete, but may continue")
     expect(page.get_by_text("4 ambiguities")).to_be_visible()
     assert faults(page) == []
-    told.get_by_role("button", name="Try: circle, square").first.click()
+    ambiguities.get_by_role("button", name="Try: circle, square").first.click()
     expect(page.get_by_text("The message may be over")).to_be_visible()
     page.get_by_role("button", name="Pause too long").click()
     expect(page.locator("#said")).to_have_text("mission: align yourself")
     page.get_by_label("Ends with").select_option("circle")
-    expect(told).to_have_count(0)
+    expect(ambiguities).to_have_count(0)
 
 
 def test_parts_are_moved_made_optional_and_taken_out(open_page: OpenPage, library: Library) -> None:

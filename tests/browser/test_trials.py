@@ -76,8 +76,8 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
     page = opened_at_a_mistake(open_page, server, library)
     trial = try_out(page, WEIGHT)
     trial.get_by_role("button", name="Keep").click()
-    told = page.locator("#tuning")
-    expect(told).to_contain_text(f"Recognised by the profile paper, {WEIGHT}")
+    tuning = page.locator("#tuning")
+    expect(tuning).to_contain_text(f"Recognised by the profile paper, {WEIGHT}")
     expect(trial).to_have_count(0)
     outcome = page.locator("#outcome")
     expect(outcome).to_contain_text(
@@ -94,15 +94,15 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
 
     tuned = outcome.inner_text()
     page.keyboard.press("Control+z")
-    expect(told).to_be_hidden()
+    expect(tuning).to_be_hidden()
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(outcome).not_to_have_text(tuned)
     page.keyboard.press("Control+Shift+Z")
-    expect(told).to_be_visible()
-    told.get_by_role("button", name="As the profile full does").click()
-    expect(told).to_be_hidden()
+    expect(tuning).to_be_visible()
+    tuning.get_by_role("button", name="As the profile full does").click()
+    expect(tuning).to_be_hidden()
     page.keyboard.press("Control+z")
-    expect(told).to_contain_text(WEIGHT)
+    expect(tuning).to_contain_text(WEIGHT)
 
 
 def revision_of(library: Library) -> int:

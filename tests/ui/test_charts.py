@@ -96,8 +96,8 @@ def test_the_vote_table_has_a_row_per_voter_and_the_largest_weight_comes_first()
 
 
 def test_voters_of_weight_zero_come_last_and_do_not_count() -> None:
-    told = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
-    table = Elements(charts.vote_table(told, None))
+    voted = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
+    table = Elements(charts.vote_table(voted, None))
     assert [row[:2] for row in table.rows[1:]] == [
         ["solidity", "70 %"],
         ["aspect ratio", "30 %"],

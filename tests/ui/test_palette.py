@@ -28,6 +28,12 @@ def test_the_light_scheme_inherits_what_it_does_not_define() -> None:
     assert palette.light["ink"] != palette.dark["ink"]
 
 
+def test_the_look_for_sunlight_is_no_scheme_of_the_workspace() -> None:
+    palette = load_palette()
+    assert palette.light["bg"] == "#f3f6f9"
+    assert "#7a2e00" not in palette.light.values()
+
+
 def test_the_panels_have_no_colour_of_their_own() -> None:
     known = {*load_palette().dark.values(), *load_palette().light.values()}
     assert set(re.findall(r"#[0-9a-f]{3,8}\b", PANEL_STYLE)) <= known

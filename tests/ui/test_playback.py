@@ -114,6 +114,7 @@ def test_another_recording_stops_the_last_one(playback: Playback) -> None:
     assert playback.frame == 1
 
 
+@pytest.mark.slow
 def test_a_loop_stays_in_the_range_on_display(playback: Playback, screen: Screen) -> None:
     playback.load([second / 100 for second in range(30)], frame=12, span=(10, 14))
     playback.play(16)

@@ -1,6 +1,6 @@
 // Salutes along a clip: runs of frames whose salute score is above the threshold.
 
-import { plural } from "./format.js";
+import { plural } from "../core/format.js";
 import { SALUTE } from "./salute-threshold.js";
 
 const HOLD = 0.3; // s that a salute is held at least: `HOLD_SECONDS` in recording/salute.py.

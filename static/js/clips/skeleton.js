@@ -1,6 +1,6 @@
 // The skeleton over a picture: bones as lines, landmarks as dots.
 
-import { svg } from "./dom.js";
+import { svg } from "../core/dom.js";
 
 /**
  * Pairs of landmarks joined by a bone: `SKELETON` in poses/landmarks.py of the core, as positions

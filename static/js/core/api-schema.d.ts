@@ -28,6 +28,48 @@ export interface components {
             message: string;
         };
         /**
+         * AuditView
+         * @description One change.
+         */
+        AuditView: {
+            /** Id */
+            id: number;
+            /**
+             * Time
+             * Format: date-time
+             */
+            time: string;
+            /**
+             * Name
+             * @description Of the token; empty where the server needs none
+             */
+            name: string;
+            /** Role */
+            role: string;
+            /**
+             * Address
+             * @description Of the client, or as a trusted proxy says
+             */
+            address: string;
+            /** Method */
+            method: string;
+            /**
+             * Path
+             * @description What was changed
+             */
+            path: string;
+            /**
+             * Status
+             * @description What was answered
+             */
+            status: number;
+            /**
+             * Request Id
+             * @description The same as in the log
+             */
+            request_id: string;
+        };
+        /**
          * ClipAccepted
          * @description A clip was stored; its poses are extracted by the job.
          */
@@ -281,8 +323,15 @@ export interface components {
                 [key: string]: unknown;
             }[];
             /**
+             * Lesson
+             * @description The difference to avoid when it is shown again; null: none known
+             */
+            lesson?: {
+                [key: string]: unknown;
+            } | null;
+            /**
              * Counterfactuals
-             * @description Verified, the smallest first
+             * @description Verified; by none does a gesture of the language lose a take. What teaches most comes first, weights and a replaced demonstration last
              */
             counterfactuals: {
                 [key: string]: unknown;
@@ -466,6 +515,24 @@ export interface components {
             } | null;
         };
         /**
+         * GestureRateView
+         * @description Rate of one gesture.
+         */
+        GestureRateView: {
+            /** Right */
+            right: number;
+            /** Asked */
+            asked: number;
+            /** Rate */
+            rate: number | null;
+            /** Low */
+            low: number | null;
+            /** High */
+            high: number | null;
+            /** Label */
+            label: string;
+        };
+        /**
          * GestureTrial
          * @description A changed gesture to recognise with, on a copy of the language.
          */
@@ -521,6 +588,14 @@ export interface components {
              * @description All of them; what is said of the gesture itself is the first one's
              */
             demonstrations: components["schemas"]["DemonstrationView"][];
+        };
+        /**
+         * GesturesDraft
+         * @description Several gestures to save from clips, in one revision.
+         */
+        GesturesDraft: {
+            /** Gestures */
+            gestures: components["schemas"]["GestureDraft"][];
         };
         /**
          * GesturesEntry
@@ -716,6 +791,98 @@ export interface components {
             proposed: boolean;
         };
         /**
+         * LabelledResultView
+         * @description How a revision recognises a labelled take.
+         */
+        LabelledResultView: {
+            /** Revision */
+            revision: number;
+            /**
+             * Recognition Id
+             * @description Null: it could not be recognised, see `fault`
+             */
+            recognition_id: string | null;
+            /**
+             * Label
+             * @description Null: rejected
+             */
+            label: string | null;
+            /** Nearest */
+            nearest: string | null;
+            /** Confidence */
+            confidence: number;
+            /** Right */
+            right: boolean;
+            /**
+             * Fault
+             * @description Why it could not be recognised, in words
+             */
+            fault: string | null;
+        };
+        /**
+         * LabelledTakeChange
+         * @description Another label for a take.
+         */
+        LabelledTakeChange: {
+            /** Expected */
+            expected: string;
+        };
+        /**
+         * LabelledTakeDraft
+         * @description A clip, or a range of it, with the gesture that it shows.
+         */
+        LabelledTakeDraft: {
+            /** Clip Id */
+            clip_id: string;
+            /** Expected */
+            expected: string;
+            /**
+             * Start
+             * @description Null, with `end`: every take of the clip, or all of it
+             */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+        };
+        /**
+         * LabelledTakeView
+         * @description A take of a test set.
+         */
+        LabelledTakeView: {
+            /** Id */
+            id: string;
+            /** Clip Id */
+            clip_id: string;
+            /**
+             * Clip
+             * @description Name of the clip
+             */
+            clip: string;
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+            /** Expected */
+            expected: string;
+            /**
+             * Demonstration
+             * @description It is a demonstration of the language, which does not count
+             */
+            demonstration: boolean;
+            /** @description The newest; null: none yet */
+            result: components["schemas"]["LabelledResultView"] | null;
+            /** @description By an older revision than `result` */
+            before: components["schemas"]["LabelledResultView"] | null;
+        };
+        /**
+         * LabelledTakesDraft
+         * @description Takes to add to a test set; one that it has gets the new label.
+         */
+        LabelledTakesDraft: {
+            /** Takes */
+            takes: components["schemas"]["LabelledTakeDraft"][];
+        };
+        /**
          * LanguageChange
          * @description What to change about a language; what is left out stays.
          */
@@ -828,6 +995,16 @@ export interface components {
             updated: string;
             /** Gestures */
             gestures: components["schemas"]["GestureView"][];
+            /**
+             * Sha256
+             * @description Checksum of the language file, which the robot reports
+             */
+            sha256: string;
+            /**
+             * Code
+             * @description Short code of `sha256`, to compare with the robot's
+             */
+            code: string;
             /** @description Null: every gesture is a message of its own */
             grammar: components["schemas"]["GrammarEntry"] | null;
             /**
@@ -1083,6 +1260,114 @@ export interface components {
             frame_size: number[];
         };
         /**
+         * PracticeAnswerView
+         * @description What is said about a take at once.
+         */
+        PracticeAnswerView: {
+            take: components["schemas"]["PracticeTakeView"];
+            /** Sentence */
+            sentence: string;
+            /**
+             * Lesson
+             * @description The difference to avoid the next time
+             */
+            lesson: {
+                [key: string]: unknown;
+            } | null;
+            /** Notes */
+            notes: string[];
+            record: components["schemas"]["PracticeRecordView"];
+        };
+        /**
+         * PracticeDraft
+         * @description A gesture that a diver shows in a clip.
+         */
+        PracticeDraft: {
+            /** Diver */
+            diver: string;
+            /** Expected */
+            expected: string;
+            /** Clip Id */
+            clip_id: string;
+            /** Start */
+            start?: number | null;
+            /** End */
+            end?: number | null;
+        };
+        /**
+         * PracticeRecordView
+         * @description A diver's record with the newest revision: evidence of acceptance.
+         */
+        PracticeRecordView: {
+            /** Diver */
+            diver: string;
+            /**
+             * Takes
+             * @description Takes recognised by the newest revision
+             */
+            takes: number;
+            /** Errors */
+            errors: number;
+            /**
+             * Bound
+             * @description Upper bound of the error rate (Clopper and Pearson)
+             */
+            bound: number;
+            /**
+             * Limit
+             * @description Error rate to be below
+             */
+            limit: number;
+            /**
+             * Confidence
+             * @description Confidence of the bound
+             */
+            confidence: number;
+            /**
+             * Reached
+             * @description Whether the bound is below the limit
+             */
+            reached: boolean;
+            /**
+             * More
+             * @description Further takes without an error until it is; 0 when reached
+             */
+            more: number;
+            /**
+             * Older
+             * @description Takes with older revisions, which do not count
+             */
+            older: number;
+            /**
+             * Shown
+             * @description All takes, the newest first
+             */
+            shown: components["schemas"]["PracticeTakeView"][];
+        };
+        /**
+         * PracticeTakeView
+         * @description One take of practice.
+         */
+        PracticeTakeView: {
+            /** Id */
+            id: string;
+            /** Expected */
+            expected: string;
+            /**
+             * Label
+             * @description Null: rejected
+             */
+            label: string | null;
+            /** Right */
+            right: boolean;
+            /** Clip Id */
+            clip_id: string;
+            /** Recognition Id */
+            recognition_id: string;
+            /** Revision */
+            revision: number;
+        };
+        /**
          * PreviewRequest
          * @description A gesture as it would be saved.
          */
@@ -1144,6 +1429,45 @@ export interface components {
              * @description How long the demonstration lasts
              */
             seconds: number | null;
+        };
+        /**
+         * ProfileView
+         * @description A profile that a language can choose.
+         */
+        ProfileView: {
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "paper" | "full";
+            /**
+             * Rejects
+             * @description Whether it rejects movements that are no gesture
+             */
+            rejects: boolean;
+            /**
+             * Repairs Keypoints
+             * @description Whether bad keypoints are repaired first
+             */
+            repairs_keypoints: boolean;
+            /** Voters */
+            voters: string[];
+        };
+        /**
+         * RateView
+         * @description Rate of right answers, with Wilson's 95 % interval; null without any answer.
+         */
+        RateView: {
+            /** Right */
+            right: number;
+            /** Asked */
+            asked: number;
+            /** Rate */
+            rate: number | null;
+            /** Low */
+            low: number | null;
+            /** High */
+            high: number | null;
         };
         /**
          * RecognitionRequest
@@ -1245,6 +1569,16 @@ export interface components {
              * @description Why the recording is too poor to judge, in words
              */
             fault?: string | null;
+            /**
+             * Facing
+             * @description Degrees by which the diver is turned to the own left; null: not known
+             */
+            facing?: number | null;
+            /**
+             * Views
+             * @description Degrees by which each gesture's demonstration was turned to be compared
+             */
+            views?: number[];
         } & {
             [key: string]: unknown;
         };
@@ -1289,6 +1623,12 @@ export interface components {
             created: string;
         };
         /**
+         * Role
+         * @description What a token allows; each role includes the ones before it.
+         * @enum {string}
+         */
+        Role: "read" | "edit" | "admin";
+        /**
          * SampleChoice
          * @description Which sample to add.
          */
@@ -1326,6 +1666,58 @@ export interface components {
              * @description Bytes
              */
             size: number;
+        };
+        /**
+         * SessionView
+         * @description Who sends this request.
+         */
+        SessionView: {
+            /**
+             * Name
+             * @description Of the token; empty where the server needs none
+             */
+            name: string;
+            /** @description read, edit or admin; each includes the ones before it */
+            role: components["schemas"]["Role"];
+            /**
+             * Signed In
+             * @description Whether a cookie keeps the token, so that one can log out
+             */
+            signed_in: boolean;
+        };
+        /**
+         * SettingsView
+         * @description How a language is recognised, and what it would be by default.
+         */
+        SettingsView: {
+            /**
+             * Profile
+             * @enum {string}
+             */
+            profile: "paper" | "full";
+            /**
+             * Default Profile
+             * @enum {string}
+             */
+            default_profile: "paper" | "full";
+            /** Profiles */
+            profiles: components["schemas"]["ProfileView"][];
+            /** @description What differs from the profile; null: nothing */
+            tuning: components["schemas"]["TuningEntry"] | null;
+            /**
+             * Simplification
+             * @description Default tolerance of drawings, pixels of 224
+             */
+            simplification: number;
+            /** Most Simplification */
+            most_simplification: number;
+            /**
+             * Weights
+             * @description Each voter's normalised weight in this language, with its weight factor; empty without gestures
+             */
+            weights: {
+                [key: string]: number;
+            };
         };
         /**
          * SlotEntry
@@ -1411,6 +1803,11 @@ export interface components {
              * @default 0
              */
             salutes: number;
+            /**
+             * Fault
+             * @description Why it is a bad demonstration, as a clause: salutes or rests in it, cut short
+             */
+            fault?: string | null;
         };
         /**
          * SwitchView
@@ -1451,6 +1848,42 @@ export interface components {
             stroke_start: number;
             /** Stroke End */
             stroke_end: number;
+        };
+        /**
+         * TestSetView
+         * @description The test set of a language, with the newest result of each take.
+         */
+        TestSetView: {
+            /** Language Id */
+            language_id: string;
+            /**
+             * Revision
+             * @description The language's newest
+             */
+            revision: number;
+            /** Takes */
+            takes: components["schemas"]["LabelledTakeView"][];
+            overall: components["schemas"]["RateView"];
+            /**
+             * Gestures
+             * @description The lowest rate first
+             */
+            gestures: components["schemas"]["GestureRateView"][];
+            /**
+             * Better
+             * @description Ids of takes that are right now and were wrong before
+             */
+            better: string[];
+            /**
+             * Worse
+             * @description Ids of takes that are wrong now and were right before
+             */
+            worse: string[];
+            /**
+             * Waiting
+             * @description Takes without a result of the newest revision
+             */
+            waiting: number;
         };
         /**
          * TimelineView

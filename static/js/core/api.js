@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, Explanation, ExportContents, HealthReport, Job, Language, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Take, Timeline, Workspace } from "./types.d.ts" */
+/** @import { Clip, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, Workspace } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -14,6 +14,7 @@ export class ApiError extends Error {
     this.name = "ApiError";
     this.title = problem.title || "Something went wrong";
     this.code = problem.code;
+    this.errors = problem.errors ?? [];
     this.status = status;
   }
 }
@@ -86,6 +87,12 @@ const matching = (language) => ({ "If-Match": `"${language.revision}"` });
  */
 const gestureAt = (language, label, part = "") =>
   `/languages/${id(language.id)}/gestures${part}?label=${id(label)}`;
+
+export const session = {
+  /** @type {() => Promise<Session>} */
+  get: () => request("GET", "/session"),
+  end: () => request("DELETE", "/session"),
+};
 
 export const clips = {
   /** @type {() => Promise<Clip[]>} */
@@ -213,23 +220,68 @@ export const languages = {
       body: gesture,
       headers: matching(language),
     }),
+  /** @type {(language: { id: string, revision: number }, gestures: object[]) => Promise<Language>} */
+  addGestures: (language, gestures) =>
+    request("POST", `/languages/${id(language.id)}/gestures/batch`, {
+      body: { gestures },
+      headers: matching(language),
+    }),
   /** @type {(language: { id: string, revision: number }, label: string, change: object) => Promise<Language>} */
   changeGesture: (language, label, change) =>
     request("PATCH", gestureAt(language, label), { body: change, headers: matching(language) }),
   /** @type {(language: { id: string, revision: number }, label: string) => Promise<Language>} */
   removeGesture: (language, label) =>
     request("DELETE", gestureAt(language, label), { headers: matching(language) }),
+  /** @type {(language: { id: string, revision: number }, demonstration: object) => Promise<Language>} */
+  addDemonstration: (language, demonstration) =>
+    request("POST", `/languages/${id(language.id)}/demonstrations`, {
+      body: demonstration,
+      headers: matching(language),
+    }),
+  /** @type {(language: { id: string, revision: number }, label: string, index: number) => Promise<Language>} */
+  removeDemonstration: (language, label, index) =>
+    request("DELETE", `/languages/${id(language.id)}/demonstrations/${index}?label=${id(label)}`, {
+      headers: matching(language),
+    }),
   /** @type {(language: string) => Promise<ExportContents>} */
   exportContents: (language) => request("GET", `/languages/${id(language)}/export/contents`),
+  /** @type {(language: string) => Promise<LanguageSettings>} */
+  settings: (language) => request("GET", `/languages/${id(language)}/settings`),
+  /** @type {(language: string, format: "pdf" | "svg") => string} */
+  slate: (language, format) => `${BASE}/languages/${id(language)}/slate.${format}`,
   /** @type {(language: string, format: string) => string} */
   exportUrl: (language, format) => `${BASE}/languages/${id(language)}/export?format=${format}`,
+};
+
+export const testSets = {
+  /** @type {(language: string) => Promise<TestSet>} */
+  get: (language) => request("GET", `/languages/${id(language)}/test-set`),
+  /** @type {(language: string, takes: object[]) => Promise<TestSet>} */
+  add: (language, takes) =>
+    request("POST", `/languages/${id(language)}/test-set`, { body: { takes } }),
+  /** @type {(language: string, take: string, expected: string) => Promise<TestSet>} */
+  label: (language, take, expected) =>
+    request("PATCH", `/languages/${id(language)}/test-set/${id(take)}`, { body: { expected } }),
+  /** @type {(language: string, take: string) => Promise<TestSet>} */
+  remove: (language, take) => request("DELETE", `/languages/${id(language)}/test-set/${id(take)}`),
+  /** @type {(language: string) => Promise<TestSet>} */
+  run: (language) => request("POST", `/languages/${id(language)}/test-set/run`),
+  /** @type {(language: string) => Promise<any>} */
+  cancel: (language) => request("DELETE", `/languages/${id(language)}/test-set/run`),
+};
+
+export const practice = {
+  /** @type {(language: string) => Promise<PracticeRecord[]>} */
+  records: (language) => request("GET", `/languages/${id(language)}/practice`),
+  /** @type {(language: string, take: object) => Promise<PracticeAnswer>} */
+  show: (language, take) => request("POST", `/languages/${id(language)}/practice`, { body: take }),
+  /** @type {(language: string, take: string) => Promise<PracticeRecord[]>} */
+  remove: (language, take) => request("DELETE", `/languages/${id(language)}/practice/${id(take)}`),
 };
 
 export const recognitions = {
   /** @type {(query: object) => Promise<Recognition>} */
   create: (query) => request("POST", "/recognitions", { body: query }),
-  /** @type {(language: string) => Promise<Recognition[]>} */
-  list: (language) => request("GET", `/recognitions?language_id=${id(language)}&limit=500`),
   /** @type {(recognition: string) => Promise<Recognition>} */
   get: (recognition) => request("GET", `/recognitions/${id(recognition)}`),
   /** @type {(recognition: string) => string} */

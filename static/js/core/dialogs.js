@@ -1,6 +1,7 @@
 // A modal dialog with a form; it stays open and shows the error until its task succeeds.
 
 import { byId, h } from "./dom.js";
+import { limit } from "./text-limit.js";
 
 /** @import { Field } from "./types.d.ts" */
 
@@ -80,11 +81,11 @@ function inputOf(field) {
     value: field.value ?? "",
     autocomplete: "off",
     required: Boolean(field.required),
-    maxLength: field.most ?? 2000,
   };
-  return field.multiline
+  const input = field.multiline
     ? h("textarea", { ...properties, rows: 2 })
     : h("input", { ...properties, type: "text" });
+  return limit(input, field.most ?? 2000);
 }
 
 /**

@@ -46,7 +46,12 @@ export function followServer(handlers, lost = false) {
   stream.addEventListener("clips", (event) => handlers.clips(data(event).id));
   stream.addEventListener("languages", (event) => handlers.languages(data(event).id));
   stream.addEventListener("checks", (event) => update({ checking: data(event) }));
-  stream.addEventListener("recognitions", (event) => update({ recognised: data(event).id }));
+  stream.addEventListener("test-sets", (event) => update({ labelled: { id: data(event).id } }));
+  stream.addEventListener("tests", (event) => {
+    const run = data(event);
+    // The end of a run is its answer's; a late event must not show it as running again.
+    if (state.testing?.id === run.id) update({ testing: run });
+  });
   stream.addEventListener("jobs", (event) => {
     const job = data(event);
     if (job.id) handlers.jobs(job);

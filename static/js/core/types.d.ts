@@ -12,6 +12,7 @@ export type Timeline = Schemas["TimelineView"];
 export type Poses = Schemas["PosesView"];
 export type Sample = Schemas["SampleView"];
 export type SampleLanguage = Schemas["SampleLanguageView"];
+export type Session = Schemas["SessionView"];
 export type Language = Schemas["LanguageView"];
 export type LanguageSummary = Schemas["LanguageSummary"];
 export type Gesture = Schemas["GestureView"];
@@ -34,6 +35,11 @@ export type Keypoint = Schemas["KeypointView"];
 export type Descriptor = Schemas["DescriptorView"];
 export type Source = Schemas["SourceView"];
 export type Workspace = Schemas["OpenedWorkspace"];
+export type LanguageSettings = Schemas["SettingsView"];
+export type PracticeRecord = Schemas["PracticeRecordView"];
+export type PracticeAnswer = Schemas["PracticeAnswerView"];
+export type TestSet = Schemas["TestSetView"];
+export type LabelledTake = Schemas["LabelledTakeView"];
 export type Tuning = Schemas["TuningEntry"];
 export type Problem = Partial<Schemas["Problem"]>;
 export type PhrasePart = GesturesPart | SlotPart | GroupPart;
@@ -145,6 +151,7 @@ export interface GestureEstimate {
   refused: Rate | null;
   false_alarms: Rate | null;
   set_off_by: string[];
+  angles: { degrees: number; missed: Rate; read_as: string | null }[];
 }
 
 export interface PairEstimate {
@@ -253,8 +260,11 @@ export interface State {
   loaded: boolean;
   health: HealthState | null;
   checking: any;
-  recognised: string | null;
-  tested: Recognition[] | null;
+  testSet: TestSet | null;
+  /** How far the run of the test set is; null while none runs. */
+  testing: { id: string; done: number; total: number } | null;
+  /** The language whose test set changed on the server. */
+  labelled: { id: string } | null;
   pending: PendingClip[];
   clip: string | null;
   take: number | null;
@@ -298,6 +308,17 @@ export interface Field {
   multiline?: boolean;
   /** Characters at most. */
   most?: number;
+}
+
+/** A gesture to be made of a clip's take; `takes` is null while the clip's poses are being found. */
+export interface GestureRow {
+  key: string;
+  clip: Clip;
+  takes: Take[] | null;
+  take: Take | null;
+  number: number;
+  label: string;
+  chosen: boolean;
 }
 
 /** A view of the page, loaded when it is first shown. */

@@ -1,6 +1,6 @@
 // The range of a demonstration in its clip: a take's gesture, all of a take, or a range by hand.
 
-import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
+import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 
 const SAME_MOMENT = 1e-3; // s, as the server compares a range with a take
 

@@ -1,6 +1,7 @@
 // The form of a gesture: its texts, and the switches of its invariances.
 
 import { h } from "../core/dom.js";
+import { limit } from "../core/text-limit.js";
 import { read } from "../languages/robot-command.js";
 import { change, draft, rest } from "./gesture-draft.js";
 
@@ -39,7 +40,7 @@ const SWITCHES = [
 function field(name, label, input, hint = "") {
   const note = h("p", { className: "dim", id: `editor-${name}-note` }, hint);
   input.id = `editor-${name}`;
-  input.maxLength = MOST[name];
+  limit(input, MOST[name]);
   input.setAttribute("aria-describedby", note.id);
   input.oninput = () => change({ [name]: input.value }, name);
   input.onblur = rest;

@@ -110,6 +110,22 @@ function commandLine(text) {
   return { button, code: h("code", { id: "export-command" }, text()) };
 }
 
+/**
+ * The printable page for divers, as files.
+ *
+ * @param {Language} language
+ */
+const slateLinks = (language) =>
+  h(
+    "p",
+    { className: "export-slate" },
+    h("b", {}, "Slate for divers: "),
+    "strokes, meanings and the salute on one page, as ",
+    h("a", { href: api.languages.slate(language.id, "pdf"), download: "" }, "PDF"),
+    " or ",
+    h("a", { href: api.languages.slate(language.id, "svg"), download: "" }, "SVG"),
+  );
+
 /** Show the contents of the export. */
 export async function openExport() {
   const language = state.gestures;
@@ -149,7 +165,7 @@ export async function openExport() {
       h(
         "p",
         { className: "dim" },
-        `${contents.name}, revision ${contents.revision}, ${plural(language.gestures.length, "gesture")}`,
+        `${contents.name}, revision ${contents.revision}, code ${language.code}, ${plural(language.gestures.length, "gesture")}`,
       ),
       h(
         "div",
@@ -158,6 +174,7 @@ export async function openExport() {
       ),
       facts(contents, language),
       h("div", { className: "export-command" }, code, button),
+      slateLinks(language),
       h(
         "div",
         { className: "dialog-actions" },

@@ -9,6 +9,8 @@ import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
+import { openSettings } from "../languages/settings-dialog.js";
+import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
 
 async function remove(gesture) {
   const from = currentLanguage();
@@ -26,8 +28,20 @@ async function remove(gesture) {
   }
 }
 
-/** The address of a trajectory image with start dot and arrow. */
-const withMarks = (thumbnail) => `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
+/** The tag of a gesture with a bad demonstration; the text says what is wrong with it. */
+function faultTag({ demonstrations }) {
+  const bad = demonstrations.find(({ source }) => source?.fault);
+  return bad
+    ? h(
+        "span",
+        {
+          className: "tag fault",
+          title: `The demonstration ${bad.source.fault}. Save it again from a take.`,
+        },
+        shortFault(bad.source),
+      )
+    : null;
+}
 
 function draw(gesture, element) {
   const mark =
@@ -55,14 +69,18 @@ function draw(gesture, element) {
       { className: "card-text" },
       h("b", { title: gesture.label }, gesture.label),
       h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
+      h(
+        "button",
+        {
+          type: "button",
+          className: "link",
+          "aria-label": `${plural(gesture.demonstrations.length, "demonstration")} of ${gesture.label}`,
+          onclick: () => openDemonstrations(gesture.label),
+        },
+        plural(gesture.demonstrations.length, "demonstration"),
+      ),
       mark ? h("span", { className: `tag ${mark}` }, mark) : null,
-      gesture.source?.salutes
-        ? h(
-            "span",
-            { className: "tag fault", title: "Save it again from a take, without the salutes." },
-            `contains ${plural(gesture.source.salutes, "salute")}`,
-          )
-        : null,
+      faultTag(gesture),
     ),
     h(
       "div",
@@ -77,9 +95,23 @@ function draw(gesture, element) {
   return card;
 }
 
+/** The revision and the code by which a robot's language is compared with this one. */
+function drawCarried(language) {
+  const box = byId("carried");
+  box.hidden = !language?.gestures.length;
+  if (box.hidden) return;
+  box.replaceChildren(
+    `Revision ${language.revision}, code `,
+    h("code", {}, language.code),
+    h("span", { className: "dim" }, ", as a robot with it shows. "),
+    h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
+  );
+}
+
 export function drawGestures({ gestures, result }) {
   const members = gestures?.gestures ?? [];
   byId("gesture-count").textContent = members.length ? String(members.length) : "";
+  drawCarried(gestures);
   const empty = byId("gestures-empty");
   empty.hidden = members.length > 0;
   empty.textContent = gestures

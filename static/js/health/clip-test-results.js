@@ -1,54 +1,35 @@
-// The results of the test with clips: which takes count, and the table as CSV.
+// The takes of the test set as rows, and as CSV.
 
-const Z = 1.96; // Standard deviations of a 95 % interval.
+/** @import { TestSet } from "../core/types.d.ts" */
 
-/** Whether a take is, for the larger part, the demonstration of a gesture. */
-const demonstrates = ({ clip_id: clip, start, end }, gestures) =>
-  gestures.some(({ source }) => {
-    if (source?.clip_id !== clip) return false;
-    return Math.min(end, source.end) - Math.max(start, source.start) > (end - start) / 2;
-  });
-
-/** Wilson's 95 % interval of a share (Wilson 1927), as `{ rate, low, high }`. */
-export function intervalOf(right, count) {
-  const rate = right / count;
-  const middle = (rate + Z ** 2 / (2 * count)) / (1 + Z ** 2 / count);
-  const half =
-    (Z / (1 + Z ** 2 / count)) * Math.sqrt((rate * (1 - rate)) / count + (Z / (2 * count)) ** 2);
-  return { rate, low: Math.max(0, middle - half), high: Math.min(1, middle + half) };
-}
-
-/** The rate of each label: `{ label, right, count, rate, low, high }`, the lowest first. */
-export function ratesOf(takes) {
-  const labels = [...new Set(takes.map(({ expected }) => expected))];
-  return labels
-    .map((label) => {
-      const own = takes.filter(({ expected }) => expected === label);
-      const right = own.filter((take) => take.right).length;
-      return { label, right, count: own.length, ...intervalOf(right, own.length) };
-    })
-    .sort((one, other) => one.rate - other.rate);
-}
+/** Of a take that no revision has recognised yet. */
+const UNKNOWN = {
+  label: null,
+  nearest: null,
+  confidence: 0,
+  right: false,
+  fault: null,
+  revision: null,
+  recognition_id: null,
+};
 
 /**
- * The newest recognition of each labelled take, by the language's profile and without trials.
- * `demonstration` marks those that count nothing: a demonstration is recognised by construction.
+ * The takes of a test set with their newest results, sorted as people count; `change` says whether
+ * a take is better or worse since the revision before.
+ *
+ * @param {TestSet | null} testSet
  */
-export function testedOf(recognitions, clips, profile, gestures = []) {
-  const names = new Map(clips.map(({ id, name }) => [id, name]));
-  const newest = new Map();
-  for (const each of recognitions) {
-    const key = `${each.clip_id} ${each.start}`;
-    const counts = each.profile === profile && !each.tuning && !each.trial;
-    if (counts && !newest.has(key)) newest.set(key, each);
-  }
-  return [...newest.values()]
-    .filter((each) => each.expected !== null && names.has(each.clip_id))
-    .map((each) => ({
-      ...each,
-      clip: names.get(each.clip_id),
-      right: each.label === each.expected,
-      demonstration: demonstrates(each, gestures),
+export function testedOf(testSet) {
+  if (!testSet) return [];
+  const { better, worse } = testSet;
+  /** @param {string} id */
+  const changeOf = (id) => (better.includes(id) ? "better" : worse.includes(id) ? "worse" : null);
+  return testSet.takes
+    .map(({ result, ...take }) => ({
+      ...(result ?? UNKNOWN),
+      ...take,
+      known: result !== null,
+      change: changeOf(take.id),
     }))
     .sort(
       (one, other) =>

@@ -6,17 +6,15 @@ import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
-import { csvOf, intervalOf, ratesOf, testedOf } from "./clip-test-results.js";
+import { cancelTestRun, changeWords, labelTake, runTestSet } from "../languages/test-set.js";
+import { csvOf, testedOf } from "./clip-test-results.js";
 import {
   addLibraryClips,
   addTestClips,
   candidates,
-  correct,
   leaveOut,
   leaveWaiting,
-  loadTested,
   means,
-  repeat,
   waitingClips,
   workOff,
 } from "./clip-test.js";
@@ -165,7 +163,7 @@ function placeOf(take, takes) {
   const alone = takes.filter((each) => each.clip_id === take.clip_id).length === 1;
   return {
     clip: take.clip_id,
-    recognition: take.id,
+    recognition: take.recognition_id,
     take: null,
     start: alone ? null : take.start,
     end: alone ? null : take.end,
@@ -174,13 +172,34 @@ function placeOf(take, takes) {
   };
 }
 
+/** How a take was recognised, and whether that is better or worse than before. */
+function outcomeOf(take) {
+  if (!take.known) return [h("span", { className: "dim" }, "not recognised yet")];
+  const extra = [
+    take.fault,
+    take.demonstration ? "a demonstration" : null,
+    take.label === null && take.nearest ? `nearest ${take.nearest}` : null,
+  ].filter(Boolean);
+  return [
+    h(
+      "span",
+      { className: "outcome-sign", "aria-hidden": "true" },
+      take.right ? "\u2713" : "\u2260",
+    ),
+    h("span", {}, take.right ? "right: " : "wrong: "),
+    h("b", {}, readAs(take)),
+    extra.length ? h("small", { className: "dim" }, `, ${extra.join(", ")}`) : null,
+    take.change ? h("span", { className: `tag ${take.change}` }, take.change) : null,
+  ];
+}
+
 function takeRow(take, takes) {
   const several = takes.filter((each) => each.clip_id === take.clip_id);
   const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
   const place = placeOf(take, takes);
   return h(
     "tr",
-    { className: take.demonstration ? "demonstration" : take.right ? "" : "wrong" },
+    { className: take.demonstration || !take.known ? "demonstration" : take.right ? "" : "wrong" },
     h(
       "td",
       {},
@@ -197,22 +216,14 @@ function takeRow(take, takes) {
     h(
       "td",
       {},
-      labelSelect(name, take.expected, (label) => correct(take, label)),
+      labelSelect(name, take.expected, (label) => labelTake(take.id, label)),
     ),
+    h("td", {}, outcomeOf(take)),
     h(
       "td",
-      {},
-      h(
-        "span",
-        { className: "outcome-sign", "aria-hidden": "true" },
-        take.right ? "\u2713" : "\u2260",
-      ),
-      h("span", {}, take.right ? "right: " : "wrong: "),
-      h("b", {}, readAs(take)),
-      take.demonstration ? h("small", { className: "dim" }, ", a demonstration") : null,
-      take.label === null ? h("small", { className: "dim" }, `, nearest ${take.nearest}`) : null,
+      { className: "num" },
+      take.recognition_id ? `${Math.round(100 * take.confidence)} %` : "",
     ),
-    h("td", { className: "num" }, `${Math.round(100 * take.confidence)} %`),
     h(
       "td",
       {},
@@ -261,12 +272,12 @@ function download(takes) {
 }
 
 /** The rates of the gestures, the lowest first. */
-const rates = (takes) =>
+const rates = ({ gestures }) =>
   h(
     "ul",
     { className: "test-rates", "aria-label": "Rate of each gesture" },
-    ratesOf(takes).map(({ label, right, count, ...rate }) =>
-      h("li", {}, h("b", {}, label), ` ${right} of ${count}, ${rateText(rate)}`),
+    gestures.map(({ label, right, asked, ...rate }) =>
+      h("li", {}, h("b", {}, label), ` ${right} of ${asked}, ${rateText(rate)}`),
     ),
   );
 
@@ -311,28 +322,52 @@ function libraryChoice() {
   );
 }
 
-function summary(takes) {
-  const right = takes.filter((take) => take.right).length;
-  const old = takes.filter(({ revision }) => revision !== currentLanguage().revision).length;
-  const again = h("button", { type: "button" }, old ? "Recognise again" : "Repeat the test");
-  again.onclick = async () => {
-    again.disabled = true;
-    await repeat(takes, (done) => {
-      again.textContent = `${done} of ${takes.length}`;
-    });
-  };
+/** The progress of a run with its Cancel; where takes wait, the button that begins one. */
+function runControl({ waiting }) {
+  const { testing } = state;
+  if (!testing)
+    return waiting
+      ? h(
+          "button",
+          { type: "button", className: "primary", onclick: () => runTestSet() },
+          `Recognise ${plural(waiting, "take")} again`,
+        )
+      : null;
+  return h(
+    "span",
+    { className: "test-run", role: "status" },
+    `${testing.done} of ${plural(testing.total, "take")} recognised`,
+    h("progress", {
+      "aria-label": "Progress of the test",
+      max: Math.max(1, testing.total),
+      value: testing.done,
+    }),
+    h("button", { type: "button", onclick: cancelTestRun }, "Cancel"),
+  );
+}
+
+function summary(testSet, takes) {
+  const { overall, waiting } = testSet;
+  const change = changeWords(testSet);
   return h(
     "div",
     { className: "test-summary" },
     h(
       "p",
       {},
-      h("b", { className: "num" }, `${right} of ${takes.length}`),
-      ` recognised as labelled, ${rateText(intervalOf(right, takes.length))}`,
-      old ? h("span", { className: "dim" }, `, ${old} by an older revision of the language`) : null,
+      overall.asked
+        ? [
+            h("b", { className: "num" }, `${overall.right} of ${overall.asked}`),
+            ` recognised as labelled, ${rateText(overall)}`,
+          ]
+        : "Nothing is recognised yet",
+      change ? `; since the revision before: ${change}` : null,
+      waiting
+        ? h("span", { className: "dim" }, `, ${plural(waiting, "take")} not by the newest revision`)
+        : null,
     ),
     h("span", { className: "spacer" }),
-    again,
+    runControl(testSet),
     h("button", { type: "button", onclick: () => download(takes) }, "Export as CSV"),
   );
 }
@@ -342,7 +377,7 @@ function list(takes, uploads) {
   const cell = pairOf(state.cell);
   const shown = cell
     ? takes.filter((take) => take.expected === cell[0] && readAs(take) === cell[1])
-    : [...takes].sort((one, other) => one.right - other.right);
+    : [...takes].sort((one, other) => Number(one.right) - Number(other.right));
   return [
     cell
       ? h(
@@ -408,9 +443,10 @@ export function batchSection() {
   };
   const draw = () => {
     /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
-    const { tested, clips, gestures } = state;
-    const takes = testedOf(tested, clips, gestures?.profile, gestures?.gestures);
-    const counted = takes.filter(({ demonstration }) => !demonstration);
+    const testSet = state.testSet?.language_id === state.language ? state.testSet : null;
+    const takes = testedOf(testSet);
+    const demonstrations = takes.filter(({ demonstration }) => demonstration).length;
+    const counted = takes.filter(({ demonstration, known }) => known && !demonstration);
     drawChoice();
     const uploads = uploadsHere();
     const empty = !takes.length && !waitingClips().length && !uploads.length;
@@ -418,8 +454,9 @@ export function batchSection() {
       ...(empty || !state.gestures
         ? []
         : [
-            ...(counted.length ? [summary(counted), matrix(counted), rates(counted)] : []),
-            leftOutNote(takes.length - counted.length),
+            ...(testSet && takes.length ? [summary(testSet, takes)] : []),
+            ...(testSet && counted.length ? [matrix(counted), rates(testSet)] : []),
+            leftOutNote(demonstrations),
             ...list(takes, uploads),
           ].filter((each) => each !== null)),
     );
@@ -427,9 +464,8 @@ export function batchSection() {
     advance(content);
   };
   takeFilesIn("health", addTestClips);
-  follow(["language", "recognised"], loadTested);
   follow(["pending", "clips", "gestures"], workOff);
-  follow(["tested", "pending", "clips", "gestures", "cell"], draw);
+  follow(["testSet", "testing", "pending", "clips", "gestures", "cell"], draw);
   // Progress comes many times a second.
   follow(["jobs", "uploads"], () => {
     if (stages() === drawn) advance(content);
@@ -445,7 +481,7 @@ export function batchSection() {
       h(
         "p",
         { className: "dim" },
-        "Clips whose gesture you know, by other divers if you can: what is estimated above is measured here. A cell opens its clips.",
+        "Clips whose gesture you know, by other divers if you can: what is estimated above is measured here, again after every change of the language. A cell opens its clips.",
       ),
     ),
     drop(),

@@ -1,13 +1,11 @@
-// The test with labelled clips; its results are the recognitions that the server stores.
-//
-// A take is in the test as long as its newest recognition has an expected label. So the test is the
-// same for everybody, survives reloads, and is repeated whenever the language has changed.
+// Clips on their way into the test set: they wait for their poses, or for a label.
 
 import { labelInName } from "../clips/clip-label.js";
 import { BUSY } from "../clips/busy.js";
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
-import { attempt, complain, toast } from "../core/toasts.js";
+import { complain, toast } from "../core/toasts.js";
+import { addToTestSet, removeTake } from "../languages/test-set.js";
 import { addFiles } from "../upload/upload-list.js";
 
 const KEY = "osg-studio.batch"; // sessionStorage: clips that wait for their poses.
@@ -27,29 +25,6 @@ function setPending(pending) {
   sessionStorage.setItem(KEY, JSON.stringify(pending));
 }
 
-/** Load what was recognised in the language on display. */
-export async function loadTested() {
-  const { language } = state;
-  const recognitions = language
-    ? await attempt("Loading the test", () => api.recognitions.list(language))
-    : [];
-  if (recognitions && state.language === language) update({ tested: recognitions });
-}
-
-/** Recognise every take of a clip as `expected`; `ranges` when not all of it. */
-/** @type {(clip: string, expected: string | null, ranges?: { start: number, end: number }[] | null) => Promise<void>} */
-async function recognise(clip, expected, ranges = null) {
-  const takes = ranges ?? (await api.clips.takes(clip));
-  const asked = takes.length > 1 || ranges ? takes.map(({ start, end }) => ({ start, end })) : [{}];
-  for (const range of asked)
-    await api.recognitions.create({
-      clip_id: clip,
-      language_id: state.language,
-      expected,
-      ...range,
-    });
-}
-
 /** Take clips into the test, each with the label that its name begins with. */
 export function addTestClips(files) {
   addFiles(files, (id) =>
@@ -67,9 +42,11 @@ export const addLibraryClips = (ids) =>
 /** The clips of the library that are not in the test, with the label that their name suggests. */
 export function candidates() {
   const taken = new Set([
-    ...(state.tested ?? []).filter(({ expected }) => expected !== null).map((each) => each.clip_id),
+    ...(state.testSet?.takes ?? []).map(({ clip_id }) => clip_id),
     ...state.pending.filter(({ language }) => language === state.language).map(({ clip }) => clip),
-    ...(state.gestures?.gestures ?? []).map(({ source }) => source?.clip_id),
+    ...(state.gestures?.gestures ?? []).flatMap(({ demonstrations }) =>
+      demonstrations.map(({ source }) => source?.clip_id),
+    ),
   ]);
   return state.clips
     .filter(({ id, status }) => status === "done" && !taken.has(id))
@@ -101,14 +78,14 @@ export function leaveWaiting({ id, name }) {
 }
 
 /** Leave a take out of the test; `name` is what it is called. */
-export async function leaveOut(take, name) {
-  await correct(take, null);
-  leftOut(name, () => correct(take, take.expected));
+export async function leaveOut({ id, clip_id, start, end, expected }, name) {
+  await removeTake(id);
+  leftOut(name, () => addToTestSet([{ clip_id, start, end, expected }]));
 }
 
 let working = false;
 
-/** Recognise the clips whose poses are there and whose meaning is known, one after the other. */
+/** Put the clips whose poses are there and whose label is known into the test set. */
 export async function workOff() {
   if (working) return;
   working = true;
@@ -116,13 +93,12 @@ export async function workOff() {
     const { clip } = each;
     const expected = meantBy(each);
     try {
-      await recognise(clip, expected);
+      await addToTestSet([{ clip_id: clip, expected }]);
     } catch (error) {
       if (api.isAway(error)) break; // It is kept for when the server is back.
-      complain(error, `Recognising ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
+      complain(error, `Testing ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
     }
     forget(clip);
-    await loadTested();
   }
   working = false;
 }
@@ -147,27 +123,4 @@ export function waitingClips() {
       return clip && { clip, expected: meantBy(each), busy: BUSY.has(clip.status) };
     })
     .filter((each) => each !== undefined);
-}
-
-/** Set the expected label of a take; null removes it from the test. */
-export async function correct({ clip_id: clip, start, end }, expected) {
-  await attempt("Recognising", () => recognise(clip, expected, [{ start, end }]));
-  await loadTested();
-}
-
-/**
- * Recognise all takes again, by the language as it is now; `advance(done)` is called before each.
- */
-export async function repeat(takes, advance) {
-  for (const [done, { clip_id: clip, start, end, expected }] of takes.entries()) {
-    advance(done);
-    if (
-      !(await attempt("Recognising", async () => {
-        await recognise(clip, expected, [{ start, end }]);
-        return true;
-      }))
-    )
-      break;
-  }
-  await loadTested();
 }

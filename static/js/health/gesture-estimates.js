@@ -3,6 +3,7 @@
 import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
 import { editLink } from "./finding-links.js";
+import { anglePlot } from "./angle-plot.js";
 import { intervalText, percent, rateText } from "./rates.js";
 
 /** A rate with its interval; above the threshold it is also marked by a sign. */
@@ -51,6 +52,7 @@ function row(gesture, image, thresholds) {
     refused,
     false_alarms: alarms,
     set_off_by: kinds,
+    angles,
   } = gesture;
   return h(
     "tr",
@@ -82,6 +84,7 @@ function row(gesture, image, thresholds) {
       { className: "set-off" },
       kinds.length ? kinds.join(", ") : h("span", { className: "dim" }, "no simulated motion"),
     ),
+    h("td", { className: "angles" }, anglePlot(missed, angles, thresholds.missed)),
     seen(landmarks),
     h("td", { className: "edit" }, editLink(label, "Edit")),
   );
@@ -95,6 +98,7 @@ export function estimateTable({ gestures, bar: thresholds }, imageOf) {
     "of it rejected",
     "False alarms",
     "False alarms from",
+    "When turned",
     "Keypoints seen",
     "",
   ];

@@ -13,6 +13,7 @@ import { warningsList } from "./findings-list.js";
 import { estimateTable } from "./gesture-estimates.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
 import { languageMap } from "./language-map.js";
+import { narrow } from "./narrowed-report.js";
 import { predicted, showPair } from "./pair-page.js";
 import { percent, rateText } from "./rates.js";
 
@@ -21,6 +22,7 @@ import { percent, rateText } from "./rates.js";
 const STAGES = {
   rehearsing: "Simulating trials of every gesture",
   "accidental movements": "Simulating background motion",
+  "turned divers": "Simulating turned divers",
   remedies: "Testing edits that would help",
 };
 
@@ -155,7 +157,12 @@ const section = (title, hint, ...content) =>
 
 function drawReport(report) {
   const alone = report.gestures.length === 1;
-  const worst = report.pairs.filter(
+  const shown = narrow(report);
+  const part =
+    shown === report
+      ? ""
+      : ` The ${shown.gestures.length} most confused of ${report.gestures.length} gestures.`;
+  const worst = shown.pairs.filter(
     ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
   );
   const threshold = percent(report.bar.confusion);
@@ -177,14 +184,14 @@ function drawReport(report) {
           { className: "health-columns" },
           section(
             "Estimated confusions",
-            `Per cent of simulated trials of the gesture on the left that are nearest to the gesture above. Framed: above the threshold of ${threshold} %. Choose a cell to compare the two.`,
-            matrix(report),
+            `Per cent of simulated trials of the gesture on the left that are nearest to the gesture above. Framed: above the threshold of ${threshold} %. Choose a cell to compare the two.${part}`,
+            matrix(shown),
           ),
           section(
             "Map",
-            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${threshold} %.` : ""}`,
+            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${threshold} %.` : ""}${part}`,
             languageMap({
-              points: report.map,
+              points: shown.map,
               worst,
               imageOf,
               open: (label) => openNearest(report, label),

@@ -36,7 +36,7 @@ export const reloadOneLanguage = (id) =>
     take: (languages, language) => {
       update({ languages });
       if (id !== state.language) return;
-      if (language) update({ gestures: language });
+      if (language) showNewest(language);
       else reloadLanguages();
     },
   });
@@ -58,8 +58,20 @@ export async function reloadLanguage() {
   if (!id) return update({ gestures: null });
   localStorage.setItem(LAST, id);
   const language = await attempt("Loading the language", () => api.languages.get(id));
-  if (language && state.language === id) update({ gestures: language });
+  if (language && state.language === id) showNewest(language);
   return undefined;
+}
+
+/**
+ * Show a language unless a newer revision of it is shown: of two answers on their way the older one
+ * may come last.
+ *
+ * @param {Language} language
+ */
+export function showNewest(language) {
+  const shown = state.gestures;
+  if (shown?.id === language.id && shown.revision > language.revision) return;
+  update({ gestures: language });
 }
 
 /**

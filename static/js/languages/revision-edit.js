@@ -1,10 +1,10 @@
 // Edits of a language: each makes a new revision, can be undone, and settles edit conflicts.
 
 import * as api from "../core/api.js";
-import { currentLanguage, state, update } from "../core/state.js";
+import { currentLanguage, state } from "../core/state.js";
 import { recordAction, registerUndo } from "../core/undo.js";
 import { settleConflict } from "./edit-conflict.js";
-import { reloadLanguage, reloadLanguages } from "./language-store.js";
+import { reloadLanguage, reloadLanguages, showNewest } from "./language-store.js";
 
 /** @import { Language } from "../core/types.d.ts" */
 
@@ -79,7 +79,7 @@ export async function edit(doing, title, change, { from = currentLanguage(), min
     made = await settleConflict({ doing, title, from, mine, change });
   }
   const { before, language } = made;
-  if (state.language === language.id) update({ gestures: language });
+  if (state.language === language.id) showNewest(language);
   recordAction({ title, kind: "edit", language: language.id, before, after: language.revision });
   return language;
 }

@@ -8,11 +8,16 @@ const CHUNK = 1000; // ms: what is lost at most when the tab crashes.
 /**
  * Count down from `from` to 1, a second each; `show(null)` at the end. Resolves false when
  * `signal` aborts.
+ *
+ * @param {number} from
+ * @param {(left: number | null) => void} show
+ * @param {AbortSignal} signal
+ * @returns {Promise<boolean>}
  */
 export function countDown(from, show, signal) {
   return new Promise((resolve) => {
     let left = from;
-    const finish = (whole) => {
+    const finish = (/** @type {boolean} */ whole) => {
       clearInterval(timer);
       show(null);
       resolve(whole);
@@ -27,19 +32,28 @@ export function countDown(from, show, signal) {
   });
 }
 
-const two = (number) => String(number).padStart(2, "0");
+const two = (/** @type {number} */ number) => String(number).padStart(2, "0");
 
+/**
+ * @param {Date} date
+ * @param {string} type
+ */
 function nameAt(date, type) {
   const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
   const hour = [date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join("-");
   return `camera ${day} ${hour}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`;
 }
 
-/** Record a stream; `stop()` resolves with the file, or null when nothing was recorded. */
+/**
+ * Record a stream; `stop()` resolves with the file, or null when nothing was recorded.
+ *
+ * @param {MediaStream} stream
+ */
 export function record(stream) {
   const mimeType = TYPES.find((type) => MediaRecorder.isTypeSupported(type));
   const recorder = new MediaRecorder(stream, { mimeType, videoBitsPerSecond: BITS_PER_SECOND });
   const began = new Date();
+  /** @type {Blob[]} */
   const parts = [];
   recorder.ondataavailable = ({ data }) => {
     if (data.size) parts.push(data);
@@ -53,9 +67,9 @@ export function record(stream) {
     async stop() {
       if (recorder.state !== "inactive") recorder.stop();
       await stopped;
-      const type = recorder.mimeType || mimeType;
+      const type = recorder.mimeType || mimeType || "";
       return parts.length
-        ? new File(parts, nameAt(began, type), { type: type?.split(";")[0] })
+        ? new File(parts, nameAt(began, type), { type: type.split(";")[0] })
         : null;
     },
   };

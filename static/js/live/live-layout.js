@@ -1,9 +1,19 @@
 // The elements of the view, before anything is seen.
 
 import { h } from "../core/dom.js";
-import { SALUTE } from "../core/salute-threshold.js";
+import { SALUTE } from "../clips/salute-threshold.js";
 
+/**
+ * @param {string} id
+ * @param {string} text
+ */
 const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "false" }, text);
+/**
+ * @param {string} id
+ * @param {string} text
+ * @param {string} title
+ * @param {boolean} checked
+ */
 const check = (id, text, title, checked) =>
   h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
 

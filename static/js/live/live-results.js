@@ -4,21 +4,31 @@ import { byId, h } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { go } from "../core/views.js";
 
+/** @import { Clip } from "../core/types.d.ts" */
+/** @import { Recognized } from "./live-messages.d.ts" */
+
 const MOST = 50; // in the list; a practice session has fewer.
 
-const percent = (share) => `${Math.round(100 * share)} %`;
+const percent = (/** @type {number} */ share) => `${Math.round(100 * share)} %`;
 
+/** @param {Recognized} result */
 function verdict(result) {
   if (result.label !== null)
     return {
       title: result.label,
-      text: `${percent(result.confidence)} sure, ${result.agreeing} of ${plural(result.voters, "voter")}`,
+      text: `${percent(result.confidence ?? 0)} sure, ${result.agreeing} of ${plural(result.voters, "voter")}`,
     };
   if (result.problem) return { title: "Not judged", text: result.problem };
   return { title: "No gesture of this language", text: `nearest is ${result.nearest}` };
 }
 
-/** A recognition's entry; one of a clip leads to the place where to ask why. */
+/**
+ * A recognition's entry; one of a clip leads to the place where to ask why.
+ *
+ * @param {Recognized} result
+ * @param {Clip | null} clip
+ * @param {string} clock
+ */
 function entry(result, clip, clock) {
   const { title, text } = verdict(result);
   const range = {
@@ -56,7 +66,12 @@ function entry(result, clip, clock) {
   );
 }
 
-/** Show a recognition, of a clip or of the camera. */
+/**
+ * Show a recognition, of a clip or of the camera.
+ *
+ * @param {Recognized} result
+ * @param {Clip | null} clip
+ */
 export function addResult(result, clip) {
   const { title, text } = verdict(result);
   const box = byId("live-result");
@@ -65,16 +80,21 @@ export function addResult(result, clip) {
     h("strong", {}, title),
     result.label === null
       ? ""
-      : h("meter", { min: 0, max: 1, value: result.confidence, "aria-label": "Confidence" }),
+      : h("meter", { min: 0, max: 1, value: result.confidence ?? 0, "aria-label": "Confidence" }),
     h("p", {}, text),
   );
   const list = byId("live-recognised");
   list.prepend(entry(result, clip, new Date().toLocaleTimeString()));
-  while (list.children.length > MOST) list.lastChild.remove();
+  while (list.children.length > MOST) list.lastChild?.remove();
   byId("live-clear").hidden = false;
 }
 
-/** Show that nothing was recognised in a clip; `rate` is the frames processed per second. */
+/**
+ * Show that nothing was recognised in a clip; `rate` is the frames processed per second.
+ *
+ * @param {Clip} clip
+ * @param {number | null} rate
+ */
 export function showNothingRecognised(clip, rate) {
   const looked =
     rate === null
@@ -89,7 +109,11 @@ export function showNothingRecognised(clip, rate) {
   );
 }
 
-/** Forget what was recognised. */
+/**
+ * Forget what was recognised.
+ *
+ * @param {string} text
+ */
 export function clearResults(text) {
   byId("live-recognised").replaceChildren();
   byId("live-clear").hidden = true;

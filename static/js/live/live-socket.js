@@ -1,8 +1,11 @@
 // The WebSocket of the live view: sends frames, receives poses and recognitions.
 
+/** @import { Handlers, Seen } from "./live-messages.d.ts" */
+
 const PER_LOOK = 3; // frames sent for each one processed: the server takes the newest.
 const MOST_UNSENT = 500_000; // bytes: on a slow network frames are left out before they are sent.
 
+/** @type {Record<number, string>} */
 const CLOSED = {
   1006: "The server did not answer. Is it still running?",
   1012: "The server was stopped or restarted.",
@@ -10,19 +13,24 @@ const CLOSED = {
 };
 
 /**
- * Open the live session. `handlers` has a function per kind of message: `seen(answer, seconds)`
- * with the seconds since the frame was captured, `recognized`, `listening`, and `ended(reason)`.
+ * Open the live session.
+ *
+ * @param {Handlers} handlers A function for each kind of message, and for the end.
  */
 export function openLink(handlers) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const socket = new WebSocket(`${scheme}://${location.host}/api/v1/live`);
+  /** @type {Map<number, number>} */
   const captured = new Map(); // Of the frames on their way: when, by the page's clock.
+  /** @type {((value?: unknown) => void)[]} */
   const waiting = []; // for an answer
+  /** @type {object | null} */
   let wanted = null;
   let closing = false;
   let sent = -Infinity; // s, by the page's clock
   let rate = 0; // frames that the server looks at in a second
 
+  /** @param {Seen} answer */
   function seen(answer) {
     const at = captured.get(answer.time);
     rate = answer.frames_per_second;
@@ -39,7 +47,8 @@ export function openLink(handlers) {
   socket.onmessage = ({ data }) => {
     const answer = JSON.parse(data);
     if (answer.kind === "seen") seen(answer);
-    else handlers[answer.kind]?.(answer);
+    else if (answer.kind === "recognized") handlers.recognized(answer);
+    else if (answer.kind === "listening") handlers.listening(answer);
   };
   socket.onclose = ({ code, reason }) => {
     for (const resolve of waiting.splice(0)) resolve();
@@ -57,12 +66,22 @@ export function openLink(handlers) {
       if (socket.readyState !== WebSocket.OPEN || socket.bufferedAmount > MOST_UNSENT) return false;
       return !captured.size || performance.now() / 1000 - sent > 1 / (PER_LOOK * rate);
     },
-    /** Ask this language from now on. */
+    /**
+     * Ask this language from now on.
+     *
+     * @param {string | null} language
+     */
     listen(language) {
       wanted = { do: "listen", language_id: language };
       ask();
     },
-    /** Send a frame of that time, captured at `at` in seconds of the page's clock. */
+    /**
+     * Send a frame of that time, captured at `at` in seconds of the page's clock.
+     *
+     * @param {number} time
+     * @param {number} at
+     * @param {Blob} picture
+     */
     async send(time, at, picture) {
       captured.set(time, at);
       sent = performance.now() / 1000;

@@ -1,12 +1,18 @@
 // The status of the live view in words: the salute, the take, the frame rate.
 
 import { byId, h } from "../core/dom.js";
-import { SALUTE } from "../core/salute-threshold.js";
+import { SALUTE } from "../clips/salute-threshold.js";
 import { state as page } from "../core/state.js";
+
+/** @import { Seen } from "./live-messages.d.ts" */
 
 const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
 
-/** The diver's step and the next instruction, from a message of the server. */
+/**
+ * The diver's step and the next instruction, from a message of the server.
+ *
+ * @param {Seen} message
+ */
 function situation({ pose, salute, held, state }) {
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
   if (state === "recording" && held)
@@ -19,7 +25,11 @@ function situation({ pose, salute, held, state }) {
   return pose ? ["", "Waiting for a Vulcan salute."] : ["", "Nobody is in the picture."];
 }
 
-/** Show where the diver is between the salutes; null while nothing is watched. */
+/**
+ * Show where the diver is between the salutes; null while nothing is watched.
+ *
+ * @param {Seen | null} answer
+ */
 export function drawState(answer) {
   const [step, text] = answer
     ? situation(answer)
@@ -33,7 +43,12 @@ export function drawState(answer) {
   byId("live-salute").value = answer?.salute ?? 0;
 }
 
-/** Show frames per second, and the seconds from the camera to the answer. */
+/**
+ * Show frames per second, and the seconds from the camera to the answer.
+ *
+ * @param {Seen | null} answer
+ * @param {number} seconds
+ */
 export function drawSpeed(answer, seconds) {
   const rows =
     answer === null

@@ -26,18 +26,27 @@ import {
   whyNoCamera,
 } from "./video-source.js";
 
+/** @import { Clip } from "../core/types.d.ts" */
+/** @import { Listening, Recognized, Seen, Trouble } from "./live-messages.d.ts" */
+
 const COUNT = 3; // s: from the button to where the diver stands.
 const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
 const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
 
+/** @type {ReturnType<typeof openLink> | null} */
 let link = null;
+/** @type {(() => void) | null} */
 let stopFrames = null;
 let grabbing = false;
+/** @type {SVGSVGElement | null} */
 let drawing = null;
+/** @type {ReturnType<typeof record> | null} */
 let recording = null;
+/** @type {AbortController | null} */
 let counting = null;
 let ending = 0; // timer of a recording's end
 let recognised = 0; // takes that were recognised since the source was started
+/** @type {number | null} */
 let rate = null; // frames a second that were looked at of late
 
 const video = () => byId("live-video");
@@ -46,6 +55,7 @@ const fromClip = () => state.source === "clip";
 const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
 const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
 
+/** @param {Trouble | null} trouble */
 function problem(trouble) {
   const box = byId("live-problem");
   box.hidden = !trouble;
@@ -113,11 +123,16 @@ function stop() {
   stopFrames = link = null;
   drawing?.remove();
   drawState(null);
-  drawSpeed(null);
+  drawSpeed(null, 0);
   drawControls();
 }
 
-/** Look at a frame, unless enough are on their way. */
+/**
+ * Look at a frame, unless enough are on their way.
+ *
+ * @param {number} time
+ * @param {number} at
+ */
 async function look(time, at) {
   const sending = link;
   if (grabbing || !sending?.ready()) return;
@@ -127,15 +142,23 @@ async function look(time, at) {
   if (picture) await sending.send(time, at, picture);
 }
 
-/** Look at a frame, and wait for the answer. */
+/**
+ * Look at a frame, and wait for the answer.
+ *
+ * @param {number} time
+ */
 async function lookAndWait(time) {
-  const answered = link.answered();
+  const answered = link?.answered();
   await look(time, performance.now() / 1000);
   await answered;
 }
 
+/**
+ * @param {Seen} answer
+ * @param {number} seconds
+ */
 function seen(answer, seconds) {
-  drawSeen(drawing, answer);
+  if (drawing) drawSeen(drawing, answer);
   drawState(answer);
   drawSpeed(answer, seconds);
   rate = answer.frames_per_second;
@@ -143,19 +166,26 @@ function seen(answer, seconds) {
     ending = setTimeout(endRecording, AFTER_SALUTE);
 }
 
+/** @param {Trouble} trouble */
 function lost(trouble) {
   stop();
   problem(trouble);
 }
 
-/** Stop at the end of a clip, and say how many frames were processed if nothing was recognised. */
+/**
+ * Stop at the end of a clip, and say how many frames were processed if nothing was recognised.
+ *
+ * @param {Clip} clip
+ */
 function clipEnded(clip) {
   stop();
   if (!recognised) showNothingRecognised(clip, rate);
 }
 
-const ended = (reason) => lost({ title: "The live view ended", text: reason });
+const ended = (/** @type {string} */ reason) =>
+  lost({ title: "The live view ended", text: reason });
 
+/** @param {Listening} message */
 function listening({ language, gestures, problem: trouble }) {
   const text = trouble
     ? `Takes are found, but none is recognised: ${trouble}.`
@@ -203,7 +233,7 @@ async function start() {
     seen,
     listening,
     ended,
-    recognized: (result) => {
+    recognized: (/** @type {Recognized} */ result) => {
       recognised += 1;
       addResult(result, clip);
     },
@@ -224,10 +254,11 @@ async function start() {
   return true;
 }
 
+/** @param {number | null} left */
 function showCount(left) {
   const box = byId("live-count");
   box.hidden = left === null;
-  box.textContent = left ?? "";
+  box.textContent = left === null ? "" : String(left);
 }
 
 async function beginRecording() {
@@ -239,7 +270,7 @@ async function beginRecording() {
   if (whole && video().srcObject) {
     recording = record(video().srcObject);
     setTimeout(
-      (it) => {
+      (/** @type {typeof recording} */ it) => {
         if (recording === it) endRecording();
       },
       LONGEST,
@@ -270,7 +301,11 @@ const toggle = () => (link ? stop() : start());
 const toggleRecording = () =>
   recording ? endRecording() : counting ? counting.abort() : beginRecording();
 
-/** Choose between camera and clip. */
+/**
+ * Choose between camera and clip.
+ *
+ * @param {"clip" | null} source
+ */
 function chooseSource(source) {
   stop();
   problem(null);
@@ -283,10 +318,10 @@ function wire() {
   byId("live-from-camera").onclick = () => chooseSource(null);
   byId("live-from-clip").onclick = () => chooseSource("clip");
   byId("live-cameras").onchange = start;
-  byId("live-clips").onchange = ({ target }) => {
+  byId("live-clips").onchange = () => {
     stop();
     update({
-      clip: target.value,
+      clip: byId("live-clips").value,
       take: null,
       start: null,
       end: null,
@@ -309,7 +344,11 @@ bind({
   when,
 });
 
-/** Called once, when the view is first shown. */
+/**
+ * Called once, when the view is first shown.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   section.append(...panel());
   clearResults("Show a gesture between two salutes.");
@@ -322,5 +361,5 @@ export function open(section) {
   addEventListener("pagehide", stop);
   navigator.mediaDevices?.addEventListener("devicechange", drawCameraChoice);
   drawState(null);
-  drawSpeed(null);
+  drawSpeed(null, 0);
 }

@@ -1,7 +1,9 @@
 // The drawing over the live picture: the body's skeleton and the hands.
 
 import { svg } from "../core/dom.js";
-import { drawPose, skeleton } from "../core/skeleton.js";
+import { drawPose, skeleton } from "../clips/skeleton.js";
+
+/** @import { Seen } from "./live-messages.d.ts" */
 
 /** Pairs of a hand's landmarks joined by a bone, as positions in `HAND_LANDMARKS`. */
 const HAND_BONES = [
@@ -28,24 +30,37 @@ const HAND_BONES = [
   [19, 20],
 ];
 
-/** Make an empty drawing over a picture of `width` x `height` pixels. */
+/**
+ * Make an empty drawing over a picture of `width` x `height` pixels.
+ *
+ * @param {number} width
+ * @param {number} height
+ */
 export function overlay(width, height) {
   const drawing = skeleton(width, height);
   drawing.append(svg("path", { class: "hand-bones", d: "" }));
   return drawing;
 }
 
-/** Draw the pose and hands of a message; null clears the drawing. */
+/**
+ * Draw the pose and hands of a message; null clears the drawing.
+ *
+ * @param {SVGSVGElement} drawing
+ * @param {Seen | null} answer
+ */
 export function drawSeen(drawing, answer) {
   drawPose(drawing, answer?.pose ?? null);
   const { width, height } = drawing.viewBox.baseVal;
   const lines = (answer?.hands ?? []).flatMap((hand) =>
     HAND_BONES.filter(([from, to]) => hand[from] && hand[to]).map((ends) =>
       ends
-        .map((end, index) => `${index ? "L" : "M"}${hand[end][0] * width} ${hand[end][1] * height}`)
+        .map((end, index) => {
+          const [x, y] = hand[end] ?? [0, 0];
+          return `${index ? "L" : "M"}${x * width} ${y * height}`;
+        })
         .join(""),
     ),
   );
-  drawing.querySelector(".hand-bones").setAttribute("d", lines.join(""));
+  drawing.querySelector(".hand-bones")?.setAttribute("d", lines.join(""));
   drawing.classList.toggle("saluting", Boolean(answer?.held));
 }

@@ -9,6 +9,7 @@ export const cameraPossible = () => Boolean(navigator.mediaDevices?.getUserMedia
 
 const INSTEAD = "Without a camera, play a clip as if live.";
 
+/** @type {Record<string, [string, string]>} */
 const REASONS = {
   NotAllowedError: [
     "The camera was not allowed",
@@ -38,7 +39,11 @@ export const CAMERA_LOST = {
   text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}`,
 };
 
-/** Explain why there is no camera: `{ title, text }`. */
+/**
+ * Explain why there is no camera: `{ title, text }`.
+ *
+ * @param {Error} error
+ */
 export function whyNoCamera(error) {
   if (!cameraPossible()) {
     return {
@@ -50,7 +55,13 @@ export function whyNoCamera(error) {
   return { title, text: `${text} ${INSTEAD}` };
 }
 
-/** Show a camera in a video element; `lost()` is called when it sends nothing any more. */
+/**
+ * Show a camera in a video element; `lost()` is called when it sends nothing any more.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {string} deviceId
+ * @param {() => void} lost
+ */
 export async function showCamera(video, deviceId, lost) {
   if (!cameraPossible()) throw new TypeError("no camera");
   const wanted = { width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } };
@@ -69,7 +80,12 @@ export async function cameras() {
   return devices.filter(({ kind, deviceId }) => kind === "videoinput" && deviceId);
 }
 
-/** Load a clip into a video element, at its beginning. */
+/**
+ * Load a clip into a video element, at its beginning.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {string} url
+ */
 export async function showClip(video, url) {
   const loaded = new Promise((resolve, reject) => {
     video.onloadeddata = resolve;
@@ -84,9 +100,14 @@ export async function showClip(video, url) {
   await loaded;
 }
 
-/** Let go of the camera or clip. */
+/**
+ * Let go of the camera or clip.
+ *
+ * @param {HTMLVideoElement} video
+ */
 export function release(video) {
-  for (const track of video.srcObject?.getTracks() ?? []) track.stop();
+  const { srcObject } = video;
+  if (srcObject instanceof MediaStream) for (const track of srcObject.getTracks()) track.stop();
   video.onerror = video.onloadeddata = video.onended = null;
   video.srcObject = null;
   video.removeAttribute("src");
@@ -95,7 +116,12 @@ export function release(video) {
 
 const canvas = document.createElement("canvas");
 
-/** The picture on display as a JPEG; null while there is none. */
+/**
+ * The picture on display as a JPEG; null while there is none.
+ *
+ * @param {HTMLVideoElement} video
+ * @returns {Promise<Blob | null>}
+ */
 export function grab(video) {
   const { videoWidth: width, videoHeight: height } = video;
   if (!width) return Promise.resolve(null);
@@ -111,6 +137,9 @@ export function grab(video) {
 /**
  * Call `seen(time, captured)` for each new picture of a video that runs, in seconds of the camera's
  * or the clip's clock and of the page's, until the function returned is called.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {(time: number, captured: number) => void} seen
  */
 export function watchFrames(video, seen) {
   let running = true;
@@ -136,10 +165,13 @@ export function watchFrames(video, seen) {
 
 /**
  * Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {(time: number) => Promise<void>} seen
  */
 export function stepFrames(video, seen) {
   let running = true;
-  const shown = (time) =>
+  const shown = (/** @type {number} */ time) =>
     new Promise((resolve) => {
       video.onseeked = resolve;
       video.currentTime = time;
@@ -149,7 +181,7 @@ export function stepFrames(video, seen) {
       await shown(time);
       if (running) await seen(time);
     }
-    if (running) video.onended?.();
+    if (running) video.onended?.(new Event("ended"));
   };
   run();
   return () => {

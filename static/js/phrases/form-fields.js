@@ -1,6 +1,7 @@
 // Fields of the phrases' form. Each saves when it loses the focus or Enter is pressed.
 
 import { byId, h, icon } from "../core/dom.js";
+import { limit } from "../core/text-limit.js";
 
 let drawing = false;
 
@@ -38,6 +39,7 @@ export function textField({
   commit,
   multiline = false,
   hidden = false,
+  most = Number.POSITIVE_INFINITY,
   ...more
 }) {
   const input = h(multiline ? "textarea" : "input", {
@@ -49,6 +51,7 @@ export function textField({
       : { type: "text" }),
     ...more,
   });
+  limit(input, most);
   const leave = async () => {
     if (drawing || input.value === input.defaultValue) return;
     const before = input.defaultValue;

@@ -62,7 +62,7 @@ function form(phrase, place) {
       id: `${id}-name`,
       label: "Name",
       value: phrase.name,
-      maxLength: 80,
+      most: 80,
       commit: (text) => rename(phrase, text),
     }),
     h(
@@ -77,7 +77,7 @@ function form(phrase, place) {
       label: "Spoken back",
       value: phrase.says,
       placeholder: "the name and the values",
-      maxLength: 2000,
+      most: 2000,
       commit: (text) => put(phrase, "Spoken text", { says: text.trim() }),
     }),
     textField({

@@ -2,7 +2,7 @@
 
 import { h, svg } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
-import { nearestFrame } from "../core/frame-times.js";
+import { nearestFrame } from "../clips/frame-times.js";
 import { state, update } from "../core/state.js";
 import { chooseJoint, partsOf, roleOf, sum } from "./alignment-parts.js";
 import { seek } from "./playback.js";

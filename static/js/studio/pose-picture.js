@@ -3,8 +3,8 @@
 import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
-import { firstMoment, insideFrame } from "../core/frame-times.js";
-import { drawPose, skeleton } from "../core/skeleton.js";
+import { firstMoment, insideFrame } from "../clips/frame-times.js";
+import { drawPose, skeleton } from "../clips/skeleton.js";
 
 const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side; touchable at 390 px.
 

@@ -3,7 +3,7 @@
 import { figure } from "./pose-picture.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { nearestFrame } from "../core/frame-times.js";
+import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/keys.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";

@@ -1,7 +1,7 @@
 // The curves under the timeline: the salute's confidence and the wrists' speed.
 
 import { h, svg } from "../core/dom.js";
-import { SALUTE } from "../core/salute-threshold.js";
+import { SALUTE } from "../clips/salute-threshold.js";
 
 const HEIGHT = 30; // of the drawing, in its own units
 

@@ -3,8 +3,8 @@
 import { filmstrip } from "../clips/filmstrip.js";
 import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
-import { LEAST_FRAMES, nearestFrame } from "../core/frame-times.js";
-import { salutesIn, saluteWarning } from "../core/salutes.js";
+import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
+import { salutesIn, saluteWarning } from "../clips/salutes.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";

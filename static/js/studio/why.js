@@ -3,15 +3,15 @@
 import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
-import { nearestFrame } from "../core/frame-times.js";
+import { nearestFrame } from "../clips/frame-times.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
+import { addToTestSet } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
-import { lessonOf, offeredOf } from "./remedies.js";
-
-/** @import { Recognition } from "../core/types.d.ts" */
+import { recogniseWith } from "./stage.js";
 
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -149,18 +149,41 @@ const shares = (result, why) =>
           "plays without a server",
         )
       : null,
+    result.expected === null || result.trial
+      ? null
+      : h(
+          "span",
+          {},
+          h(
+            "button",
+            { type: "button", className: "link", onclick: () => keepAsTest(result) },
+            "Keep as a test",
+          ),
+          h("small", { className: "dim" }, " recognised again after every change"),
+        ),
     shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove", () => {
       toast("The session is being written", "The download starts by itself, in half a minute.");
     }),
   );
 
+/** Keep the recognised range with its expected label as a test of the language. */
+async function keepAsTest({ clip_id, start, end, expected }) {
+  const kept = await attempt("Adding to the test set", async () => {
+    await addToTestSet([{ clip_id, start, end, expected }]);
+    return true;
+  });
+  if (kept)
+    toast("In the test set", `It is recognised again after every change of the language.`, {
+      action: { label: "Show", run: () => go("health") },
+    });
+}
+
 const note = (text) => h("p", { className: "dim" }, text);
 
 /** What to show differently the next time, with its moment. */
 function lesson(why) {
-  const found = lessonOf(why);
-  if (!found) return null;
-  const { words, start } = found;
+  if (!why.lesson) return null;
+  const { words, start } = why.lesson;
   const to = () => {
     if (state.timeline && start !== null) seek(nearestFrame(state.timeline.time, start));
   };
@@ -178,7 +201,7 @@ function lesson(why) {
 /** What would have helped, as buttons that try it out; what to show differently stands first. */
 function remediesOf(why) {
   if (why.right) return null;
-  const offered = offeredOf(why, /** @type {Recognition} */ (state.result));
+  const offered = why.counterfactuals;
   return h(
     "div",
     { className: "remedies" },
@@ -210,8 +233,17 @@ const reasons = (why) => [
 const ASK_RECOGNITION =
   "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
 
-const ASK_EXPECTED =
-  "Was another gesture meant? Choose it as \u201cExpected\u201d and recognise again to see why, and which change would help.";
+/** The question what was meant; an answer shows the reasons at once. */
+const askExpected = (labels) => [
+  note("Was another gesture meant? Choose it to see why, and which change would help."),
+  h(
+    "div",
+    { className: "meant", role: "group", "aria-label": "Gesture that was meant" },
+    labels.map((label) =>
+      h("button", { type: "button", onclick: () => recogniseWith({ expected: label }) }, label),
+    ),
+  ),
+];
 
 /** Draw the explanation under the take. */
 export function drawWhy({ why, result, trial }) {
@@ -223,7 +255,7 @@ export function drawWhy({ why, result, trial }) {
   if (box.hidden) return box.replaceChildren();
   if (!result) return box.replaceChildren(note(ASK_RECOGNITION));
   const words = asks
-    ? [note(ASK_EXPECTED), shares(result, null)]
+    ? [...askExpected(result.gestures), shares(result, null)]
     : [trying, ...(why ? reasons(why) : []), shares(result, why)];
   const alignments = asks ? null : alignmentsOf(why);
   return box.replaceChildren(

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { insideFrame, nearestFrame } from "../../../static/js/core/frame-times.js";
+import { insideFrame, nearestFrame } from "../../../static/js/clips/frame-times.js";
 
 const TIME = [0, 0.04, 0.08, 0.2, 0.24]; // a pause of the camera between the third and the fourth
 

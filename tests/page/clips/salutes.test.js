@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { salutesIn, saluteWarning } from "../../../static/js/core/salutes.js";
+import { salutesIn, saluteWarning } from "../../../static/js/clips/salutes.js";
 
 // 0.6 s of salute, 2 s of stroke, 0.6 s of salute, and one frame by chance.
 const RATE = 20;

@@ -1,93 +1,51 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import {
-  csvOf,
-  intervalOf,
-  ratesOf,
-  testedOf,
-} from "../../../static/js/health/clip-test-results.js";
+import { csvOf, testedOf } from "../../../static/js/health/clip-test-results.js";
 
-const CLIPS = [
-  { id: "a", name: "circle-2.mp4" },
-  { id: "b", name: "circle-10.mp4" },
-];
-
-const recognition = (clip_id, values) => ({
-  clip_id,
+const take = (id, clip, result, values = {}) => ({
+  id,
+  clip_id: `c-${id}`,
+  clip,
   start: 0,
   end: 1,
   expected: "circle",
-  label: "circle",
-  nearest: "circle",
-  confidence: 0.9,
-  profile: "full",
-  tuning: null,
-  revision: 3,
-  id: `r-${clip_id}`,
+  demonstration: false,
+  result: result && {
+    revision: 3,
+    recognition_id: `r-${id}`,
+    label: "circle",
+    nearest: "circle",
+    confidence: 0.9,
+    right: true,
+    fault: null,
+    ...result,
+  },
+  before: null,
   ...values,
 });
 
-test("only the newest recognition of a take counts, sorted as people count", () => {
-  const tested = testedOf(
-    [recognition("b", { label: null }), recognition("b", {}), recognition("a", {})],
-    CLIPS,
-    "full",
-  );
+test("takes are sorted as people count, and say what got better and worse", () => {
+  const takes = [
+    take("b", "circle-10.mp4", { label: null, right: false }),
+    take("a", "circle-2.mp4", {}),
+    take("c", "circle-11.mp4", null),
+  ];
+  const tested = testedOf({ takes, better: ["a"], worse: ["b"] });
   assert.deepEqual(
-    tested.map(({ clip, right }) => [clip, right]),
+    tested.map(({ clip, known, right, change }) => [clip, known, right, change]),
     [
-      ["circle-2.mp4", true],
-      ["circle-10.mp4", false],
+      ["circle-2.mp4", true, true, "better"],
+      ["circle-10.mp4", true, false, "worse"],
+      ["circle-11.mp4", false, false, null],
     ],
   );
-});
-
-test("what was not expected, tuned, by another profile or of a deleted clip does not count", () => {
-  const others = [
-    recognition("a", { expected: null }),
-    recognition("a", { start: 2, tuning: { weights: {} } }),
-    recognition("a", { start: 4, profile: "paper" }),
-    recognition("a", { start: 6, trial: { label: "circle", change: {} } }),
-    recognition("gone", {}),
-  ];
-  assert.deepEqual(testedOf(others, CLIPS, "full"), []);
+  assert.deepEqual(testedOf(null), []);
 });
 
 test("a spreadsheet neither calculates a name nor splits it", () => {
-  const [heads, row] = csvOf([
-    { ...recognition("a", {}), clip: '=1+1, "x".mp4', right: true },
-  ]).split("\r\n");
+  const takes = [take("a", '=1+1, "x".mp4', {})];
+  const [heads, row] = csvOf(testedOf({ takes, better: [], worse: [] })).split("\r\n");
   assert.equal(heads, "clip,start,end,expected,label,nearest,confidence,right,revision,id");
-  assert.equal(row, `"'=1+1, ""x"".mp4",0,1,circle,circle,circle,0.9,true,3,r-a`);
-});
-
-test("a take that is a demonstration is marked", () => {
-  const gestures = [{ source: { clip_id: "a", start: 0, end: 1.2 } }, { source: null }];
-  const takes = testedOf(
-    [recognition("a", {}), recognition("a", { start: 5, end: 6 })],
-    CLIPS,
-    "full",
-    gestures,
-  );
-  assert.deepEqual(
-    takes.map(({ demonstration }) => demonstration),
-    [true, false],
-  );
-});
-
-test("rates have Wilson's interval, the lowest rate first", () => {
-  const { low, high } = intervalOf(9, 10);
-  assert.ok(Math.abs(low - 0.596) < 0.001 && Math.abs(high - 0.982) < 0.001);
-  const takes = [true, true, false].map((right, index) => ({
-    expected: index ? "line" : "circle",
-    right,
-  }));
-  assert.deepEqual(
-    ratesOf(takes).map(({ label, right, count }) => [label, right, count]),
-    [
-      ["line", 1, 2],
-      ["circle", 1, 1],
-    ],
-  );
+  assert.equal(row, `"'=1+1, ""x"".mp4",0,1,circle,circle,circle,0.9,true,3,a`);
 });

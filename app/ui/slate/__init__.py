@@ -1,0 +1,1 @@
+"""Slate: a language as one printable page."""

@@ -1,0 +1,271 @@
+"""Layout of a slate: every gesture with its strokes, meaning and name, and the trigger."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from math import ceil
+from typing import Final
+
+import cv2
+import numpy as np
+
+from app.recognition import Gesture, Language
+from app.recognition.features.trajectory_image import SIZE
+from app.recognition.language.file import seal
+from app.recognition.language.short_code import short_code
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.text.wording import humanize, join_words
+from app.ui.slate.drawing import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
+
+A4: Final = (210.0, 297.0)
+MARGIN = 12.0
+"""Millimetres that every printer leaves white, and a slate's frame covers."""
+
+HEAD = 34.0
+FOOT = 12.0
+GAP = 6.0
+"""Between two gestures: a finger's nail, so that nobody reads the neighbour's name."""
+
+MOST_COLUMNS = 8
+
+NAME_SIZE = 6.2
+MEANING_SIZE = 3.6
+"""Font sizes of the largest cells: readable through a mask at an arm's length and at half of it."""
+
+LARGEST_FIGURE = 62.0
+"""Beyond it a figure gets no clearer."""
+
+SMALLEST_MOVE = 0.15
+"""Share of the figure's extent below which a landmark is drawn as a dot: it is held still."""
+
+ARROWS = (0.22, 0.55, 0.88)
+"""Shares of a path's length with an arrow: soon after the start, midway, and near the end."""
+
+SHIFTS = (0.0, -0.06, 0.06)
+"""By how much an arrow may move along its path to where that is straightest, off corners."""
+
+HAND: Final[tuple[tuple[Point, Point], ...]] = (
+    ((0.33, 0.60), (0.14, 0.20)),
+    ((0.41, 0.56), (0.26, 0.08)),
+    ((0.59, 0.56), (0.71, 0.05)),
+    ((0.67, 0.60), (0.83, 0.15)),
+    ((0.68, 0.84), (0.99, 0.58)),
+)
+"""Fingers of a Vulcan salute in a unit square: little, ring, middle, index, thumb."""
+
+PALM: Final[tuple[Point, ...]] = (
+    (0.29, 0.55), (0.71, 0.55), (0.73, 0.82), (0.64, 1.0), (0.38, 1.0), (0.28, 0.82),
+)  # fmt: skip
+
+
+def lay_out(language: Language) -> Page:
+    """Return a language as one printable page."""
+    width, height = A4
+    parts = [*_head(language), *_gestures(language), *_foot(language)]
+    return Page(language.name, width, height, tuple(parts))
+
+
+def _head(language: Language) -> Iterator[Part]:
+    width = A4[0] - 2 * MARGIN
+    code = short_code(seal(json.loads(language.to_json())))
+    stamp = f"revision {language.revision}, {code}"
+    room = width - 55
+    yield Words(
+        language.name,
+        (MARGIN, MARGIN + 8),
+        fit_size(language.name, 9.0, room, bold=True),
+        bold=True,
+    )
+    yield Words(stamp, (MARGIN + width, MARGIN + 8), 3.6, grey=True, align="end")
+    top = MARGIN + 12.5
+    yield from _salute(MARGIN, top, 14.0)
+    left = MARGIN + 19
+    yield Words("Vulcan salute", (left, top + 5), 4.6, bold=True)
+    yield Words(
+        "Hold it for half a second before and after every gesture.", (left, top + 10.5), 4.0
+    )
+    if (roles := _roles(language)) is not None:
+        yield Words(roles, (left, top + 15), fit_size(roles, 3.6, width - 19), grey=True)
+    line = top + 17.5
+    yield Path(((MARGIN, line), (MARGIN + width, line)), 0.5)
+
+
+def _roles(language: Language) -> str | None:
+    """Return what begins, ends and cancels a message of several gestures."""
+    grammar = language.grammar
+    if grammar is None:
+        return None
+    named = {"begins": grammar.start, "ends": grammar.end, "cancels": grammar.cancel}
+    words = [f"{label} {verb}" for verb, label in named.items() if label]
+    return f"A message: {join_words(words)}." if words else None
+
+
+def _salute(left: float, top: float, size: float) -> Iterator[Part]:
+    def at(point: Point) -> Point:
+        return left + size * point[0], top + size * point[1]
+
+    yield Shape(tuple(at(point) for point in PALM))
+    for finger in HAND:
+        yield Path(tuple(at(point) for point in finger), 0.115 * size)
+
+
+def _foot(language: Language) -> Iterator[Part]:
+    width, height = A4
+    text = (
+        "Figures show the diver as the robot sees them, mirrored to your own view: begin at the "
+        "dot, follow the arrows."
+    )
+    room = width - 2 * MARGIN
+    yield Words(text, (MARGIN, height - MARGIN + 1), fit_size(text, 3.2, room), grey=True)
+    hands = "R right hand   L left hand"
+    if any(_initial(name) in "RL" for each in language.gestures for name in each.salient):
+        yield Words(hands, (MARGIN, height - MARGIN - 4), 3.2, grey=True)
+
+
+def _gestures(language: Language) -> Iterator[Part]:
+    gestures = language.gestures
+    if not gestures:
+        return
+    width = A4[0] - 2 * MARGIN
+    top = MARGIN + HEAD
+    height = A4[1] - MARGIN - FOOT - top
+    columns = max(range(1, MOST_COLUMNS + 1), key=lambda n: _side(n, len(gestures), width, height))
+    rows = ceil(len(gestures) / columns)
+    cell = (width - GAP * (columns - 1)) / columns
+    side = _side(columns, len(gestures), width, height)
+    step = min(height / rows, side + _text_height(side) + 2 * GAP)
+    for index, gesture in enumerate(gestures):
+        row, column = divmod(index, columns)
+        yield from _cell(gesture, MARGIN + column * (cell + GAP), top + row * step, cell, side)
+
+
+def _side(columns: int, count: int, width: float, height: float) -> float:
+    """Return the side of a figure when there are so many columns."""
+    cell = (width - GAP * (columns - 1)) / columns
+    row = height / ceil(count / columns) - GAP
+    # The text below a figure grows with it.
+    return max(0.0, min(cell, row / (1 + _text_height(1.0)), LARGEST_FIGURE))
+
+
+def _text_height(side: float) -> float:
+    """Return the height of a name and two lines of meaning below a figure."""
+    return 0.34 * side
+
+
+def _cell(gesture: Gesture, left: float, top: float, cell: float, side: float) -> Iterator[Part]:
+    scale = side / LARGEST_FIGURE
+    yield from _figure(gesture, left, top, side)
+    name = max(2.4, NAME_SIZE * (0.35 + 0.65 * scale))
+    base = top + side + 1.25 * name
+    yield Words(
+        gesture.label, (left, base), fit_size(gesture.label, name, cell, bold=True), bold=True
+    )
+    small = max(1.9, MEANING_SIZE * (0.4 + 0.6 * scale))
+    for line in wrap(_meaning(gesture), small, cell, 2):
+        base += 1.35 * small
+        yield Words(line, (left, base), small)
+
+
+def _meaning(gesture: Gesture) -> str:
+    """Return what the robot does, or what the gesture looks like."""
+    if isinstance(gesture.command, str) and gesture.command:
+        return gesture.command
+    if isinstance(gesture.command, dict):
+        return ", ".join(f"{humanize(str(key))} {value}" for key, value in gesture.command.items())
+    return gesture.description
+
+
+def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[Part]:
+    """Yield the strokes of a gesture in a square, with start dots and arrows."""
+    corners = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0))
+    yield Path(tuple((left + side * x, top + side * y) for x, y in corners), 0.2)
+    paths = _paths(gesture)
+    if not paths:
+        yield from _outline(gesture, left, top, side)
+        return
+    points = np.concatenate([path for _, path in paths])
+    extent = float(np.ptp(points, axis=0).max()) or 1.0
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    centre = np.array([left + side / 2, top + side / 2])
+    drawn = [(name, (path - middle) * (0.72 * side / extent) + centre) for name, path in paths]
+    width = 0.028 * side
+    for name, path in drawn:
+        still = float(np.ptp(path, axis=0).max()) < SMALLEST_MOVE * side
+        if not still:
+            yield Path(tuple((float(x), float(y)) for x, y in path), width)
+            yield from _arrows(path, side)
+        yield from _start(name, path[0], side)
+
+
+def _outline(gesture: Gesture, left: float, top: float, side: float) -> Iterator[Part]:
+    """Yield the outline of a trajectory image, of a gesture whose movement is not known."""
+    found, _ = cv2.findContours(gesture.image, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
+    for contour in found:
+        points = [(left + side * x / SIZE, top + side * y / SIZE) for x, y in contour[:, 0]]
+        yield Path((*points, points[0]), 0.012 * side)
+
+
+def _paths(gesture: Gesture) -> list[tuple[str, FloatArray]]:
+    """Return each salient landmark's path without gaps."""
+    if gesture.trajectory is None:
+        return []
+    chosen = gesture.trajectory.select(gesture.salient)
+    known = np.asarray(np.isfinite(chosen.xy).all(axis=2))
+    return [
+        (name, chosen.xy[known[:, row], row])
+        for row, name in enumerate(chosen.landmarks)
+        if known[:, row].sum() > 1
+    ]
+
+
+def _arrows(path: FloatArray, side: float) -> Iterator[Part]:
+    """Yield arrow heads along a path."""
+    lengths = np.concatenate([[0.0], np.hypot(*np.diff(path, axis=0).T).cumsum()])
+    size = 0.095 * side
+    for share in ARROWS:
+        tail, tip = max(
+            (_chord(path, lengths, share + shift, size) for shift in SHIFTS),
+            key=lambda chord: float(np.hypot(*(chord[1] - chord[0]))),
+        )
+        along = tip - tail
+        if (norm := float(np.hypot(*along))) == 0:
+            continue
+        along = along / norm
+        across = np.array([-along[1], along[0]]) * 0.55 * size
+        back = tip - along * size
+        corners = (tip + along * 0.15 * size, back + across, back - across)
+        yield Shape(tuple((float(x), float(y)) for x, y in corners))
+
+
+def _chord(
+    path: FloatArray, lengths: FloatArray, share: float, size: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return both ends of a piece of a path around a share of its length."""
+    reach = 0.5 * size
+    at = min(max(share * lengths[-1], reach), lengths[-1] - reach)
+    tail, tip = (
+        np.array([np.interp(at + shift, lengths, path[:, axis]) for axis in (0, 1)])
+        for shift in (-reach, reach)
+    )
+    return tail, tip
+
+
+def _start(name: str, at: FloatArray, side: float) -> Iterator[Part]:
+    """Yield the start dot of a path, with the hand's initial."""
+    x, y = float(at[0]), float(at[1])
+    radius = 0.058 * side
+    yield Disc((x, y), radius)
+    yield Words(
+        _initial(name),
+        (x, y + 0.36 * 1.35 * radius),
+        1.35 * radius,
+        bold=True,
+        white=True,
+        align="middle",
+    )
+
+
+def _initial(landmark: str) -> str:
+    """Return R or L for a hand, and for other landmarks their first letter."""
+    return landmark[:1].upper()

@@ -1,0 +1,39 @@
+// The look for direct sunlight: black on white with large targets, kept by the browser.
+
+import { byId } from "./dom.js";
+import { bind } from "./keys.js";
+
+const KEY = "osg-studio.look"; // localStorage: a tablet on a boat stays as it was set.
+const SUN = "sun";
+
+const stored = () => {
+  try {
+    return localStorage.getItem(KEY);
+  } catch {
+    return null;
+  }
+};
+
+/** @param {boolean} on */
+function show(on) {
+  if (on) document.documentElement.dataset.look = SUN;
+  else delete document.documentElement.dataset.look;
+  byId("sun").setAttribute("aria-pressed", String(on));
+}
+
+function toggle() {
+  const on = document.documentElement.dataset.look !== SUN;
+  show(on);
+  try {
+    localStorage.setItem(KEY, on ? SUN : "");
+  } catch {
+    /* a browser that keeps nothing begins anew */
+  }
+}
+
+/** Bind the button in the header, and show the look that was chosen last. */
+export function bindSun() {
+  byId("sun").onclick = toggle;
+  bind({ keys: ["Shift+L"], text: "Readable in the sun", group: "Everywhere", run: toggle });
+  show(stored() === SUN);
+}

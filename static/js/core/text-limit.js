@@ -1,0 +1,34 @@
+// The longest text of a field, in code points as the server counts; `maxLength` counts UTF-16
+// units, of which many scripts' letters and every emoji take two.
+
+/**
+ * The first `most` code points of a text.
+ *
+ * @param {string} text
+ * @param {number} most
+ */
+export function cut(text, most) {
+  const points = [...text];
+  return points.length > most ? points.slice(0, most).join("") : text;
+}
+
+/**
+ * Let a field take `most` code points.
+ *
+ * @template {HTMLInputElement | HTMLTextAreaElement} T
+ * @param {T} input
+ * @param {number} most
+ * @returns {T}
+ */
+export function limit(input, most) {
+  // In the capturing phase: who listens for the input reads the text as it stays.
+  input.addEventListener(
+    "input",
+    () => {
+      const kept = cut(input.value, most);
+      if (kept !== input.value) input.value = kept;
+    },
+    { capture: true },
+  );
+  return input;
+}

@@ -1,0 +1,240 @@
+// The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
+
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { moment, plural, readable } from "../core/format.js";
+import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
+import { limit } from "../core/text-limit.js";
+import { attempt, complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { address, go, here } from "../core/views.js";
+import { edit } from "../languages/revision-edit.js";
+
+const MOST = 5; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
+const LONGEST_NAME = 80; // `MAX_DIVER_LENGTH` there
+
+let shown = null; // { label, content, adding } of the dialog on display
+let followed = false;
+
+/**
+ * The address of a trajectory image with start dot and arrow.
+ *
+ * @param {string} thumbnail
+ */
+export const withMarks = (thumbnail) =>
+  `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
+
+/**
+ * The fault of a demonstration in two words; its clause says the rest.
+ *
+ * @param {{ salutes: number, fault: string }} source
+ */
+export const shortFault = ({ salutes, fault }) =>
+  salutes
+    ? `contains ${plural(salutes, "salute")}`
+    : fault.startsWith("is cut short")
+      ? "cut short"
+      : "contains rest";
+
+const gestureShown = () => currentLanguage().gestures.find(({ label }) => label === shown?.label);
+
+const clipOf = (source) => source && state.clips.find(({ id }) => id === source.clip_id);
+
+async function remove(index) {
+  const { label } = shown;
+  try {
+    await edit("Removing the demonstration", `Removal of a demonstration of ${label}`, (language) =>
+      api.languages.removeDemonstration(language, label, index),
+    );
+    showDone("Demonstration removed", label);
+  } catch (error) {
+    complain(error, "Removing the demonstration");
+  }
+}
+
+/** The clip that a demonstration was taken from, as a link to its range. */
+function origin(source) {
+  const clip = clipOf(source);
+  if (!clip) return h("span", { className: "dim" }, "its clip is not here");
+  const place = {
+    clip: clip.id,
+    take: null,
+    start: source.start,
+    end: source.end,
+    recognition: null,
+  };
+  return h(
+    "a",
+    {
+      href: address("studio", place),
+      onclick: here(() => {
+        byId("dialog").close();
+        go("studio", place);
+      }),
+    },
+    clip.name,
+  );
+}
+
+function figure(gesture, demonstration) {
+  const { index, diver, seconds, salient, thumbnail, source } = demonstration;
+  const name = `Demonstration ${index + 1}`;
+  const alone = gesture.demonstrations.length === 1;
+  return h(
+    "li",
+    { className: "demonstration-card" },
+    h("img", {
+      src: withMarks(thumbnail),
+      alt: `${name} of ${gesture.label}, from the dot along the arrow`,
+      width: 160,
+      height: 160,
+    }),
+    h("b", {}, diver || name),
+    h("span", { className: "num" }, seconds === null ? "only its image is known" : moment(seconds)),
+    h("span", { className: "dim" }, salient.map(readable).join(", ")),
+    origin(source),
+    source?.fault
+      ? h(
+          "p",
+          { className: "demonstration-fault" },
+          `It ${source.fault}. Save it again from a take.`,
+        )
+      : null,
+    h(
+      "button",
+      {
+        type: "button",
+        disabled: alone,
+        title: alone ? "The only demonstration stays; delete the gesture instead" : "",
+        "aria-label": `Remove ${name.toLowerCase()}`,
+        onclick: () => remove(index),
+      },
+      "Remove",
+    ),
+  );
+}
+
+/** The ranges of a clip that can be added: its takes, and what is selected on the timeline. */
+function rangesOf(clip, takes) {
+  const selected = clip === state.clip ? selectedRange() : null;
+  const own = takes.map(({ start, end, stroke_start: from, stroke_end: to }, number) => ({
+    text: `Take ${number + 1}, ${moment(from)} to ${moment(to)}`,
+    start,
+    end,
+  }));
+  if (selected && !selected.take && state.start !== null)
+    own.unshift({
+      text: `Selected, ${moment(selected.start)} to ${moment(selected.end)}`,
+      start: selected.start,
+      end: selected.end,
+    });
+  return own.length ? own : [{ text: "The whole clip", start: null, end: null }];
+}
+
+/** The form that adds a take of a clip. */
+function addForm() {
+  const clips = h("select", { id: "demonstration-clip" });
+  const takes = h("select", { id: "demonstration-take" });
+  const diver = limit(
+    h("input", { type: "text", id: "demonstration-diver", autocomplete: "off" }),
+    LONGEST_NAME,
+  );
+  const button = h("button", { type: "submit", className: "primary" }, "Add");
+  let ranges = [];
+  const load = async () => {
+    const clip = clips.value;
+    const found = clip ? await attempt("Loading the takes", () => api.clips.takes(clip)) : [];
+    if (!found || clip !== clips.value) return;
+    ranges = rangesOf(clip, found);
+    takes.replaceChildren(...ranges.map(({ text }, index) => h("option", { value: index }, text)));
+    if (clip === state.clip && ranges[state.take ?? 0]) takes.value = String(state.take ?? 0);
+  };
+  clips.onchange = load;
+  let offered = "";
+  /** Offer the clips that have poses by now; the choice among them stays. */
+  const offer = () => {
+    const ready = state.clips.filter(({ status }) => status === "done");
+    const now = ready.map(({ id, name }) => `${id} ${name}`).join();
+    if (now === offered) return;
+    offered = now;
+    const wanted = clips.value || state.clip;
+    clips.replaceChildren(...ready.map(({ id, name }) => h("option", { value: id }, name)));
+    if (ready.some(({ id }) => id === wanted)) clips.value = wanted ?? "";
+    load();
+  };
+  const field = (label, input) =>
+    h("div", { className: "field" }, h("label", { for: input.id }, label), input);
+  const form = h(
+    "form",
+    { className: "demonstration-add", "aria-label": "Another demonstration" },
+    h("h3", {}, "Another demonstration, best by another diver"),
+    field("Clip", clips),
+    field("Range", takes),
+    field("Diver", diver),
+    button,
+  );
+  form.onsubmit = async (event) => {
+    event.preventDefault();
+    const { label } = shown;
+    const { start, end } = ranges[Number(takes.value)] ?? {};
+    const body = { label, clip_id: clips.value, start, end, diver: diver.value.trim() };
+    button.disabled = true;
+    try {
+      await edit("Adding the demonstration", `Another demonstration of ${label}`, (language) =>
+        api.languages.addDemonstration(language, body),
+      );
+      diver.value = "";
+      showDone("Demonstration added", label);
+    } catch (error) {
+      complain(error, "Adding the demonstration");
+    } finally {
+      button.disabled = false;
+    }
+  };
+  return { form, offer };
+}
+
+function draw() {
+  if (!shown?.content.isConnected) return;
+  const gesture = state.gestures && gestureShown();
+  if (!gesture) return byId("dialog").close();
+  const { demonstrations } = gesture;
+  shown.content.replaceChildren(...demonstrations.map((each) => figure(gesture, each)));
+  shown.adding.form.hidden = demonstrations.length >= MOST;
+  shown.adding.offer();
+  return undefined;
+}
+
+/** Compare the demonstrations of a gesture in a dialog. */
+export function openDemonstrations(label) {
+  const dialog = byId("dialog");
+  const content = h("ul", { className: "demonstration-cards", "aria-label": "Demonstrations" });
+  const adding = addForm();
+  shown = { label, content, adding };
+  dialog.replaceChildren(
+    h(
+      "div",
+      { className: "demonstrations-dialog" },
+      h("h2", { id: "dialog-title" }, `Demonstrations of ${label}`),
+      h(
+        "p",
+        { className: "dim" },
+        `A take is compared with each of them, and the nearest counts. A gesture has ${MOST} at most.`,
+      ),
+      content,
+      adding.form,
+      h(
+        "div",
+        { className: "dialog-actions" },
+        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
+      ),
+    ),
+  );
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+  if (!followed) {
+    followed = true;
+    follow(["gestures", "clips"], draw);
+  } else draw();
+}

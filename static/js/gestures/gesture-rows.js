@@ -1,0 +1,115 @@
+// The rows of the table that makes gestures of clips: one per take, with a proposed label.
+
+import { moment, plural } from "../core/format.js";
+
+/** @import { Clip, GestureRow, Language, Take } from "../core/types.d.ts" */
+
+const NAMED_BY_CAMERA = /^(img|vid|dscn?|gopr|gh|gx|mvi|mov|pxl|dji|clip|video)?[\d\s._-]*$/i;
+const TRAILING = /[\s._-]+(demonstration|demo|test|take|clip|video|v?\d+)$/i;
+
+/**
+ * The label that a clip's file name proposes, or "": "follow_me-demonstration-2.mp4" proposes
+ * "follow me", and a camera's number nothing.
+ *
+ * @param {string} name
+ */
+export function labelOf(name) {
+  let stem = name.replace(/\.[^.]{1,8}$/, "");
+  if (/^\P{L}*$/u.test(stem) || (/\d/.test(stem) && NAMED_BY_CAMERA.test(stem))) return "";
+  for (let shorter = stem.replace(TRAILING, ""); shorter !== stem;) {
+    stem = shorter;
+    shorter = stem.replace(TRAILING, "");
+  }
+  return stem.replace(/[\s._-]+/g, " ").trim();
+}
+
+/**
+ * The rows of clips, in their order. A row is chosen at first unless its clip shows a gesture of
+ * the language already, or its label is one of the language's or of a row before.
+ *
+ * @param {Clip[]} clips
+ * @param {Map<string, Take[]>} takes by clip, of those whose poses are found
+ * @param {Language | null} language
+ * @param {Map<string, Partial<GestureRow>>} edited what the user wrote or chose, by key
+ * @returns {GestureRow[]}
+ */
+export function rowsOf(clips, takes, language, edited) {
+  const shown = new Set(
+    (language?.gestures ?? []).flatMap(({ demonstrations }) =>
+      demonstrations.map(({ source }) => source?.clip_id),
+    ),
+  );
+  const taken = new Set(language?.labels ?? []);
+  return clips.flatMap((clip) => {
+    const found = takes.get(clip.id) ?? null;
+    const alone = !found || found.length < 2;
+    return (found?.length ? found : [null]).map((take, number) => {
+      const key = alone ? clip.id : `${clip.id} ${number}`;
+      const proposed = labelOf(clip.name);
+      const label =
+        edited.get(key)?.label ?? (alone || !proposed ? proposed : `${proposed} ${number + 1}`);
+      const chosen = edited.get(key)?.chosen ?? (!shown.has(clip.id) && !taken.has(label));
+      if (chosen && label) taken.add(label);
+      return { key, clip, takes: found, take, number, label, chosen };
+    });
+  });
+}
+
+/**
+ * The range that becomes the gesture, in words.
+ *
+ * @param {GestureRow} row
+ */
+export function rangeText({ clip, takes, take, number }) {
+  if (!takes) return "";
+  if (!take) return `the whole clip, ${moment(clip.duration ?? 0)}`;
+  const which = takes.length > 1 ? `take ${number + 1} of ${takes.length}, ` : "";
+  return `${which}${moment(take.stroke_start)} to ${moment(take.stroke_end)}`;
+}
+
+/**
+ * What to look at before a row is saved; empty where its take lies between two salutes.
+ *
+ * @param {GestureRow} row
+ */
+export function rangeWarning({ takes, take }) {
+  if (!takes) return "";
+  if (!take)
+    return "No Vulcan salute was found: rest before and after the gesture becomes part of it.";
+  return take.closed ? "" : "No second salute was found: the take goes on to the end of the clip.";
+}
+
+/**
+ * Why the chosen rows cannot be saved yet, by key, and in one sentence; `others` are the labels
+ * that the language has.
+ *
+ * @param {GestureRow[]} rows
+ * @param {string[]} others
+ * @returns {{ problems: Map<string, string>, note: string }}
+ */
+export function problemsOf(rows, others) {
+  const chosen = rows.filter((row) => row.chosen);
+  const problems = new Map();
+  const seen = new Set(others);
+  for (const { key, label } of chosen) {
+    const text = label.trim();
+    if (!text) problems.set(key, "Name it.");
+    else if (seen.has(text))
+      problems.set(
+        key,
+        others.includes(text)
+          ? `The language has a gesture \u201c${text}\u201d already.`
+          : `Another row is called \u201c${text}\u201d.`,
+      );
+    seen.add(text);
+  }
+  const waiting = chosen.filter(({ takes }) => !takes).length;
+  const note = !chosen.length
+    ? "No row is chosen."
+    : problems.size
+      ? `${plural(problems.size, "row")} without a name of ${problems.size > 1 ? "their" : "its"} own.`
+      : waiting
+        ? `${plural(waiting, "clip")} still without poses: wait, or leave ${waiting > 1 ? "them" : "it"} out.`
+        : "";
+  return { problems, note };
+}

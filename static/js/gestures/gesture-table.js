@@ -1,0 +1,258 @@
+// The table that makes gestures of several clips: named in one place, saved in one undoable step.
+
+import { BUSY } from "../clips/busy.js";
+import { statusText } from "../clips/clip-store.js";
+import * as api from "../core/api.js";
+import { byId, h, reconcile } from "../core/dom.js";
+import { plural } from "../core/format.js";
+import { follow, state } from "../core/state.js";
+import { limit } from "../core/text-limit.js";
+import { attempt, complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { begin, choose } from "../languages/language-store.js";
+import { edit } from "../languages/revision-edit.js";
+import { problemsOf, rangeText, rangeWarning, rowsOf } from "./gesture-rows.js";
+
+/** @import { Language } from "../core/types.d.ts" */
+
+const NEW = "";
+const PROPOSED_NAME = "My gestures";
+const LONGEST_LABEL = 80;
+const LONGEST_NAME = 80;
+
+let table = null; // the one on display: { list, note, save, edited, target, refused }
+let followed = false;
+
+/** @type {Map<string, any>} */
+const takes = new Map(); // by clip; a clip's takes never change
+const asked = new Set();
+
+/** Load the takes of the clips that have poses by now. */
+function loadTakes() {
+  for (const { id, status } of state.clips)
+    if (status === "done" && !asked.has(id)) {
+      asked.add(id);
+      attempt("Loading the takes", () => api.clips.takes(id)).then((found) => {
+        if (found) takes.set(id, found);
+        else asked.delete(id);
+        draw();
+      });
+    }
+}
+
+/** The language to save into; null for a new one. */
+const targetLanguage = () => (state.gestures?.id === table.target ? state.gestures : null);
+
+const rows = () =>
+  rowsOf(
+    state.clips.filter(({ status }) => status === "done" || BUSY.has(status)),
+    takes,
+    targetLanguage(),
+    table.edited,
+  );
+
+function change(key, values) {
+  table.edited.set(key, { ...table.edited.get(key), ...values });
+  table.refused.delete(key);
+  draw();
+}
+
+function makeRow(row) {
+  const { key, clip } = row;
+  const box = h("input", {
+    type: "checkbox",
+    "aria-label": `Make a gesture of ${clip.name}`,
+    onchange: () => change(key, { chosen: box.checked }),
+  });
+  const label = h("input", {
+    type: "text",
+    className: "row-label",
+    autocomplete: "off",
+    "aria-label": `Label of ${clip.name}`,
+    "aria-describedby": `row-note-${key.replace(" ", "-")}`,
+    oninput: () => change(key, { label: label.value, chosen: true }),
+  });
+  return h(
+    "li",
+    { className: "gesture-row" },
+    box,
+    h("img", {
+      className: "poster",
+      src: api.clips.poster(clip.id),
+      alt: "",
+      width: 64,
+      height: 48,
+    }),
+    h("div", { className: "row-clip" }, h("b", {}, clip.name), h("span", { className: "dim num" })),
+    limit(label, LONGEST_LABEL),
+    h("p", { className: "row-note", id: `row-note-${key.replace(" ", "-")}` }),
+  );
+}
+
+/** Write what changed into a row; the field that is being typed in keeps its text and focus. */
+function drawRow(row, problem, element) {
+  const drawn = element ?? makeRow(row);
+  const box = drawn.querySelector("input[type=checkbox]");
+  const label = drawn.querySelector(".row-label");
+  box.checked = row.chosen;
+  if (label.value !== row.label) label.value = row.label;
+  label.setAttribute("aria-invalid", String(Boolean(problem)));
+  drawn.classList.toggle("left-out", !row.chosen);
+  drawn.querySelector(".row-clip span").textContent = row.takes
+    ? rangeText(row)
+    : statusText(row.clip, state.jobs.get(row.clip.job_id));
+  const note = drawn.querySelector(".row-note");
+  note.textContent = row.chosen ? problem || rangeWarning(row) : "";
+  note.classList.toggle("problem", Boolean(row.chosen && problem));
+  return drawn;
+}
+
+function draw() {
+  if (!table?.list.isConnected) return;
+  const all = rows();
+  const { problems, note } = problemsOf(all, targetLanguage()?.labels ?? []);
+  reconcile(
+    table.list,
+    all,
+    ({ key }) => key,
+    (row, element) => drawRow(row, table.refused.get(row.key) ?? problems.get(row.key), element),
+  );
+  const count = all.filter(({ chosen }) => chosen).length;
+  const unnamed = table.target === NEW && !table.name.value.trim();
+  table.note.textContent = unnamed ? "The new language has no name." : note;
+  table.save.textContent = `Save ${plural(count, "gesture")}`;
+  table.save.disabled = Boolean(table.saving || note || unnamed);
+}
+
+const draftOf = ({ clip, take, label }) => ({
+  label: label.trim(),
+  clip_id: clip.id,
+  ...(take ? { start: take.start, end: take.end } : {}),
+});
+
+/** Save into a new language; where the gestures are refused, there is none afterwards. */
+async function saveIntoNew(name, drafts) {
+  const made = await api.languages.create(name);
+  try {
+    const language = await api.languages.addGestures(made, drafts);
+    await begin(language, `Creation of ${name}`, `${plural(drafts.length, "gesture")} saved`);
+  } catch (error) {
+    await api.languages.remove({ id: made.id });
+    throw error;
+  }
+}
+
+async function saveInto(id, drafts) {
+  await choose(id);
+  const title = plural(drafts.length, "gesture");
+  await edit("Saving the gestures", `Addition of ${title}`, (language) =>
+    api.languages.addGestures(language, drafts),
+  );
+  showDone(`${title} saved`, drafts.map(({ label }) => label).join(", "));
+}
+
+async function save() {
+  const chosen = rows().filter((row) => row.chosen);
+  const drafts = chosen.map(draftOf);
+  table.saving = true;
+  draw();
+  try {
+    if (table.target === NEW) await saveIntoNew(table.name.value.trim(), drafts);
+    else await saveInto(table.target, drafts);
+    byId("dialog").close();
+  } catch (error) {
+    const at = Number(
+      /^\/gestures\/(\d+)/.exec(error.errors?.[0]?.pointer ?? "")?.[1] ?? Number.NaN,
+    );
+    if (chosen[at]) table.refused.set(chosen[at].key, error.message);
+    else complain(error, "Saving the gestures");
+  } finally {
+    table.saving = false;
+    draw();
+  }
+}
+
+/** The choice of the language: one's own, or a new one. Samples stay as they are. */
+function languageChoice() {
+  const own = state.languages.filter(({ sample }) => !sample);
+  const name = h("input", {
+    type: "text",
+    id: "table-name",
+    value: PROPOSED_NAME,
+    autocomplete: "off",
+    oninput: draw,
+  });
+  limit(name, LONGEST_NAME);
+  const nameRow = h(
+    "div",
+    { className: "field" },
+    h("label", { for: "table-name" }, "Name of the new language"),
+    name,
+  );
+  const select = h(
+    "select",
+    { id: "table-language" },
+    own.map((each) => h("option", { value: each.id }, each.name)),
+    h("option", { value: NEW }, "A new language"),
+  );
+  select.value = own.find(({ id }) => id === state.language)?.id ?? NEW;
+  select.onchange = async () => {
+    table.target = select.value;
+    nameRow.hidden = table.target !== NEW;
+    if (table.target !== NEW) await choose(table.target);
+    draw();
+  };
+  nameRow.hidden = select.value !== NEW;
+  const element = h(
+    "div",
+    { className: "table-language" },
+    h("div", { className: "field" }, h("label", { for: "table-language" }, "Save into"), select),
+    nameRow,
+  );
+  return { element, name, target: select.value };
+}
+
+/** Open the table with the clips of the library. */
+export function openGestureTable() {
+  const dialog = byId("dialog");
+  const { element, name, target } = languageChoice();
+  const note = h("p", { className: "dim", role: "status" });
+  const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
+  const button = h("button", { type: "submit", className: "primary" });
+  table = { list, note, save: button, name, target, edited: new Map(), refused: new Map() };
+  const form = h(
+    "form",
+    { method: "dialog", className: "gesture-table", noValidate: true },
+    h("h2", { id: "dialog-title" }, "Make gestures of these clips"),
+    h(
+      "p",
+      { className: "dim" },
+      "Each take between two Vulcan salutes becomes one gesture, under the name beside it.",
+    ),
+    element,
+    list,
+    h(
+      "div",
+      { className: "dialog-actions" },
+      note,
+      h("span", { className: "spacer" }),
+      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      button,
+    ),
+  );
+  form.onsubmit = (event) => {
+    event.preventDefault();
+    if (!button.disabled) save();
+  };
+  dialog.replaceChildren(form);
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+  if (!followed) {
+    followed = true;
+    follow(["clips"], loadTakes);
+    follow(["clips", "jobs", "gestures"], draw);
+  } else loadTakes();
+  draw();
+  /** @type {HTMLElement | null} */ (list.querySelector(".row-label"))?.focus();
+}

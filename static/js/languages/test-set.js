@@ -1,0 +1,135 @@
+// The test set of the language on display: its labelled takes, recognised again after each change.
+
+import * as api from "../core/api.js";
+import { plural } from "../core/format.js";
+import { follow, state, update } from "../core/state.js";
+import { attempt, complain, toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
+
+/** @import { TestSet } from "../core/types.d.ts" */
+
+const MOST_UNASKED = 30; // Takes that are recognised again unasked: a few seconds' work.
+
+/** @type {Promise<unknown> | null} */
+let running = null;
+
+/**
+ * Show a test set that the server answered with.
+ *
+ * @param {TestSet | null} testSet
+ */
+function show(testSet) {
+  if (testSet && testSet.language_id === state.language) update({ testSet });
+}
+
+/** Load the test set of the language on display. */
+export async function loadTestSet() {
+  const { language } = state;
+  if (!language) return update({ testSet: null });
+  show(await attempt("Loading the test set", () => api.testSets.get(language)));
+  return undefined;
+}
+
+/** Recognise the takes that the newest revision has not recognised; one run at a time. */
+export function runTestSet() {
+  running ??= runNow().finally(() => {
+    running = null;
+    update({ testing: null });
+  });
+  return running;
+}
+
+/** Run after a change of the takes, of which a run that is under way does not know. */
+async function runWithNews() {
+  await running;
+  await runTestSet();
+}
+
+async function runNow() {
+  const { language } = state;
+  if (!language) return;
+  update({ testing: { id: language, done: 0, total: state.testSet?.waiting ?? 0 } });
+  try {
+    show(await api.testSets.run(language));
+  } catch (error) {
+    if (error.code === "test_run_cancelled") await loadTestSet();
+    else if (!api.isAway(error)) complain(error, "Testing");
+  }
+}
+
+/** Cancel the run; what is done is kept. */
+export const cancelTestRun = () =>
+  attempt("Cancelling", () => api.testSets.cancel(state.language ?? ""));
+
+/**
+ * Add takes, or give those that are there another label, and recognise them.
+ *
+ * @param {{ clip_id: string, expected: string, start?: number, end?: number }[]} takes
+ */
+export async function addToTestSet(takes) {
+  show(await api.testSets.add(state.language ?? "", takes));
+  await runWithNews();
+}
+
+/**
+ * Give a take another label.
+ *
+ * @param {string} take
+ * @param {string} expected
+ */
+export async function labelTake(take, expected) {
+  show(await attempt("Labelling", () => api.testSets.label(state.language ?? "", take, expected)));
+  await runWithNews();
+}
+
+/**
+ * Remove a take from the test set.
+ *
+ * @param {string} take
+ */
+export async function removeTake(take) {
+  show(await attempt("Leaving out", () => api.testSets.remove(state.language ?? "", take)));
+}
+
+/**
+ * What a change of the language did to the test set, in words; empty where nothing changed.
+ *
+ * @param {Pick<TestSet, "better" | "worse">} testSet
+ */
+export const changeWords = ({ better, worse }) =>
+  [
+    worse.length ? `${plural(worse.length, "take")} worse` : "",
+    better.length ? `${plural(better.length, "take")} better` : "",
+  ]
+    .filter(Boolean)
+    .join(", ");
+
+/** A change of the language was made: recognise the takes again, and say what came of it. */
+async function testAgain() {
+  await loadTestSet();
+  const { testSet } = state;
+  if (!testSet?.waiting || testSet.takes.length > MOST_UNASKED || state.trial) return;
+  await runTestSet();
+  const now = state.testSet;
+  const words = now && now.revision > testSet.revision - 1 ? changeWords(now) : "";
+  if (words && now?.language_id === testSet.language_id)
+    toast("The test set has changed", `${words} since the revision before.`, {
+      action: { label: "Show", run: () => go("health") },
+    });
+}
+
+/** Keep the test set in step with the language on display, and with other pages. */
+export function followTestSet() {
+  let shown = "";
+  follow(["gestures"], ({ gestures }) => {
+    const now = gestures ? `${gestures.id} ${gestures.revision}` : "";
+    if (now === shown) return;
+    const same = gestures && shown.startsWith(`${gestures.id} `);
+    shown = now;
+    if (same) testAgain();
+    else loadTestSet();
+  });
+  follow(["labelled"], ({ labelled }) => {
+    if (labelled && labelled.id === state.language && !running) loadTestSet();
+  });
+}

@@ -1,0 +1,165 @@
+"""Gestures of several clips: named in one table, saved in one step, in few clicks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from app.recognition.language.short_code import short_code
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import add_clip, library_of
+from tests.browser.test_accessibility import faults
+
+pytestmark = pytest.mark.slow
+
+EXTRACTION_MS = 300_000
+"""Longest wait for the poses of a clip of six seconds on a loaded machine."""
+
+COUNT_PRESSES = """
+window.presses = 0;
+addEventListener("pointerdown", () => { window.presses += 1; }, { capture: true });
+"""
+
+NAMES = ("up", "down", "stop", "follow me", "bring light", "take picture", "return", "stay")
+
+
+@pytest.fixture
+def client(server: Running) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield client
+
+
+def presses(page: Page) -> int:
+    """Return how often a button of the mouse was pressed since the page was opened."""
+    return int(page.evaluate("window.presses"))
+
+
+def counting(page: Page) -> Page:
+    """Count from now on."""
+    page.evaluate(COUNT_PRESSES)
+    return page
+
+
+def open_table(page: Page) -> Locator:
+    """Open the table."""
+    page.get_by_role("button", name="Make gestures of these clips").click()
+    return page.get_by_role("dialog", name="Make gestures of these clips")
+
+
+def test_the_first_gesture_of_an_own_clip_takes_four_clicks_and_a_name(
+    open_page: OpenPage, clips: Path
+) -> None:
+    page = counting(open_page(scene=False, first_visit=True))
+    page.get_by_role("button", name="Skip").click()
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Choose clips").click()
+    clip = clips / "circle-demonstration.mp4"
+    chooser.value.set_files(
+        {"name": "GX010001.mp4", "mimeType": "video/mp4", "buffer": clip.read_bytes()}
+    )
+    dialog = open_table(page)
+    name = dialog.get_by_label("Label of GX010001.mp4")
+    expect(name).to_have_value("")  # A camera's number is no label.
+    name.fill("circle")
+    save = dialog.get_by_role("button", name="Save 1 gesture")
+    expect(save).to_be_enabled(timeout=EXTRACTION_MS)
+    save.click()
+    expect(
+        page.get_by_role("list", name="Gestures", exact=True).get_by_text("circle")
+    ).to_be_visible()
+    expect(page.get_by_label("Language", exact=True)).to_contain_text("My gestures")
+    assert presses(page) <= 4
+
+
+def test_eight_clips_become_eight_gestures_in_one_step_that_can_be_undone(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    language = client.post("/api/v1/languages", json={"name": "eight"}).json()["id"]
+    for number in range(8):
+        add_clip(server, "circle", name=f"IMG_{number:04}.mp4")
+    page = counting(open_page({"language": language}, scene=False))
+    expect(page.get_by_role("list", name="Clips").get_by_text("IMG_0000.mp4")).to_be_visible()
+    dialog = open_table(page)
+    for row in dialog.get_by_role("listitem").all():
+        if "IMG_" not in row.inner_text():
+            row.get_by_role("checkbox").uncheck()  # Clips of other tests: no part of this one.
+    expect(dialog).to_contain_text("8 rows without a name")
+    before = presses(page)
+    for number, label in enumerate(NAMES):
+        dialog.get_by_label(f"Label of IMG_{number:04}.mp4").fill(label)
+    dialog.get_by_role("button", name="Save 8 gestures").click()
+    cards = page.get_by_role("list", name="Gestures", exact=True).get_by_role("listitem")
+    expect(cards).to_have_count(8)
+    assert presses(page) - before + 1 <= 10
+    assert client.get(f"/api/v1/languages/{language}").json()["revision"] == 2
+    page.keyboard.press("Control+z")
+    expect(cards).to_have_count(0)
+    page.keyboard.press("Control+Shift+Z")
+    expect(cards).to_have_count(8)
+
+
+def test_a_row_says_what_is_wrong_with_it(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "warned")
+    add_clip(server, name="no salute.mp4")
+    page = open_page({"language": library.language}, scene=False)
+    dialog = open_table(page)
+    row = dialog.get_by_role("listitem").filter(has_text="no salute.mp4")
+    for box in dialog.get_by_role("checkbox").all():
+        box.uncheck()
+    expect(dialog.get_by_role("button", name="Save 0 gestures")).to_be_disabled()
+    row.get_by_role("textbox").fill("circle")
+    expect(row).to_contain_text("has a gesture \u201ccircle\u201d already")
+    row.get_by_role("textbox").fill("still")
+    expect(row).to_contain_text("No Vulcan salute was found")
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Save 1 gesture").click()
+    expect(row).to_contain_text("still: ")  # Nothing moves in it.
+    expect(dialog).to_be_visible()
+
+
+def test_a_phone_shows_every_field_of_the_table(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "narrow")
+    page = open_page({"language": library.language}, scene=False, size=(390, 844))
+    dialog = open_table(page)
+    for field in dialog.get_by_role("listitem").first.locator("input").all():
+        box = field.bounding_box()
+        assert box is not None
+        assert 0 <= box["x"] <= box["x"] + box["width"] <= 390
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()
+
+
+def test_why_a_clip_was_misread_takes_one_click_after_recognising(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "misread")
+    query = {**library.address, "recognition": library.recognise()}
+    page = counting(open_page(query, scene=False))
+    why = page.get_by_role("region", name="Why")
+    meant = why.get_by_role("group", name="Gesture that was meant")
+    meant.get_by_role("button", name="line").click()
+    expect(why).to_contain_text(re.compile("instead of .line."))
+    assert presses(page) == 1
+
+
+def test_the_page_shows_the_code_that_the_exported_file_gives(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "carried")
+    page = open_page(library.address, scene=False)
+    exported = client.get(f"/api/v1/languages/{library.language}/export").json()
+    code = short_code(exported["sha256"])
+    expect(page.locator("#carried")).to_contain_text(f"Revision 3, code {code}")
+    page.get_by_role("button", name="Export").click()
+    expect(page.get_by_role("dialog", name="Export")).to_contain_text(f"code {code}")

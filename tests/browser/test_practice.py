@@ -1,0 +1,59 @@
+"""Practice: a diver shows gestures by clips, is told what to change, and has a record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+from tests.browser.test_accessibility import faults
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, request.node.name[:40])
+
+
+def test_takes_are_judged_and_counted_towards_acceptance(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "circle", name="my circle.mp4")
+    add_clip(server, "line", name="a mistake.mp4")
+    page = open_page({"view": "practice", "language": library.language}, scene=False)
+    show = page.get_by_role("button", name="Show it by this clip")
+    expect(page.get_by_text("Name the diver")).to_be_visible()
+    expect(show).to_be_disabled()
+    page.get_by_label("Diver").fill("Ana")
+    page.get_by_label("Clip", exact=True).select_option(label="my circle.mp4")
+    expect(page.get_by_label("Gesture to show")).to_have_value("circle")
+    show.press("Enter")
+    expect(page.get_by_text("Right: circle")).to_be_visible()
+    record = page.get_by_role("region", name="Ana")
+    expect(record).to_contain_text("0 errors in 1 take: 58 more takes without an error")
+
+    page.get_by_label("Clip", exact=True).select_option(label="a mistake.mp4")
+    show.click()
+    expect(page.get_by_text("Show it again:")).to_be_visible()
+    expect(record).to_contain_text("1 error in 2 takes")
+    assert faults(page) == []
+    record.get_by_text("2 takes", exact=True).click()
+    record.get_by_role("button", name="Remove this take of circle").first.click()
+    expect(record).to_contain_text("0 errors in 1 take")
+    record.get_by_text("1 take", exact=True).click()
+    record.get_by_role("link", name="my circle.mp4").click()
+    expect(page.locator("#outcome")).to_contain_text("as expected")
+
+
+def test_practice_fits_a_phone(open_page: OpenPage, library: Library) -> None:
+    query = {"view": "practice", "language": library.language}
+    page = open_page(query, scene=False, size=(390, 844))
+    expect(page.get_by_role("heading", name="Practice")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390

@@ -1,0 +1,48 @@
+"""The look for direct sunlight: high contrast, large targets, kept over a reload."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, library_of
+from tests.browser.test_accessibility import faults
+
+pytestmark = pytest.mark.slow
+
+SMALL = """() => [...document.querySelectorAll("button, select, summary, a.button")]
+  .filter((each) => each.checkVisibility() && !each.closest("#transport, .timeline"))
+  .map((each) => [each.getBoundingClientRect().height, each.outerHTML.slice(0, 80)])
+  .filter(([height]) => height > 0 && height < 44)"""
+
+
+@pytest.fixture
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "sunny")
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
+def test_targets_are_large_and_contrast_is_high(
+    open_page: OpenPage,
+    library: Library,
+    size: tuple[int, int],
+) -> None:
+    page = open_page(library.address, scene=False, size=size)
+    button = page.get_by_role("button", name="Readable in the sun")
+    button.click()
+    expect(button).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("body")).to_have_css("color", "rgb(0, 0, 0)")
+    page.reload()
+    expect(page.get_by_role("button", name="1 demonstration of circle")).to_be_visible()
+    expect(page.locator("body")).to_have_css("background-color", "rgb(255, 255, 255)")
+    assert page.evaluate(SMALL) == []
+    assert faults(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    page.keyboard.press("Shift+L")
+    expect(button).to_have_attribute("aria-pressed", "false")

@@ -1,0 +1,76 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import {
+  labelOf,
+  problemsOf,
+  rangeText,
+  rangeWarning,
+  rowsOf,
+} from "../../../static/js/gestures/gesture-rows.js";
+
+const clip = (id, name, status = "done") => ({ id, name, status, duration: 4 });
+const TAKE = { start: 0.5, end: 3, stroke_start: 1, stroke_end: 2.5, closed: true };
+
+test("a file name proposes a label, a camera's number proposes none", () => {
+  const proposed = {
+    "circle-demonstration.mp4": "circle",
+    "follow_me-test-2.MOV": "follow me",
+    "up.mp4": "up",
+    "IMG_2043.mp4": "",
+    "GX010123.MP4": "",
+    "2026-11-22 10.14.33.mp4": "",
+    "на верх 3.mkv": "на верх",
+  };
+  for (const [name, label] of Object.entries(proposed)) assert.equal(labelOf(name), label, name);
+});
+
+test("every take is a row, and clips without poses wait", () => {
+  const takes = new Map([
+    ["a", [TAKE]],
+    ["b", [TAKE, TAKE]],
+    ["c", []],
+  ]);
+  const clips = [
+    clip("a", "circle.mp4"),
+    clip("b", "square.mp4"),
+    clip("c", "line.mp4"),
+    clip("d", "wave.mp4", "running"),
+  ];
+  const rows = rowsOf(clips, takes, null, new Map());
+  assert.deepEqual(
+    rows.map(({ label }) => label),
+    ["circle", "square 1", "square 2", "line", "wave"],
+  );
+  assert.deepEqual(rows.map(rangeText), [
+    "1.00 s to 2.50 s",
+    "take 1 of 2, 1.00 s to 2.50 s",
+    "take 2 of 2, 1.00 s to 2.50 s",
+    "the whole clip, 4.00 s",
+    "",
+  ]);
+  assert.match(rangeWarning(rows[3]), /^No Vulcan salute was found/);
+  assert.match(problemsOf(rows, []).note, /^1 clip still without poses/);
+});
+
+test("clips of the language and second clips of a label are left out until they are chosen", () => {
+  const takes = new Map(["a", "b", "c"].map((id) => [id, [TAKE]]));
+  const clips = [clip("a", "circle.mp4"), clip("b", "square-1.mp4"), clip("c", "square-2.mp4")];
+  const language = {
+    labels: ["ring"],
+    gestures: [{ label: "ring", demonstrations: [{ source: { clip_id: "a" } }] }],
+  };
+  const chosen = (edited) =>
+    rowsOf(clips, takes, language, new Map(edited)).map((row) => row.chosen);
+  assert.deepEqual(chosen([]), [false, true, false]);
+  assert.deepEqual(chosen([["c", { chosen: true }]]), [false, true, true]);
+});
+
+test("a row needs a name that neither the language nor another row has", () => {
+  const row = (key, label) => ({ key, label, chosen: true, takes: [TAKE], take: TAKE });
+  const { problems, note } = problemsOf([row("a", "up"), row("b", " up"), row("c", "")], ["down"]);
+  assert.deepEqual([...problems.keys()], ["b", "c"]);
+  assert.match(note, /^2 rows without a name/);
+  assert.equal(problemsOf([row("a", "up")], ["down"]).note, "");
+  assert.equal(problemsOf([row("a", "down")], ["down"]).problems.size, 1);
+});

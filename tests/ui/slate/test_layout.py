@@ -1,0 +1,104 @@
+"""Slate: every gesture of a language on one page, in any script, with what divers must do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import pytest
+
+from app.recognition import Gesture, Language
+from app.recognition.errors import OsgError
+from app.ui.slate.drawing import Disc, Page, Path, Shape, Words, estimate_width, wrap
+from app.ui.slate.fonts import find_font
+from app.ui.slate.layout import ARROWS, MARGIN, lay_out
+from app.ui.slate.pdf import to_pdf
+from app.ui.slate.svg import to_svg
+from tests.conftest import ROOT
+
+TABLE_2 = Language.load(ROOT / "languages" / "osg-table-2.json")
+
+
+def words_of(page: Page) -> list[str]:
+    return [part.text for part in page.parts if isinstance(part, Words)]
+
+
+def many(count: int, label: str = "{}") -> Language:
+    """Return a language of so many gestures."""
+    gestures = [
+        replace(TABLE_2.gestures[index % 8], label=label.format(index)) for index in range(count)
+    ]
+    return Language("pool", gestures)
+
+
+def test_names_meanings_salute_and_roles_are_on_the_page() -> None:
+    texts = words_of(lay_out(TABLE_2))
+    assert {*TABLE_2.labels} <= {*texts}
+    assert "Go to the waypoint" in texts
+    assert "Vulcan salute" in texts
+    assert any(text.startswith("A message: circle begins") for text in texts)
+
+
+def test_every_stroke_has_a_start_dot_with_its_hand_and_arrows() -> None:
+    (sweep,) = (each for each in TABLE_2.gestures if each.label == "sweep")
+    page = lay_out(Language("pool", [sweep]))
+    discs = [part for part in page.parts if isinstance(part, Disc)]
+    initials = [part.text for part in page.parts if isinstance(part, Words) and part.white]
+    arrows = [part for part in page.parts if isinstance(part, Shape) and len(part.points) == 3]
+    assert len(discs) == 2
+    assert sorted(initials) == ["L", "R"]
+    assert len(arrows) == 2 * len(ARROWS)
+
+
+@pytest.mark.parametrize("count", [1, 2, 8, 24, 64])
+def test_everything_lies_on_one_page_and_no_name_leaves_its_column(count: int) -> None:
+    page = lay_out(many(count, "a rather long name {}"))
+    points = [
+        point for part in page.parts if isinstance(part, Path | Shape) for point in part.points
+    ]
+    for x, y in points:
+        assert 0 <= x <= page.width
+        assert 0 <= y <= page.height
+    for part in page.parts:
+        if isinstance(part, Words) and part.align == "start":
+            right = part.at[0] + estimate_width(part.text, part.size, bold=part.bold)
+            assert right <= page.width - MARGIN + 0.1
+            assert part.at[1] <= page.height
+
+
+def test_a_gesture_without_movement_shows_its_outline() -> None:
+    known = TABLE_2.gestures[0]
+    drawn = Gesture(label="old", salient=known.salient, image=known.image)
+    page = lay_out(Language("pool", [drawn]))
+    assert not [part for part in page.parts if isinstance(part, Disc)]
+    assert len([part for part in page.parts if isinstance(part, Path)]) > 7
+
+
+def test_svg_is_well_formed_whatever_the_labels_say() -> None:
+    gesture = replace(TABLE_2.gestures[0], label="<b>&\u0444 \u4e0a\u6d6e", command='"</svg>')
+    text = to_svg(lay_out(Language("pool & sea", [gesture])))
+    root = ElementTree.fromstring(text)
+    shown = ["".join(each.itertext()) for each in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert "<b>&\u0444 \u4e0a\u6d6e" in shown
+
+
+def test_pdf_of_other_scripts_is_one_page_and_the_same_each_time() -> None:
+    gesture = replace(
+        TABLE_2.gestures[0], label="\u0432\u0432\u0435\u0440\u0445 \u03b1\u03bd\u03c9"
+    )
+    page = lay_out(Language("\u042f\u0437\u044b\u043a", [gesture]))
+    content = to_pdf(page)
+    assert content.startswith(b"%PDF-")
+    assert content.count(b"/Type /Page\n") == 1
+    assert content == to_pdf(page)
+
+
+def test_letters_that_no_font_has_are_named() -> None:
+    with pytest.raises(OsgError, match="no font on this computer has the letters"):
+        find_font(frozenset("\U0010fffd"))
+
+
+def test_lines_are_broken_at_words_and_within_words_that_are_too_wide() -> None:
+    assert wrap("go to the waypoint", 1.0, 7.0, 3) == ["go to the", "waypoint"]
+    assert wrap("go to the waypoint", 1.0, 7.0, 1) == ["go to the\u2026"]
+    assert wrap("\u4e0a\u6d6e\u4e0b\u6f5c", 1.0, 2.0, 2) == ["\u4e0a\u6d6e", "\u4e0b\u6f5c"]
