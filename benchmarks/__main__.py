@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from benchmarks import explanation, extraction, library, memory, recognition, speed, studio_page
+from benchmarks.cost import (
+    explanation,
+    extraction,
+    library,
+    memory,
+    recognition,
+    speed,
+    studio_page,
+)
 
 PARTS = {
     "extraction": extraction.main,

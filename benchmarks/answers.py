@@ -34,7 +34,7 @@ from app.recognition import (
     Recording,
     takes_in,
 )
-from benchmarks.recorded_sets import SETS, RecordedSet, recorded_sets
+from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDINGS = ROOT / "tests" / "recordings"

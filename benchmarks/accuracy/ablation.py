@@ -4,7 +4,7 @@ One-shot accuracy on the recorded sets, user-independent where people are known.
 distances are measured once and fused anew for every choice of voters, in the traversals that all of
 them together chose.
 
-    python -m benchmarks.ablation ../shared/data
+    python -m benchmarks.accuracy.ablation ../shared/data
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import VOTER_NAMES
+from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.arguments import set_arguments
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
-from benchmarks.shared_sets import demonstrated
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 ALL = "all together"
 

@@ -5,7 +5,7 @@ processor time of all threads, so other programs on the machine do not count, in
 profile ``full`` takes for the very same work. Memory is the peak of a process that does nothing but
 import a method, teach it one language of ten digits and ask it ten times.
 
-    python -m benchmarks.comparison ../shared/data --draws 20 --queries 15 --seed 1
+    python -m benchmarks.accuracy.comparison ../shared/data --draws 20 --queries 15 --seed 1
 
 The trained methods need the extra ``bench``; without it they are left out, with the reason.
 """
@@ -27,8 +27,8 @@ from app.evaluation.proportion import Share
 from benchmarks.arguments import set_arguments
 from benchmarks.methods import METHODS, new_method
 from benchmarks.methods.base import Method
-from benchmarks.one_shot_draws import Draw, draws
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 YARDSTICK = "full"
 QUERIES_OF_THE_CHILD = 10
@@ -36,7 +36,7 @@ QUERIES_OF_THE_CHILD = 10
 CHILD = """
 import resource, sys
 from pathlib import Path
-from benchmarks.comparison import teach_and_ask_once
+from benchmarks.accuracy.comparison import teach_and_ask_once
 teach_and_ask_once(sys.argv[1], Path(sys.argv[2]))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """

@@ -7,8 +7,8 @@ many right takes of others the shipped thresholds refuse and how many foreign ta
 beside an oracle that knows the set and refuses one in twenty, and the confidence's coefficients
 fitted without the set.
 
-    python -m benchmarks.constants ../shared/data --subject voters
-    python -m benchmarks.constants ../shared/data --subject rejection
+    python -m benchmarks.accuracy.constants ../shared/data --subject voters
+    python -m benchmarks.accuracy.constants ../shared/data --subject rejection
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES
+from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
-from benchmarks.one_shot_draws import Draw, draws
-from benchmarks.people import all_sets
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.recorded_sets import RecordedSet
 
 ROUNDS, STEP = 200, 0.3
 """Steps of the exponentiated gradient, and their length."""

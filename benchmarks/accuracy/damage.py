@@ -3,7 +3,7 @@
 Clean demonstrations, damaged queries, the same for both. The recorded sets show hands or arms only;
 the takes of our own test clips (TAKES, from poses extracted once and kept there) show a whole body.
 
-    python -m benchmarks.damage ../shared/data TAKES --draws 10 --queries 20 --seed 1
+    python -m benchmarks.accuracy.damage ../shared/data TAKES --draws 10 --queries 20 --seed 1
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from app.recognition import (
 )
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.preprocessing.side_swaps import swap_sides
-from benchmarks.one_shot_draws import draws
-from benchmarks.recorded_sets import recorded_sets
-from benchmarks.shared_sets import demonstrated
+from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.recorded_sets import recorded_sets
 from languages.build import FOLDER, TABLE_2
 
 SETS = ("digits", "grufba3d", "natops")

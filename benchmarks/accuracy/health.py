@@ -5,7 +5,7 @@ Of each recorded set one take a class by one person makes a language. It is rehe
 What was forecast of each ordered pair of gestures, and of each gesture, is put beside what came of
 it: by set, and by how much was forecast.
 
-    python -m benchmarks.health ../shared/data
+    python -m benchmarks.accuracy.health ../shared/data
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
 from app.recognition.health.simulated_trials import simulate_trials
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.variation import Person
+from benchmarks.accuracy.shared_sets import demonstrated
 from benchmarks.arguments import set_arguments
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
-from benchmarks.shared_sets import demonstrated
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 BINS = (0.0, 0.02, 0.05, 0.1, 0.2, 1.001)
 """Bins of estimates; the two thresholds of the report are among their ends."""
@@ -143,9 +143,10 @@ def study_set(recorded: RecordedSet, person: Person, study: Study) -> tuple[Fore
             nearest = np.array([compared.scores.argmin() for compared in read])
             refused = np.array([is_rejected(compared.novelty[performer]) for compared in read])
             others = np.delete(np.arange(len(labels)), performer)
+            estimates = [rehearsal.confusion(performer, int(other)) for other in others]
             confusions.append(
                 Forecasts(
-                    np.array([rehearsal.confusion(performer, int(other)).rate for other in others]),
+                    np.array([each.rate for each in estimates if each is not None]),
                     (nearest[:, None] == others).sum(axis=0).astype(np.float64),
                     np.full(len(others), float(len(read))),
                 )

@@ -3,7 +3,7 @@
 Plausible takes by another person are drawn of every gesture of the larger sample language, and
 each is spoilt in one way. First: the first difference told is of that kind; named: any one is.
 
-    python -m benchmarks.known_faults [--takes 10] [--seed 0]
+    python -m benchmarks.accuracy.known_faults [--takes 10] [--seed 0]
 """
 
 from __future__ import annotations

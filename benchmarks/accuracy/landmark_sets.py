@@ -7,7 +7,7 @@ and hand tips): one template a class, everything of all joints or of wrists and 
 profile would refuse counts as wrong in the column "label" and by its nearest gesture in "nearest";
 at the end stands which two gestures make up most of the wrong ones among the nearest.
 
-    python -m benchmarks.landmark_sets ../shared/data
+    python -m benchmarks.accuracy.landmark_sets ../shared/data
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17
 from benchmarks.methods.ours import gesture_of
-from benchmarks.one_shot_draws import draws
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
-SAMPLES = Path(__file__).parents[1] / "languages" / "clips"
+SAMPLES = Path(__file__).parents[2] / "languages" / "clips"
 SETS = {"33": POSE_LANDMARKS, "COCO": COCO_17}
 
 Query = tuple[str, PoseSequence]

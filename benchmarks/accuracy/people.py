@@ -4,7 +4,7 @@ One demonstration a gesture from one person; queries from the same person (UD) o
 else (UI). `nearest` is the share whose nearest gesture is the right one, `refused` the share of
 these that the shipped thresholds reject; the interval is Wilson's.
 
-    python -m benchmarks.people ../shared/data --draws 8 --queries 60
+    python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
-from benchmarks.one_shot_draws import Draw, draws
-from benchmarks.recorded_sets import SETS, RecordedSet, recorded_sets
-from benchmarks.whole_body_sets import ARM_CLASSES, whole_body_sets
+from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
+from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
 
 STEPS, BAND = 32, 8
 """Steps that a recording is resampled to in time, and how many one may be ahead of the other."""

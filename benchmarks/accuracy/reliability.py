@@ -6,7 +6,7 @@ They come from the same person (UD), and where people are known also from everyb
 What is refused and accepted is told for every bar that `rejection` knows; averages over the sets
 are of queries by the same person where people are known.
 
-    python -m benchmarks.reliability ../shared/data --seeds 1 2 3
+    python -m benchmarks.accuracy.reliability ../shared/data --seeds 1 2 3
 """
 
 from __future__ import annotations
@@ -18,9 +18,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from app.recognition import Language, PoseError, Recognizer
-from benchmarks.arguments import set_arguments
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
-from benchmarks.rejection import (
+from benchmarks.accuracy.rejection import (
     Outcomes,
     accepted_as_calibrated,
     accepted_at_one_bar,
@@ -28,7 +26,9 @@ from benchmarks.rejection import (
     refused_as_calibrated,
     with_interval,
 )
-from benchmarks.shared_sets import demonstrated
+from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.arguments import set_arguments
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 BINS = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0001)
 

@@ -164,7 +164,9 @@ def report(title: str, pictures: Sequence[Picture]) -> None:
 
 def main() -> None:
     """Print the table; ``--images FOLDER`` adds still images."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.salute", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.accuracy.salute", description=__doc__
+    )
     parser.add_argument("--images", type=Path, help="folder with salute/ and other/")
     images: Path | None = parser.parse_args().images
     report("synthetic hands", synthetic_pictures())

@@ -4,7 +4,7 @@ Each language has one take of every class by one person, two takes by one person
 by two or three people. Queries are by people who show none of them: the same queries for all
 of these languages. Plain DTW, which takes the nearest template of all, stands beside the profiles.
 
-    python -m benchmarks.several_demonstrations ../shared/data --sets utd_other utkinect
+    python -m benchmarks.accuracy.several_demonstrations ../shared/data --sets utd_other utkinect
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from app.evaluation.proportion import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.matching.dtw import dtw_distances
+from benchmarks.accuracy.people import BAND, all_sets, positions, velocities
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
-from benchmarks.people import BAND, all_sets, positions, velocities
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.recorded_sets import RecordedSet
 
 SHOWN = ("1 take", "2 takes", "2 people", "3 people")
 """Who shows every gesture of a language."""

@@ -7,7 +7,7 @@ everything is in the first column, whoever it comes from. Draws are random with 
 same for every method; the interval is Wilson's. What profile ``full`` would refuse counts by its
 nearest gesture here; `reliability` measures what is refused.
 
-    python -m benchmarks.shared_sets ../shared/data --methods paper dtw full
+    python -m benchmarks.accuracy.shared_sets ../shared/data --methods paper dtw full
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from app.recognition import (
 )
 from app.recognition.gestures.profile import PROFILES
 from benchmarks.arguments import set_arguments
-from benchmarks.drawn_sets import drawn_sets
 from benchmarks.methods import new_method
 from benchmarks.methods.ours import gesture_of
-from benchmarks.one_shot_draws import draws as drawn
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.drawn_sets import drawn_sets
+from benchmarks.sets.one_shot_draws import draws as drawn
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 Answer = Callable[[PoseSequence], str | None]
 

@@ -2,10 +2,10 @@
 
 Half of a set's classes make a language, one template each by one person; streams are composed of
 that person's or of other people's takes, of the classes left out, and of accidental movements
-(`benchmarks/streams.py`). A gesture counts as found when it is reported with its label and the
+(`benchmarks/sets/streams.py`). A gesture counts as found when it is reported with its label and the
 middle of what was reported lies in it; everything else reported is a false alarm.
 
-    python -m benchmarks.spotting ../shared/data --streams 3 --events 30 --seed 1
+    python -m benchmarks.accuracy.spotting ../shared/data --streams 3 --events 30 --seed 1
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from app.recognition import Language, Recognizer
 from app.recognition.estimation import create_estimator
 from app.recognition.recording.video import read_frames
 from app.recognition.spotting import Spotted, Spotter
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
-from benchmarks.shared_sets import demonstrated
-from benchmarks.streams import Event, Stream, compose, with_body
+from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.sets.streams import Event, Stream, compose, with_body
 from languages.build import FOLDER
 
 SETS = ("digits", "letters", "grufba3d")

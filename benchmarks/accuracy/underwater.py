@@ -26,7 +26,7 @@ from app.recognition.poses.frame import Image
 from app.recognition.recording.salute import ENTER_SCORE
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
-from benchmarks.salute import CHANGING_PHASES
+from benchmarks.accuracy.salute import CHANGING_PHASES
 from languages.render.encode import encode
 
 MURK: tuple[float, ...] = (0.0, 0.5, 0.75)
@@ -137,7 +137,9 @@ def _rate_salutes(
 
 def main() -> None:
     """Print a line per degree of murk and setting of the correction."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.underwater", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.accuracy.underwater", description=__doc__
+    )
     parser.add_argument("names", nargs="*", help="clips without suffix; all test clips if none")
     parser.add_argument("--murk", type=float, nargs="+", default=MURK)
     parser.add_argument("--water", nargs="+", default=get_args(WaterCorrection))

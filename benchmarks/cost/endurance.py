@@ -1,9 +1,9 @@
 """Endurance: runs the robot's runtime on a looped clip and measures its memory over days.
 
-``python -m benchmarks.endurance`` runs 30 minutes of stream time as fast as it goes, and states how
-memory grows, how many frames are remembered, and whether every loop says the same. What the process
-has of the system's memory is distinguished from what is allocated in it: an allocator keeps pieces
-that are free, and takes more when several stages need theirs in the same moment.
+``python -m benchmarks.cost.endurance`` runs 30 minutes of stream time as fast as it goes, and
+states how memory grows, how many frames are remembered, and whether every loop says the same. What
+the process has of the system's memory is distinguished from what is allocated in it: an allocator
+keeps pieces that are free, and takes more when several stages need theirs in the same moment.
 ``--models-once`` lets the models look at the first loop alone: all else is done for every frame.
 """
 
@@ -313,7 +313,9 @@ def report(laps: Sequence[Lap], period: float) -> None:
 
 def main() -> None:
     """Run the stream and report."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.endurance", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.cost.endurance", description=__doc__
+    )
     parser.add_argument("--minutes", type=float, default=30.0, help="of stream time")
     parser.add_argument("--every", type=int, default=1, help="look at one frame of so many")
     parser.add_argument("--models-once", action="store_true", help="in the first loop alone")

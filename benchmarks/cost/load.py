@@ -1,7 +1,7 @@
 """Load: 50 open pages and 8 uploading clients on one server, and how fast it answers meanwhile.
 
-``python -m benchmarks.load`` starts a server of its own on an empty folder and prints the 50th and
-99th percentile of the page, the API and the health check, the failed requests, and the server's
+``python -m benchmarks.cost.load`` starts a server of its own on an empty folder and prints the 50th
+and 99th percentile of the page, the API and the health check, the failed requests, and the server's
 share of a core. Each page follows the event stream and asks for both lists every three seconds;
 each uploading client sends a small clip, waits for its poses, deletes it and begins again.
 """

@@ -25,7 +25,7 @@ from app.recognition.estimation import create_estimator
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
-from benchmarks.recognition import wander
+from benchmarks.cost.recognition import wander
 
 GESTURES = 20
 ROUNDS = 25

@@ -6,7 +6,7 @@ and query are prepared differently; the moment vectors are standardised within t
 Fourier descriptors keep position, size and starting point; the first contour is taken, whichever
 it is. The query is drawn, described and compared once for each gesture of the language.
 
-It also costs what the published implementation costs, for `benchmarks.speed`: coordinates are
+It also costs what the published implementation costs, for `benchmarks.cost.speed`: coordinates are
 gathered and lines drawn in plain loops over frames and keypoints, moments are those of the same two
 libraries (scikit-image and mahotas), and every voter looks for the contours by itself.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.recognition import PoseSequence
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.recorded_sets import RecordedSet
 
 PEOPLE = 10
 TAKES = 10

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.recorded_sets import RecordedSet
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from app.recognition import PoseSequence
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.background_motion import simulate_background_motion
-from benchmarks.recorded_sets import RATE, RecordedSet
+from benchmarks.sets.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0
 """Pixels; recordings are scaled so that the median gesture of a set is as large."""

@@ -19,7 +19,7 @@ scale
     Mean difference of the voters' distributions with our spreads scaled, and the scale that the
     other sets would choose for each.
 
-    python -m benchmarks.variation ../shared/data models voters confusion refused scale
+    python -m benchmarks.simulation.variation ../shared/data models voters confusion refused scale
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person
 from app.recognition.voters.registry import VOTER_NAMES
-from benchmarks.one_shot_draws import draws
-from benchmarks.recorded_sets import RecordedSet, recorded_sets
-from benchmarks.shared_sets import demonstrated
-from benchmarks.take_comparison import FEATURES, LOOKS, TakeComparison, demonstration_of
-from benchmarks.two_samples import coverage, kolmogorov_smirnov, separability
-from benchmarks.variation_models import MODELS, Model, ours, scaled
+from benchmarks.accuracy.shared_sets import demonstrated
+from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
+from benchmarks.simulation.take_comparison import FEATURES, LOOKS, TakeComparison, demonstration_of
+from benchmarks.simulation.two_samples import coverage, kolmogorov_smirnov, separability
+from benchmarks.simulation.variation_models import MODELS, Model, ours, scaled
 
 ARTEFACTS = {"grufba3d": ("aspect_ratio",), "natops": ("tempo", "duration")}
 """Features that a set's authors normalised: the shape of the box, the number of frames."""

@@ -2,8 +2,8 @@
 
 import pytest
 
-from benchmarks.drawn_sets import drawn_sets
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.drawn_sets import drawn_sets
+from benchmarks.sets.recorded_sets import RecordedSet
 
 
 @pytest.fixture(scope="session")

@@ -10,8 +10,8 @@ from benchmarks.methods import METHODS, new_method
 from benchmarks.methods.base import Method
 from benchmarks.methods.jackknife import Jackknife
 from benchmarks.methods.point_cloud import greedy_cloud_distance
-from benchmarks.one_shot_draws import draws
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.recorded_sets import RecordedSet
 
 TRAINED_FOR_LONG = {"hmm", "bi-lstm"}
 

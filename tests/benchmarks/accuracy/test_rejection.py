@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.rejection import (
+from benchmarks.accuracy.rejection import (
     REFUSED,
     Outcomes,
     accepted_as_calibrated,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.recorded_sets import RecordedSet
-from benchmarks.several_demonstrations import SHOWN, define, draw_languages, score
+from benchmarks.accuracy.several_demonstrations import SHOWN, define, draw_languages, score
+from benchmarks.sets.recorded_sets import RecordedSet
 from tests.recognition.strategies import SHAPES, recording
 
 CLASSES = ("circle", "line", "wedge")

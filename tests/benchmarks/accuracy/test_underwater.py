@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition.estimation import Image
-from benchmarks.underwater import WATER_COLOUR, degrade
+from benchmarks.accuracy.underwater import WATER_COLOUR, degrade
 
 
 def chequered(height: int, width: int) -> Image:

@@ -12,7 +12,7 @@ from app.recognition.estimation import FrameLandmarks, Image
 from app.recognition.recording.live_segmentation import LONGEST_SALUTE
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.robot import Frame, Listener, Notice
-from benchmarks.endurance import LoopedClip, allocated_bytes, endure, slope_of
+from benchmarks.cost.endurance import LoopedClip, allocated_bytes, endure, slope_of
 from tests.api.recordings import FRAME_SIZE, RATE, recording_of
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.recording.test_live_segmentation import frames_of
@@ -74,6 +74,7 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
     assert settled[-1].memory - settled[0].memory < 4e6
 
 
+@pytest.mark.slow
 def test_a_looped_clip_is_one_stream(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "dive.mp4", frames=10)
     source = LoopedClip(clip, 1.0, every=2)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from benchmarks.one_shot_draws import draws
-from benchmarks.recorded_sets import RecordedSet
+from benchmarks.sets.one_shot_draws import draws
+from benchmarks.sets.recorded_sets import RecordedSet
 
 
 def test_templates_are_one_of_each_class_by_one_person_and_never_asked_for(

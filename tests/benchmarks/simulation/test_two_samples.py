@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.two_samples import coverage, kolmogorov_smirnov, separability
+from benchmarks.simulation.two_samples import coverage, kolmogorov_smirnov, separability
 
 
 def normal(seed: int, *shape: int) -> FloatArray:

@@ -1,0 +1,1 @@
+"""Accuracy: labels, rejection and confidence on movements of other people."""

@@ -1,0 +1,1 @@
+"""Costs: time and memory, as ratios of two things in one run."""

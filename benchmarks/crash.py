@@ -1,0 +1,314 @@
+"""Crash rounds: kills a server and its workers while clients write, and checks what is left.
+
+``python -m benchmarks.crash --rounds 60`` starts a server on one folder again and again. In each
+round three clients upload clips (whole and in parts), create, rename and delete languages, and
+import language files, until the server, or a worker and then the server, is killed by SIGKILL at
+a random moment. After the next start everything that was acknowledged must be there, what was not
+must be there wholly or not at all, and no file may be without its row. At the end every job must
+come to an end. The exit code is 1 where anything is lost.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import httpx
+
+from app.resources import samples_dir
+from benchmarks.cost.load import SERVE, small_clip
+
+API: Final = "/api/v1"
+
+FEWEST_SECONDS, MOST_SECONDS = 0.2, 3.0
+"""When a kill comes after the clients have begun: a request takes milliseconds, a job seconds."""
+
+MOST_CLIPS = 12
+"""Clips that are kept; further ones are deleted, which is a change to check as well."""
+
+FINAL: Final = ("done", "failed", "cancelled")
+
+
+@dataclass
+class Written:
+    """What the server has acknowledged, and what was sent last without an answer.
+
+    Attributes
+    ----------
+    languages
+        By id the revision and the name; None for a deleted one.
+    attempts
+        By id the name, or None for a deletion, that was sent and not answered.
+    clips
+        By id whether it is kept.
+    deleting
+        Ids of clips whose deletion was sent and not answered.
+    acknowledged
+        Number of changes.
+    refused
+        Number of uploads that were refused because the process that probed them was killed.
+    lost
+        What is missing or wrong, in words.
+
+    """
+
+    languages: dict[str, tuple[int, str] | None] = field(default_factory=dict)
+    attempts: dict[str, str | None] = field(default_factory=dict)
+    clips: dict[str, bool] = field(default_factory=dict)
+    deleting: set[str] = field(default_factory=set)
+    acknowledged: int = 0
+    refused: int = 0
+    lost: list[str] = field(default_factory=list)
+
+
+Client = Callable[[httpx.Client, Written, random.Random], None]
+
+
+def edit(client: httpx.Client, written: Written, draw: random.Random) -> None:
+    """Create, rename or delete a language."""
+    kept = [key for key, state in written.languages.items() if state is not None]
+    chosen = draw.choice(kept) if kept and draw.random() < 0.8 else None
+    name = f"language {draw.randrange(10**9)}"
+    if chosen is None:
+        made = client.post(f"{API}/languages", json={"name": name}).raise_for_status().json()
+        written.languages[made["id"]] = made["revision"], name
+    elif len(kept) > 20:
+        written.attempts[chosen] = None
+        client.delete(f"{API}/languages/{chosen}").raise_for_status()
+        written.languages[chosen] = None
+        del written.attempts[chosen]
+    else:
+        written.attempts[chosen] = name
+        answer = client.patch(f"{API}/languages/{chosen}", json={"name": name})
+        written.languages[chosen] = answer.raise_for_status().json()["revision"], name
+        del written.attempts[chosen]
+    written.acknowledged += 1
+
+
+def import_file(client: httpx.Client, written: Written, draw: random.Random) -> None:
+    """Import a sample language."""
+    file = draw.choice(sorted(samples_dir().glob("*.json")))
+    answer = client.post(f"{API}/languages/import", content=file.read_bytes())
+    made = answer.raise_for_status().json()
+    written.languages[made["id"]] = made["revision"], made["name"]
+    written.acknowledged += 1
+    time.sleep(0.2)
+
+
+def upload(client: httpx.Client, written: Written, draw: random.Random, clip: bytes) -> None:
+    """Add a clip at once or in two parts, or delete one."""
+    kept = [key for key, state in written.clips.items() if state]
+    if len(kept) >= MOST_CLIPS:
+        chosen = draw.choice(kept)
+        written.deleting.add(chosen)
+        client.delete(f"{API}/clips/{chosen}").raise_for_status()
+        written.clips[chosen] = False
+        written.deleting.discard(chosen)
+    elif draw.random() < 0.5:
+        answer = client.post(f"{API}/clips", files={"file": ("dive.mkv", clip)})
+        written.clips[answer.raise_for_status().json()["id"]] = True
+    else:
+        tus = {"Tus-Resumable": "1.0.0"}
+        begun = client.post(f"{API}/uploads", headers=tus | {"Upload-Length": str(len(clip))})
+        place = begun.raise_for_status().headers["location"]
+        half = len(clip) // 2
+        for start, part in ((0, clip[:half]), (half, clip[half:])):
+            headers = {"Upload-Offset": str(start), "Content-Type": OFFSETS}
+            answer = client.patch(place, content=part, headers=tus | headers)
+            answer.raise_for_status()
+        written.clips[answer.headers["content-location"].rpartition("/")[2]] = True
+    written.acknowledged += 1
+
+
+OFFSETS: Final = "application/offset+octet-stream"
+
+
+@contextmanager
+def serving(folder: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """Run a server; yield its address and process, and kill it at the end."""
+    command = [sys.executable, "-c", SERVE, str(folder)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            line = process.stdout.readline()
+            if not line:
+                raise SystemExit("the server did not start on what the last kill left")
+            yield next(word for word in line.split() if word.startswith("http://")), process
+        finally:
+            process.kill()
+
+
+def workers_of(pid: int) -> list[int]:
+    """Return the processes that a server has started."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            if int(stat.read_text().rpartition(")")[2].split()[1]) == pid:
+                found.append(int(stat.parent.name))
+    return found
+
+
+def work(address: str, written: Written, client: Client, seed: int, stop: threading.Event) -> None:
+    """Write until the server is gone or the round is over."""
+    draw = random.Random(seed)
+    with httpx.Client(base_url=address, timeout=30) as connection:
+        while not stop.is_set():
+            try:
+                client(connection, written, draw)
+            except httpx.HTTPStatusError as error:
+                if error.response.status_code == 422 and "/languages" not in str(error.request.url):
+                    written.refused += 1
+                elif error.response.status_code not in (404, 429, 503):
+                    written.lost.append(f"{error.request.method} {error.request.url.path}: {error}")
+                time.sleep(0.1)
+            except httpx.HTTPError:
+                return
+
+
+def check(address: str, folder: Path, written: Written, digest: str) -> None:
+    """Compare what a fresh server has with what the former one acknowledged."""
+    with httpx.Client(base_url=address, timeout=60) as client:
+        found = {each["id"]: each for each in client.get(f"{API}/languages").json()}
+        for key, state in written.languages.items():
+            _check_language(key, state, found.get(key), written)
+        clips = {each["id"] for each in client.get(f"{API}/clips").json()}
+        for key, kept in written.clips.items():
+            if key in written.deleting:
+                written.clips[key] = key in clips
+            elif kept is not (key in clips):
+                written.lost.append(f"clip {key}: kept {kept}, found {key in clips}")
+            elif kept:
+                video = client.get(f"{API}/clips/{key}/video").content
+                if hashlib.sha256(video).hexdigest() != digest:
+                    written.lost.append(f"clip {key}: other bytes than were sent")
+        written.attempts.clear()
+        written.deleting.clear()
+        # What was stored without an acknowledgement is whole, and goes on like the others.
+        for key in clips - written.clips.keys():
+            written.clips[key] = True
+        for key in found.keys() - written.languages.keys():
+            written.languages[key] = found[key]["revision"], found[key]["name"]
+    _check_files(folder, written)
+
+
+def _check_language(
+    key: str, state: tuple[int, str] | None, found: dict[str, object] | None, written: Written
+) -> None:
+    seen = None if found is None else (found["revision"], found["name"])
+    allowed = [state]
+    if key in written.attempts and state is not None:
+        tried = written.attempts[key]
+        allowed.append(None if tried is None else (state[0] + 1, tried))
+    if seen not in allowed:
+        written.lost.append(f"language {key}: {seen}, allowed were {allowed}")
+    else:
+        written.languages[key] = allowed[allowed.index(seen)]
+
+
+def _check_files(folder: Path, written: Written) -> None:
+    with closing(sqlite3.connect(folder / "studio.db")) as database:
+        (verdict,) = database.execute("PRAGMA quick_check").fetchone()
+        rows = {key for (key,) in database.execute("SELECT id FROM clip")}
+    if verdict != "ok":
+        written.lost.append(f"database: {verdict}")
+    for path in (folder / "clips").iterdir():
+        # A job that began again may be at work.
+        if path.name.partition(".")[0] not in rows and not path.name.startswith("."):
+            written.lost.append(f"orphan: {path.name}")
+
+
+def crash(rounds: int, seed: int) -> Written:
+    """Run the rounds, and return what was written and lost."""
+    written, draw = Written(), random.Random(seed)
+    kills = {"server": 0, "worker and server": 0}
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "data"
+        clip = small_clip(Path(place) / "dive.mkv", frames=10)
+        digest = hashlib.sha256(clip).hexdigest()
+
+        def add(client: httpx.Client, state: Written, chance: random.Random) -> None:
+            upload(client, state, chance, clip)
+
+        for number in range(rounds):
+            with serving(folder) as (address, process):
+                check(address, folder, written, digest)
+                stop = threading.Event()
+                threads = [
+                    threading.Thread(
+                        target=work, args=(address, written, each, draw.randrange(10**9), stop)
+                    )
+                    for each in (edit, import_file, add)
+                ]
+                for thread in threads:
+                    thread.start()
+                time.sleep(draw.uniform(FEWEST_SECONDS, MOST_SECONDS))
+                workers = workers_of(process.pid)
+                both = bool(workers) and draw.random() < 0.4
+                if both:
+                    with suppress(ProcessLookupError):
+                        os.kill(draw.choice(workers), signal.SIGKILL)
+                    time.sleep(draw.uniform(0, 0.5))
+                kills["worker and server" if both else "server"] += 1
+                process.kill()
+                stop.set()
+                for thread in threads:
+                    thread.join()
+            if (number + 1) % 10 == 0:
+                print(
+                    f"{number + 1} rounds, {written.acknowledged} changes acknowledged, "
+                    f"{len(written.lost)} lost",
+                    flush=True,
+                )
+        with serving(folder) as (address, _):
+            check(address, folder, written, digest)
+            _wait_for_jobs(address, written)
+    print(f"kills: {kills}")
+    return written
+
+
+def _wait_for_jobs(address: str, written: Written, seconds: float = 300.0) -> None:
+    """Wait until every job has come to an end."""
+    end = time.monotonic() + seconds
+    with httpx.Client(base_url=address, timeout=60) as client:
+        while True:
+            clips = client.get(f"{API}/clips").json()
+            still = [each["id"] for each in clips if each["status"] not in FINAL]
+            if not still:
+                return
+            if time.monotonic() > end:
+                written.lost.append(f"jobs without an end: {still}")
+                return
+            time.sleep(1)
+
+
+def main() -> None:
+    """Run the rounds and print what they found."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--rounds", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    written = crash(given.rounds, given.seed)
+    print(
+        f"{given.rounds} rounds, {written.acknowledged} changes acknowledged, {written.refused} "
+        "uploads refused whose probing process was killed"
+    )
+    print("\n".join(written.lost) or "nothing lost, no orphan, every job came to an end")
+    sys.exit(bool(written.lost))
+
+
+if __name__ == "__main__":
+    main()

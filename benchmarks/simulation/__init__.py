@@ -1,0 +1,1 @@
+"""Simulation: compares simulated takes with those of people."""
