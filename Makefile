@@ -40,17 +40,19 @@ models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 test: $(VENV)/.development models  ## Check and test everything
 	@$(MAKE) --jobs 2 lint pytest
 
-# For every change: style, types, layers, the page, and the tests that take no video, browser or server.
+# For every change: style, types, layers, the page, and the tests that take no video, browser or process
+# of their own.
 check: $(VENV)/.development models  ## Check the source and run the quick tests, in about two minutes
 	@$(MAKE) --jobs 2 lint quick
 
 quick: $(VENV)/.development $(PAGE_TOOLS) models
 	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not slow" -q
 
-# What the tests execute, by branch; takes longer than the tests alone.
+# What the tests execute, by branch, in their processes too; takes longer than the tests alone. Of the
+# quick tests alone: make coverage TESTS='-m "not slow"'.
 coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches the tests execute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci \
-	  --cov --cov-report=term-missing:skip-covered --cov-report=html
+	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
 
 # By file: the tests of one file share a server, a database or a recording. In the order of
 # tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and

@@ -15,7 +15,12 @@ PAGES = sorted(
     [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").rglob("*.md")]
 )
 EXAMPLES = [
-    pytest.param(code, id=f"{page.relative_to(ROOT).with_suffix('')}-{number}")
+    pytest.param(
+        code,
+        id=f"{page.relative_to(ROOT).with_suffix('')}-{number}",
+        # Examples that find poses in a video.
+        marks=[pytest.mark.slow] if ".mp4" in code else [],
+    )
     for page in PAGES
     for number, code in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL))
 ]

@@ -25,8 +25,8 @@ WANTED_BY_OPTIONS = {
     "app.robot.publishing.dds",
     "app.robot.energy",
     "app.robot.stage_profile",
-    "app.cli.robot_stages",
-    "app.cli.ros2_topics",
+    "app.cli.robots.stages",
+    "app.cli.robots.ros2_topics",
 }
 """Modules that `osg-studio robot` needs only where it is asked to publish or to profile."""
 
@@ -75,12 +75,14 @@ def test_every_import_contract_is_kept(capsys: pytest.CaptureFixture[str]) -> No
     assert status == EXIT_STATUS_SUCCESS, capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_core_needs_nothing_but_its_own_dependencies() -> None:
     optional = set().union(*map(requirements_of, OPTIONAL_EXTRAS))
     finished = run_without(modules_of(optional), IMPORT_EVERY_MODULE_OF_THE_CORE)
     assert finished.returncode == 0, finished.stderr
 
 
+@pytest.mark.slow
 def test_the_command_line_starts_without_the_web_app_and_what_options_want() -> None:
     finished = run_without(
         modules_of(requirements_of("studio")) | WANTED_BY_OPTIONS,

@@ -20,6 +20,7 @@ def test_by_default_only_this_machine_is_served() -> None:
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.20", "dive-box.local", "10.0.0.1"])
+@pytest.mark.withstands(row="H26")
 def test_a_public_address_without_a_token_is_refused_with_the_way_out(host: str) -> None:
     with pytest.raises(ValidationError, match=r"can be reached.*no token.*--token.*127\.0\.0\.1"):
         Settings(host=host)

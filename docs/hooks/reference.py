@@ -16,7 +16,7 @@ from http_page import http
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from python_page import python
-from schema_page import SCHEMAS, language_file, robot_events
+from schema_page import SCHEMAS, language_file, recognition_report, robot_events
 from setting_page import settings
 
 PARTS: Mapping[str, Callable[[], str]] = {
@@ -26,6 +26,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "language file": language_file,
     "problem codes": problem_codes,
     "python": python,
+    "recognition report": recognition_report,
     "robot events": robot_events,
     "settings": settings,
 }

@@ -20,6 +20,7 @@ def _schema_file(name: str) -> Path:
 
 SCHEMAS = {
     "language file": _schema_file("gesture-language-1.schema.json"),
+    "recognition report": _schema_file("recognition-report-1.schema.json"),
     "robot events": _schema_file("robot-event-1.schema.json"),
 }
 
@@ -29,6 +30,13 @@ def language_file() -> str:
     schema, path = _read("language file")
     root = f"### LanguageDocument {{ #{anchor('LanguageDocument')} }}\n"
     first = [_where(path), root, f"{schema['description']}\n", keys_table(schema)]
+    return "\n".join([*first, *_objects(schema)])
+
+
+def recognition_report() -> str:
+    """Return the tables of what ``recognize --json`` prints: the report, then its takes."""
+    schema, path = _read("recognition report")
+    first = [_where(path), f"{schema['description']}\n", keys_table(schema)]
     return "\n".join([*first, *_objects(schema)])
 
 

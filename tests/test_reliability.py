@@ -1,0 +1,44 @@
+"""The page about reliability: every row of its table of bad input has a test of its own."""
+
+import re
+from pathlib import Path
+
+from tests.conftest import ROOT
+
+PAGE = ROOT / "docs" / "reliability.md"
+
+
+def marked() -> dict[str, list[str]]:
+    """Return the tests that carry the mark of each row."""
+    found: dict[str, list[str]] = {}
+    mark = re.compile(
+        # Other decorators, also of several lines, may stand between.
+        r'^@pytest\.mark\.withstands\(row="(\w+)"\)\n'
+        r"(?:@.*\n|[ )\]].*\n)*(?:async )?def (test_\w+)",
+        re.MULTILINE,
+    )
+    for file in sorted((ROOT / "tests").rglob("test_*.py")):
+        for row, test in mark.findall(file.read_text(encoding="utf-8")):
+            found.setdefault(row, []).append(f"{file.relative_to(ROOT)}::{test}")
+    return found
+
+
+def test_every_row_of_bad_input_has_a_test_and_every_mark_a_row() -> None:
+    rows = re.findall(r"^\| (H\d\d) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    assert rows == [f"H{number:02d}" for number in range(1, 28)]
+    assert sorted(marked()) == rows
+
+
+def test_every_mark_stands_before_a_test() -> None:
+    used = sum(
+        file.read_text(encoding="utf-8").count("@pytest.mark.withstands(row=")
+        for file in (ROOT / "tests").rglob("test_*.py")
+        if file != Path(__file__)
+    )
+    assert sum(map(len, marked().values())) == used
+
+
+def test_every_test_named_on_the_page_is_there() -> None:
+    named = re.findall(r"`(tests/[\w/]+(?:\.py)?)`", PAGE.read_text(encoding="utf-8"))
+    assert len(named) > 10
+    assert [name for name in named if not (ROOT / name).exists()] == []
