@@ -100,13 +100,25 @@ def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
     assert rounded == [f"{rate:.0%}".removesuffix("%") for rate in rates]
 
 
-def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Library) -> None:
-    client = library.client
+def import_crowd(client: httpx.Client) -> str:
+    """Import a language of forty gestures, whose check is not done before a test cancels it."""
     listed = client.get("/api/v1/languages").json()
-    # Of eight gestures: long enough not to be done before it is cancelled.
     eight = next(each["id"] for each in listed if each["name"] == "Table 2: eight signs")
-    copy = client.post(f"/api/v1/languages/{eight}/duplicate").json()["id"]
-    page = open_page({"view": "health", "language": copy}, scene=False)
+    document = client.get(f"/api/v1/languages/{eight}/export").json()
+    del document["sha256"], document["grammar"]  # They are of the eight.
+    document["gestures"] = [
+        gesture | {"label": f"{gesture['label']} {turn}"}
+        for turn in range(5)
+        for gesture in document["gestures"]
+    ]
+    imported = client.post("/api/v1/languages/import?name=crowd", json=document)
+    assert imported.status_code == 201, imported.text
+    return str(imported.json()["id"])
+
+
+def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Library) -> None:
+    crowd = import_crowd(library.client)
+    page = open_page({"view": "health", "language": crowd}, scene=False)
     progress = page.get_by_text(re.compile(r"Simulating trials of every gesture, \d+ of \d+"))
     cancelled = page.get_by_text("The check was cancelled")
     expect(progress).to_be_visible()
