@@ -166,6 +166,17 @@ def normalize_size(vectors: FloatArray) -> FloatArray:
     return vectors / size if size > 0 else vectors
 
 
+def central_differences(values: FloatArray) -> FloatArray:
+    """Return the change a step of ``(N, ...)``, N >= 2: half of that between both neighbours.
+
+    At the ends, where one neighbour is missing, the change from or to the other.
+    """
+    changes = np.empty_like(values)
+    changes[1:-1] = (values[2:] - values[:-2]) / 2
+    changes[0], changes[-1] = values[1] - values[0], values[-1] - values[-2]
+    return changes
+
+
 def find_followed_landmarks(salient: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return the landmarks that are salient in any gesture of a language, in alphabetical order."""
     return tuple(sorted({name for names in salient for name in names}))
@@ -339,10 +350,7 @@ def _cut_rests(trajectory: Trajectory, moving: npt.NDArray[np.intp]) -> Trajecto
     if len(time) <= LEAST_MOVING:
         return trajectory
     paths = np.nan_to_num(trajectory.xy.take(moving, axis=1)).reshape(len(time), -1)
-    velocity = np.empty_like(paths)
-    velocity[1:-1] = (paths[2:] - paths[:-2]) / (time[2:] - time[:-2])[:, None]
-    velocity[0] = (paths[1] - paths[0]) / (time[1] - time[0])
-    velocity[-1] = (paths[-1] - paths[-2]) / (time[-1] - time[-2])
+    velocity = central_differences(paths) / central_differences(time)[:, None]
     speed = np.sqrt(np.vecdot(velocity, velocity))
     usual = np.sort(speed)[int(SPEED_SHARE * (len(speed) - 1))]
     under_way = np.flatnonzero(speed > RESTING_SPEED * usual)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.recognition.features.motion import Movement
+from app.recognition.features.motion import Movement, central_differences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
 
@@ -25,11 +25,7 @@ class Direction(DtwVoter):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` joint unit vectors."""
-        paths = movement.paths
-        steps = np.empty_like(paths)
-        steps[1:-1] = (paths[2:] - paths[:-2]) / 2
-        steps[0], steps[-1] = paths[1] - paths[0], paths[-1] - paths[-2]
-        flat = steps.reshape(len(steps), -1)
+        flat = central_differences(movement.paths.reshape(len(movement.paths), -1))
         length = np.sqrt(np.vecdot(flat, flat))
         return np.asarray(flat / (length + 1e-9)[:, None])
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from app.recognition.features.motion import Movement, normalize_size
+from app.recognition.features.motion import Movement, central_differences, normalize_size
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.motion.motion_voter import DtwVoter
 
@@ -26,8 +24,5 @@ class Velocity(DtwVoter):
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` velocities in sizes, NaN where not seen."""
-        places = movement.places
-        velocities = np.empty_like(places)
-        velocities[1:-1] = (places[2:] - places[:-2]) / 2
-        velocities[0], velocities[-1] = places[1] - places[0], places[-1] - places[-2]
+        velocities = central_differences(movement.places)
         return normalize_size(velocities).reshape(len(velocities), -1)
