@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain
 
 import numpy as np
@@ -53,6 +53,12 @@ class MajorityVote:
     def needed(self) -> tuple[str, ...]:
         """The same landmarks: a query must move one of them."""
         return self._shapes.needed
+
+    @property
+    def weights(self) -> Mapping[str, float]:
+        """Each voter's share of the votes, summing to 1."""
+        shares = (self._factors / self._factors.sum()).tolist()
+        return {voter.name: share for voter, share in zip(PAPER_VOTERS, shares, strict=True)}
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return None: only drawings are compared, whatever the switches are."""
@@ -108,7 +114,7 @@ class MajorityVote:
             if np.isfinite(row).any()
         }
         voters = tuple(voter.name for voter in PAPER_VOTERS)
-        weights = dict(zip(voters, (self._factors / self._factors.sum()).tolist(), strict=True))
+        weights = self.weights
         count: dict[int, float] = defaultdict(float)
         for voter, index in votes.items():
             count[index] += weights[voter]

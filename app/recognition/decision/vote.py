@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 from app.recognition.decision.result import Recognition
@@ -21,6 +22,11 @@ class Vote(Protocol):
     @property
     def needed(self) -> tuple[str, ...]:
         """The salient landmarks of which a query must move at least one."""
+        ...
+
+    @property
+    def weights(self) -> Mapping[str, float]:
+        """Each voter's weight in the decision, summing to 1."""
         ...
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:

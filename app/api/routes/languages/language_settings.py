@@ -8,8 +8,6 @@ from pydantic import BaseModel, Field
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
 from app.api.services.studio import CurrentStudio
-from app.recognition import Recognizer
-from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
 from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
@@ -50,7 +48,7 @@ def get_settings(
     """Return profile and tuning of a language beside the defaults; `PATCH` changes them."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
-    weights = _weights_of(studio.recognizer(state)) if language.gestures else {}
+    weights = dict(studio.recognizer(state).vote.weights) if language.gestures else {}
     return SettingsView(
         profile=language.profile,
         default_profile=DEFAULT_PROFILE,
@@ -68,12 +66,3 @@ def get_settings(
         most_simplification=MAX_SIMPLIFICATION,
         weights=weights,
     )
-
-
-def _weights_of(recognizer: Recognizer) -> dict[str, float]:
-    """Return the voters' weights; in a majority vote each has its weight factor's share."""
-    if isinstance(recognizer.vote, FusedVote):
-        return dict(recognizer.vote.weights)
-    voters = [voter.name for voter in PROFILES[recognizer.profile].voters]
-    factors = recognizer.tuning.weights_of(voters)
-    return dict(zip(voters, (factors / factors.sum()).tolist(), strict=True))
