@@ -46,6 +46,14 @@ def keep_source(
 
 
 def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView | None]]:
+    """Return by label what is known of where demonstrations come from; see `find_sources`."""
+    return {
+        label: [None if source is None else _view(studio, source) for source in row]
+        for label, row in find_sources(studio, language).items()
+    }
+
+
+def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
     """Return by label where every demonstration of a language comes from; None: not known."""
     keys = {
         gesture.label: [_key(each) for each in gesture.single_demonstrations()]
@@ -53,7 +61,7 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
     }
     known = studio.sources.of({key for row in keys.values() for key in row if key is not None})
     return {
-        label: [_view(studio, known[key]) if key in known else None for key in row]
+        label: [None if key is None else known.get(key) for key in row]
         for label, row in keys.items()
     }
 

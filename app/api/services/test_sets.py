@@ -15,7 +15,7 @@ from app.api.http.schemas.test_sets import (
     TestSetView,
 )
 from app.api.services.clip_ranges import demonstration_in
-from app.api.services.demonstration_sources import sources_in
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.stored_recognitions import recognize_range
 from app.api.services.studio import Studio
 from app.evaluation.proportion import Share
@@ -151,7 +151,7 @@ class _Demonstrations:
     """The ranges of clips that are demonstrations of a language."""
 
     def __init__(self, studio: Studio, state: LanguageState) -> None:
-        sources = sources_in(studio, studio.language(state)).values()
+        sources = find_sources(studio, studio.language(state)).values()
         self._ranges = [
             (source.clip_id, source.start, source.end)
             for row in sources

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
-from app.api.services.demonstration_sources import sources_in
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
 from app.api.services.stored_recognitions import load_situation, recognize_range
 from app.api.services.studio import CurrentStudio, Studio
@@ -85,7 +85,7 @@ def show_gesture(
         raise ProblemError(404, "not_found", f"there is no gesture {draft.expected[:80]!r}")
     if any(
         source is not None and source.clip_id == draft.clip_id
-        for row in sources_in(studio, language).values()
+        for row in find_sources(studio, language).values()
         for source in row
     ):
         detail = "this clip is a demonstration of the language, which is recognised by construction"
