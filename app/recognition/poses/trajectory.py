@@ -213,7 +213,7 @@ class Trajectory:
         and after the last of them there is nothing to bridge to.
         """
         if np.isfinite(self.xy).all():
-            return replace(self, depth=self._fill_depth())
+            return self if self.depth is None else replace(self, depth=self._fill_depth())
         xy = self.xy.copy()
         seen = np.asarray(np.isfinite(xy).all(axis=2))
         for index in np.flatnonzero(~seen.all(axis=0)):

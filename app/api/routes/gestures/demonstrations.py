@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query, Response
+from fastapi import APIRouter, Path, Response
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
@@ -25,10 +25,8 @@ from app.api.services.gesture_edits import (
 from app.api.services.language_documents import edit_document
 from app.api.services.language_views import announce, view_demonstrations
 from app.api.services.studio import CurrentStudio
-from app.recognition.features.png import encode_png
+from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.ui.charts import png
-from app.ui.direction_marks import mark_gesture
 
 router = APIRouter(prefix="/languages/{language_id}/demonstrations", tags=["gestures"])
 
@@ -80,26 +78,16 @@ def remove_demonstration(
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
-@router.get(
-    "/{index}/image",
-    response_class=Response,
-    responses={
-        **problem_responses(404),
-        200: {"description": "The trajectory image", "content": {"image/png": {}}},
-    },
-)
+@router.get("/{index}/image", response_class=Response, responses=IMAGE_RESPONSES)
 def get_demonstration_image(
     language_id: str,
     index: Index,
     label: str,
     studio: CurrentStudio,
     revision: Revision = None,
-    marks: Annotated[bool, Query(description="With start dot and arrow, for people")] = False,
+    marks: Marks = False,
 ) -> Response:
     """Send the trajectory image of a demonstration."""
     language = studio.language(studio.languages.get(language_id, revision))
     shown = require_demonstration(gesture_in(language, label), index)
-    # A revision never changes, so its pictures can be kept.
-    headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
-    image = png(mark_gesture(shown)) if marks else encode_png(shown.image)
-    return Response(image, media_type="image/png", headers=headers)
+    return send_trajectory_image(shown, revision, marks)

@@ -7,9 +7,8 @@ they send it. The label as the last part of the path works too, for every other 
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
@@ -28,17 +27,10 @@ from app.api.services.gesture_edits import (
 from app.api.services.language_documents import edit_document
 from app.api.services.language_views import announce
 from app.api.services.studio import CurrentStudio
+from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
-from app.recognition.features.png import encode_png
-from app.ui.charts import png
-from app.ui.direction_marks import mark_gesture
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
-
-_IMAGE = {
-    **problem_responses(404),
-    200: {"description": "The trajectory image", "content": {"image/png": {}}},
-}
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
@@ -128,19 +120,16 @@ def remove_gesture(
     return announce(studio, studio.languages.edit(language_id, edit, expected), response)
 
 
-@router.get("/image", response_class=Response, responses=_IMAGE)
-@router.get("/{label:path}/image", response_class=Response, responses=_IMAGE)
+@router.get("/image", response_class=Response, responses=IMAGE_RESPONSES)
+@router.get("/{label:path}/image", response_class=Response, responses=IMAGE_RESPONSES)
 def get_gesture_image(
     language_id: str,
     label: str,
     studio: CurrentStudio,
     revision: Revision = None,
-    marks: Annotated[bool, Query(description="With start dot and arrow, for people")] = False,
+    marks: Marks = False,
 ) -> Response:
     """Send a gesture's trajectory image."""
     language = studio.language(studio.languages.get(language_id, revision))
     gesture = gesture_in(language, label)
-    image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
-    # A revision never changes, so its pictures can be kept.
-    headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
-    return Response(image, media_type="image/png", headers=headers)
+    return send_trajectory_image(gesture, revision, marks)

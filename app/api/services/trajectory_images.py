@@ -1,0 +1,28 @@
+"""Responses with the trajectory image of a gesture or of one of its demonstrations."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import Query, Response
+
+from app.api.http.problems import problem_responses
+from app.recognition import Gesture
+from app.recognition.features.png import encode_png
+from app.ui.charts import png
+from app.ui.direction_marks import mark_gesture
+
+IMAGE_RESPONSES: dict[int | str, dict[str, Any]] = {
+    **problem_responses(404),
+    200: {"description": "The trajectory image", "content": {"image/png": {}}},
+}
+
+Marks = Annotated[bool, Query(description="With start dot and arrow, for people")]
+
+
+def send_trajectory_image(gesture: Gesture, revision: int | None, marks: bool) -> Response:
+    """Return a gesture's trajectory image as PNG; `revision`: which one was asked for, if any."""
+    image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
+    # A revision never changes, so its pictures can be kept.
+    headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}
+    return Response(image, media_type="image/png", headers=headers)
