@@ -22,6 +22,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
+from benchmarks.sets.carried_sets import CARRIED, carried_sets
 from benchmarks.sets.one_shot_draws import Draw, draws
 from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
@@ -97,12 +98,13 @@ def score(recorded: RecordedSet, chosen: Draw) -> Iterator[tuple[str, str, Share
 
 
 def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]:
-    """Yield the recorded sets of hands and of whole bodies."""
-    wanted = [*SETS, *ARM_CLASSES] if names is None else names
+    """Yield the recorded sets of hands and of whole bodies, and hands' paths carried by bodies."""
+    wanted = [*SETS, *ARM_CLASSES, *CARRIED] if names is None else names
     yield from recorded_sets(folder, [name for name in wanted if name in SETS])
     for recorded in whole_body_sets(folder) if set(wanted) & set(ARM_CLASSES) else ():
         if recorded.name in wanted:
             yield recorded
+    yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
 
 
 def main() -> None:

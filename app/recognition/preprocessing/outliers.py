@@ -21,9 +21,11 @@ LONGEST_JUMP = 0.25
 """Most seconds between the moments around an outlier. In that time a hand can go half a torso
 length and come back (see `ACCELERATION`); longer outliers look like strokes."""
 
-ACCELERATION = 100.0
-"""Largest acceleration, torso lengths a second squared: about 50 m/s^2, twice that of a fast
-pointing hand in air."""
+ACCELERATION = 200.0
+"""Largest acceleration, torso lengths a second squared: about 100 m/s^2, that of a hand that throws
+or swings a racket. With half of it, strokes of other people's throws were taken for errors, half
+of all recordings of `utd_other` lost some, and 1 to 4 points of accuracy with them; jumps of a pose
+model are found as before (`benchmarks/studies/people.md`)."""
 
 NOTICED = 0.15
 """Least distance of an outlier, torso lengths (7 cm); smaller ones are smoothed as jitter."""
