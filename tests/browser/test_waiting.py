@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-from tests.shortened import shortened
+from tests.short_clips import shortened
 
 pytestmark = pytest.mark.slow
 

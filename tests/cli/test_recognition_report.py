@@ -14,7 +14,7 @@ from app.cli.recognition_report import (
 )
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
-from tests.shortened import shortened
+from tests.short_clips import shortened
 
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 

@@ -1,0 +1,39 @@
+"""Copies of clips with fewer frames: finding poses takes long, frame by frame."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import av
+
+
+def shortened(clip: Path, copy: Path, seconds: float) -> Path:
+    """Write the first seconds of a clip, its pictures as they are, and return the copy's path."""
+    with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
+        stream = source.streams.video[0]
+        written = target.add_stream_from_template(stream)
+        for packet in source.demux(stream):
+            if packet.pts is None or packet.time_base is None:
+                continue
+            if packet.pts * packet.time_base > seconds:
+                break
+            packet.stream = written
+            target.mux(packet)
+    return copy
+
+
+def thinned(clip: Path, copy: Path) -> Path:
+    """Write every second frame of a clip at half its rate, and return the copy's path."""
+    with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
+        stream = source.streams.video[0]
+        assert stream.average_rate is not None
+        rate = Fraction(stream.average_rate) / 2
+        written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
+        written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
+        for number, frame in enumerate(source.decode(stream)):
+            if number % 2 == 0:
+                frame.pts, frame.time_base = number // 2, 1 / rate
+                target.mux(written.encode(frame))
+        target.mux(written.encode())
+    return copy
