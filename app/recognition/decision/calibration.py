@@ -19,7 +19,12 @@ from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     describe_movement,
 )
-from app.recognition.decision.rejection import build_novelty_weights, measure_novelty
+from app.recognition.decision.rejection import (
+    CLEAR_SHARE,
+    build_novelty_weights,
+    compare_with_other,
+    measure_novelty,
+)
 from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -64,7 +69,7 @@ PLAUSIBLE = 0.2
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
 
-RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"]))
+RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"], CLEAR_SHARE))
 """What thresholds depend on beside the gestures; those of another rule are computed again."""
 
 
@@ -158,8 +163,26 @@ def _measure_reach(gestures: Sequence[Gesture], vote: FusedVote) -> _Reach:
         least = LEAST_DISTANCE * typical[known, None]
         mean = np.exp(np.log(np.maximum(distances[known], least)).mean(axis=1))
         thresholds[known, index] *= (mean / typical[known]) ** OWN
-        takes[index] = measure_novelty(OTHERS * distances, thresholds[:, [index]], weights)
+        apart = OTHERS * distances
+        takes[index] = measure_novelty(apart, thresholds[:, [index]], weights)
+        takes[index] *= _measure_clearness(gestures[index], vote, index, apart)
     return _Reach(thresholds, takes)
+
+
+def _measure_clearness(
+    gesture: Gesture, vote: FusedVote, index: int, distances: FloatArray
+) -> FloatArray:
+    """Compute the clearness of takes ``(N,)`` by their ``(V, N)`` distances to their gesture.
+
+    The other gestures are as far from a take as from the demonstration: comparing every take with
+    all of them would take G times as long.
+    """
+    assert gesture.trajectory is not None  # it has a row
+    others = np.delete(vote.compare(gesture.trajectory, drawn=False).scores, index)
+    scores = vote.fuse(distances)
+    if not np.isfinite(others).any() or not np.isfinite(scores).all():
+        return np.ones(distances.shape[1])
+    return compare_with_other(scores, np.full_like(scores, others.min()))
 
 
 def _draw_takes(demonstration: Trajectory) -> tuple[Trajectory, ...]:

@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.fusion import weigh_distances, weigh_voters
+from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     MotionReferences,
@@ -25,6 +25,7 @@ from app.recognition.decision.rejection import (
     estimate_confidence,
     gather_thresholds,
     is_rejected,
+    measure_clearness,
     measure_group_novelties,
 )
 from app.recognition.decision.result import Recognition
@@ -291,8 +292,13 @@ class FusedVote:
             demonstrations=self._shown.demonstrations[chosen],
             views=view.turns[chosen],
             facing=trajectory.facing,
-            novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1),
+            novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1)
+            * measure_clearness((scores + turned)[chosen]),
         )
+
+    def fuse(self, distances: FloatArray) -> FloatArray:
+        """Return the scores of distances ``(V, N)`` by the language's weights, ``(N,)``."""
+        return fuse(distances, self._weights, self._between)
 
     def _novelty_by_view(self, distances: FloatArray) -> FloatArray:
         return measure_group_novelties(

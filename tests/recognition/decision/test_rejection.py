@@ -2,15 +2,19 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.decision.calibration import CUES
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
+    MOST_CLEAR,
     build_novelty_weights,
     estimate_confidence,
     gather_thresholds,
     is_rejected,
+    measure_clearness,
     measure_novelty,
 )
 from app.recognition.gestures.tuning import Tuning
@@ -115,3 +119,29 @@ def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
     beside = [estimate_confidence(0.3, 0.1, second) for second in (0.1, 0.3, 1.0)]
     assert beside == sorted(beside)
     assert 0.0 <= estimate_confidence(1e300, 1e300, 1e300) < 1e-9
+
+
+def test_thresholds_widen_for_a_gesture_that_is_much_nearer_than_any_other() -> None:
+    clear, usual, close = (
+        measure_clearness(np.array([0.3, other, 2.0])) for other in (1.2, 0.3 / 0.6, 0.31)
+    )
+    assert MOST_CLEAR <= clear[0] < usual[0] < 1.1 < close[0]
+    assert usual[0] == pytest.approx(1.0, rel=0.1)
+    # Of the others none is the nearest: they are never clear.
+    assert (np.stack([clear, usual, close])[:, 1:] > 1).all()
+
+
+@given(st.lists(st.floats(0, 50), min_size=2, max_size=6), st.floats(0.5, 3))
+def test_clearness_is_bounded_and_depends_on_each_score_alone(
+    scores: list[float], worse: float
+) -> None:
+    found = measure_clearness(np.array(scores))
+    assert (found >= MOST_CLEAR).all()
+    farther = np.array(scores)
+    farther[0] += worse
+    assert measure_clearness(farther)[0] >= found[0]
+
+
+def test_where_nothing_else_is_comparable_thresholds_apply_as_they_are() -> None:
+    assert measure_clearness(np.array([0.7])).tolist() == [1.0]
+    assert measure_clearness(np.array([0.7, np.inf])).tolist() == [1.0, 1.0]
