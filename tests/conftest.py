@@ -12,6 +12,7 @@ from app.recognition import Recording
 from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
+from tests.short_clips import thinned
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDINGS = ROOT / "tests" / "recordings"
@@ -54,6 +55,23 @@ def installed_models() -> None:
             model_path(name)
     except ModelError as error:
         pytest.skip(f"needs the pose and hand models: {error}")
+
+
+@pytest.fixture(scope="session")
+def thin_clip(
+    sample_clips: Path, installed_models: None, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[str], Path]:
+    """Return what makes a copy of a sample clip, given its name, with every second frame.
+
+    Its poses are found in half the time; takes and gestures are the same.
+    """
+    folder = tmp_path_factory.mktemp("thin")
+
+    def make(name: str) -> Path:
+        copy = folder / f"{name}.mp4"
+        return copy if copy.exists() else thinned(sample_clips / copy.name, copy)
+
+    return make
 
 
 @pytest.fixture(scope="session", params=PROCESSORS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx
@@ -53,13 +53,13 @@ def open_table(page: Page) -> Locator:
 
 
 def test_the_first_gesture_of_an_own_clip_takes_four_clicks_and_a_name(
-    open_page: OpenPage, clips: Path
+    open_page: OpenPage, thin_clip: Callable[[str], Path]
 ) -> None:
     page = counting(open_page(scene=False, first_visit=True))
     page.get_by_role("button", name="Skip").click()
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Choose clips").click()
-    clip = clips / "circle-demonstration.mp4"
+    clip = thin_clip("circle-demonstration")
     chooser.value.set_files(
         {"name": "GX010001.mp4", "mimeType": "video/mp4", "buffer": clip.read_bytes()}
     )

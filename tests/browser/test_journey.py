@@ -82,7 +82,7 @@ def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> Non
 def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     open_page: OpenPage,
     server: Running,
-    clips: Path,
+    thin_clip: Callable[[str], Path],
     tmp_path: Path,
     picture: Callable[[Page, str], Path],
 ) -> None:
@@ -105,7 +105,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     picture(page, "why")
 
     # A clip is dropped, its poses arrive, its take is seen, and becomes a gesture.
-    upload(page, clips / "circle-demonstration.mp4")
+    upload(page, thin_clip("circle-demonstration"))
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_role("button", name="Save into the sample").click()
     page.get_by_label("Label").fill("our circle")
@@ -117,8 +117,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(cards).to_have_count(9)
 
     # A second clip, by another diver, is recognised; every voter's choice can be read.
-    second = sorted(clips.glob("circle-test*.mp4"))[0]
-    upload(page, second)
+    upload(page, thin_clip("circle-test-1"))
     page.get_by_label("Expected").select_option("circle")
     page.get_by_role("button", name="Recognise").click()
     lab = lab_of(page)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ SECONDS = 2.5
 
 
 def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
-    open_page: OpenPage, clips: Path, tmp_path: Path
+    open_page: OpenPage, thin_clip: Callable[[str], Path], tmp_path: Path
 ) -> None:
     names = ("one.mp4", "two.mp4", "three.mp4")
     page = open_page(scene=False)
@@ -35,7 +36,7 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
             else None
         ),
     )
-    clip = shortened(clips / "line-test-2.mp4", tmp_path / "short.mp4", SECONDS)
+    clip = shortened(thin_clip("line-test-2"), tmp_path / "short.mp4", SECONDS)
     drop(page, *[clip] * 3, names=names)
     card = page.locator("#batch")
     expect(card).to_contain_text("0 of 3 clips done")

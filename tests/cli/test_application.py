@@ -4,7 +4,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -171,16 +171,16 @@ def run_with(environment: dict[str, str], *arguments: str) -> str:
 
 @pytest.mark.slow
 def test_a_language_defined_from_clips_recognises_another_take(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio, tmp_path: Path, thin_clip: Callable[[str], Path]
 ) -> None:
     file = tmp_path / "pool.json"
     demonstrations = [
-        f"{label}={sample_clips / f'{label}-demonstration.mp4'}" for label in ("circle", "line")
+        f"{label}={thin_clip(f'{label}-demonstration')}" for label in ("circle", "line")
     ]
     defined = osg_studio("define", *demonstrations, "--name", "pool", "--output", file)
     assert defined.code == 0, defined.error
     assert defined.out == ""
-    clip = sample_clips / "line-test-1.mp4"
+    clip = thin_clip("line-test-1")
     ended = osg_studio("recognize", clip, "--language", file, "--expected", "circle", "--json")
     assert ended.code == 0
     report = json.loads(ended.out)
@@ -212,9 +212,9 @@ def test_a_clip_without_salute_ends_with_one_and_says_how_to_go_on(
 
 @pytest.mark.slow
 def test_a_gesture_is_found_without_looking_for_salutes(
-    osg_studio: OsgStudio, sample_clips: Path
+    osg_studio: OsgStudio, thin_clip: Callable[[str], Path]
 ) -> None:
-    clip = sample_clips / "circle-test-1.mp4"
+    clip = thin_clip("circle-test-1")
     ended = osg_studio("recognize", clip, "--language", LANGUAGE, "--without-salutes", "--json")
     assert ended.code == 0
     (take,) = json.loads(ended.out)["takes"]
@@ -224,9 +224,9 @@ def test_a_gesture_is_found_without_looking_for_salutes(
 
 @pytest.mark.slow
 def test_a_range_by_hand_needs_no_salute(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio, tmp_path: Path, thin_clip: Callable[[str], Path]
 ) -> None:
-    clip = shortened(sample_clips / "circle-test-1.mp4", tmp_path / "circle.mp4", 4.4)
+    clip = shortened(thin_clip("circle-test-1"), tmp_path / "circle.mp4", 4.4)
     ended = osg_studio("recognize", f"{clip}@2.4-4.2", "--language", LANGUAGE)
     assert ended.code == 0
     assert ended.out.split("\t")[:3] == ["2.40", "4.20", "circle"]

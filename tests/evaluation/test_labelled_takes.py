@@ -1,5 +1,6 @@
 """From files to takes: real recordings, real clips, and what is kept of them."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -59,10 +60,12 @@ def test_keypoint_files_are_takes_too_with_what_they_do_not_tell_given(tmp_path:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("installed_models")
-def test_a_clip_is_extracted_once_whatever_it_is_called(tmp_path: Path, sample_clips: Path) -> None:
+def test_a_clip_is_extracted_once_whatever_it_is_called(
+    tmp_path: Path, thin_clip: Callable[[str], Path]
+) -> None:
     clips, kept = tmp_path / "clips", tmp_path / "kept"
     clips.mkdir()
-    content = (sample_clips / "line-test-1.mp4").read_bytes()
+    content = thin_clip("line-test-1").read_bytes()
     (clips / "line-1.mp4").write_bytes(content)
     (clips / "torn-1.mp4").write_bytes(content[:1000])
     frames: list[int] = []
