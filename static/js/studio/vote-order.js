@@ -36,7 +36,15 @@ export function orderOf(result) {
       0,
     ),
   );
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
   const byWeight = (one, other) => (weights[voters[other]] ?? 0) - (weights[voters[one]] ?? 0);
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
   const bySupport = (one, other) =>
     (support.get(gestures[other]) ?? 0) - (support.get(gestures[one]) ?? 0) ||
     near[other] - near[one];

@@ -10,7 +10,7 @@ import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./support.js";
 import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber } from "./vote-order.js";
 
-/** @import { Recognition } from "../core/types.d.ts" */
+/** @import { Recognition, State } from "../core/types.d.ts" */
 
 const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
@@ -18,16 +18,30 @@ const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 const factorText = (factor) =>
   factor === 0 ? "off" : `${{ 0.25: "\u00bc", 0.5: "\u00bd" }[factor] ?? factor} \u00d7`;
 
+/**
+ * @param {string} voter
+ * @param {number} factor
+ */
 const wordsOf = (voter, factor) =>
   factor === 0
     ? `without the voter ${readable(voter)}`
     : `with ${factor} times the weight on the voter ${readable(voter)}`;
 
-/** The weight factor of a voter in the recognition on display. */
+/**
+ * The weight factor of a voter in the recognition on display.
+ *
+ * @param {Recognition} result
+ * @param {string} voter
+ */
 const factorOf = (result, voter) =>
   (result.tuning ?? state.gestures?.tuning)?.weights?.[voter] ?? 1;
 
-/** The weight of a voter, over which lies the choice of another weight factor. */
+/**
+ * The weight of a voter, over which lies the choice of another weight factor.
+ *
+ * @param {Recognition} result
+ * @param {string} voter
+ */
 function weightCell(result, voter) {
   const factor = factorOf(result, voter);
   const weight = result.weights[voter] ?? 0;
@@ -59,6 +73,11 @@ function weightCell(result, voter) {
   );
 }
 
+/**
+ * @param {Recognition} result
+ * @param {number} at
+ * @param {number[]} columns
+ */
 function row(result, at, columns) {
   const voter = result.voters[at];
   const nearness = nearnessOf(result.distances[at]);
@@ -83,6 +102,10 @@ function row(result, at, columns) {
   );
 }
 
+/**
+ * @param {Recognition} result
+ * @param {number} column
+ */
 function head({ gestures, label, expected }, column) {
   const name = gestures[column];
   const kind = name === label ? "chosen" : name === expected ? "expected" : "";
@@ -139,7 +162,12 @@ function table(result) {
   );
 }
 
-/** Load the images that were compared into a box. */
+/**
+ * Load the images that were compared into a box.
+ *
+ * @param {HTMLElement} box
+ * @param {Recognition} result
+ */
 async function loadImages(box, result) {
   const images = await attempt("Loading the images", () => api.recognitions.images(result.id));
   box.replaceChildren(
@@ -169,7 +197,11 @@ const undecided = () =>
 /** @type {string | null} */
 let drawn = null;
 
-/** Draw the decision of the recognition on display. */
+/**
+ * Draw the decision of the recognition on display.
+ *
+ * @param {State} state
+ */
 export function drawVotes({ result }) {
   const box = byId("votes");
   const clip = selectedClip();
