@@ -199,19 +199,29 @@ export interface GestureEstimate {
 export interface PairEstimate {
   gestures: [string, string];
   confusion: Rate | null;
-  reverse: Rate | null;
+  first_as_second: Rate | null;
+  second_as_first: Rate | null;
   distance: number | null;
-  [name: string]: any;
 }
 
 export interface HealthReport {
   ok: boolean;
+  /** Simulated trials of each gesture. */
+  takes: number;
   warnings: Finding[];
   gestures: GestureEstimate[];
   pairs: PairEstimate[];
   map: { label: string; x: number; y: number }[];
   bar: { missed: number; confusion: number };
-  [name: string]: any;
+}
+
+/** How far a health check is; `total` is 0 while it is not known. */
+export interface CheckProgress {
+  id: string;
+  revision: number;
+  stage: string;
+  done: number;
+  total: number;
 }
 
 /** The health report on display, or the progress towards it. */
@@ -301,7 +311,7 @@ export interface State {
   returns: number;
   loaded: boolean;
   health: HealthState | null;
-  checking: any;
+  checking: CheckProgress | null;
   testSet: TestSet | null;
   /** How far the run of the test set is; null while none runs. */
   testing: { id: string; done: number; total: number } | null;
