@@ -44,6 +44,8 @@ import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
 import { acceptFiles, drawUploads } from "./upload/upload-list.js";
 
+/** @import { State } from "./core/types.d.ts" */
+
 const VIEWS = [
   { name: "studio", title: "Studio" },
   {
@@ -115,7 +117,11 @@ function loadWithSelection() {
 
 const OF_A_CLIP = new Set([null, "studio", "gesture"]); // Views that show the clip on display.
 
-/** Show which clip or language of a link is missing. */
+/**
+ * Show which clip or language of a link is missing.
+ *
+ * @param {Pick<State, "clip" | "language">} linked
+ */
 function reportMissing({ clip, language }) {
   const gone = [
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,

@@ -5,6 +5,7 @@ import type { components } from "./api-schema.d.ts";
 type Schemas = components["schemas"];
 
 export type Clip = Schemas["ClipView"];
+export type ClipAccepted = Schemas["ClipAccepted"];
 export type Job = Schemas["JobView"];
 export type Take = Schemas["TakeView"];
 export type Topic = Schemas["TopicSeen"];

@@ -122,7 +122,8 @@ export function drawCard(language, element) {
       h("time", { dateTime: language.updated }, ago(language.updated)),
     ),
   );
-  if (focused) /** @type {any} */ (card.getElementsByClassName(focused)[0])?.focus();
+  if (focused)
+    /** @type {HTMLElement | undefined} */ (card.getElementsByClassName(focused)[0])?.focus();
   showHealth(card, language);
   return card;
 }

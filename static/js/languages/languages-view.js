@@ -8,6 +8,8 @@ import { importLanguage, newLanguage } from "./language-store.js";
 import { openHistoryPanel } from "./revision-history.js";
 import { drawSampleLanguages } from "./sample-languages.js";
 
+/** @import { LanguageSummary } from "../core/types.d.ts" */
+
 const REDRAWN_EVERY = 60000; // ms. "2 minutes ago" grows old.
 
 function importButton() {
@@ -30,7 +32,12 @@ function importButton() {
   );
 }
 
-/** Whether a language's name, author or labels contain the words of a search. */
+/**
+ * Whether a language's name, author or labels contain the words of a search.
+ *
+ * @param {LanguageSummary} language
+ * @param {string[]} words
+ */
 function answers({ name, author, labels }, words) {
   const text = [name, author, ...labels].join(" ").toLowerCase();
   return words.every((word) => text.includes(word));
@@ -107,7 +114,11 @@ function library() {
   );
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   const cards = library();
   const past = h("div", { className: "history-page", hidden: true });

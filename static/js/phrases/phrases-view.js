@@ -13,6 +13,8 @@ import { phraseCard } from "./phrase-card.js";
 import { followFound, found, show, trialPanel } from "./phrase-trial.js";
 import { slotTypesPanel } from "./slot-types.js";
 
+/** @import { Grammar } from "../core/types.d.ts" */
+
 async function addPhrase() {
   const name = free(
     "phrase",
@@ -136,7 +138,11 @@ function shownKey() {
   return JSON.stringify([id, name, labels(), kept, phrase, found()?.ambiguities]);
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   const title = h("h1");
   const says = h("div", { className: "verdict-place" });
@@ -145,6 +151,7 @@ export function open(section) {
   const columns = h("div", { className: "phrase-columns" }, form, trial);
   const none = h("div");
   let drawn = "";
+  /** @param {Grammar | null | undefined} kept */
   const drawForm = (kept) => {
     trial.hidden = !grammar().phrases.length;
     columns.classList.toggle("alone", trial.hidden);

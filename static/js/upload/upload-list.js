@@ -186,8 +186,8 @@ function draw(upload, element) {
   const failed = upload.status === "failed";
   const { key } = upload;
   if (!failed && element?.dataset.status === upload.status) {
-    /** @type {any} */ (element.querySelector(".stage-text")).textContent = stage(upload);
-    /** @type {any} */ (element.querySelector("progress")).value = upload.loaded;
+    /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = stage(upload);
+    /** @type {HTMLProgressElement} */ (element.querySelector("progress")).value = upload.loaded;
     return element;
   }
   const stop = () => (upload.status === "uploading" ? upload.cancel?.() : forget(key));
