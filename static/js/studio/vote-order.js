@@ -58,6 +58,21 @@ export function orderOf(result) {
 }
 
 /**
+ * Split rows into voters that had a say, and voters without weight: their distances explain nothing
+ * of the decision. A voter whose weight a person changed is always among the first.
+ *
+ * @param {Pick<Recognition, "voters" | "weights">} result
+ * @param {number[]} rows
+ * @param {Record<string, number>} factors of the voters' weights
+ * @returns {{ heard: number[], silent: number[] }}
+ */
+export function splitByWeight({ voters, weights }, rows, factors) {
+  /** @param {number} row */
+  const isHeard = (row) => Boolean(weights[voters[row]]) || (factors[voters[row]] ?? 1) !== 1;
+  return { heard: rows.filter(isHeard), silent: rows.filter((row) => !isHeard(row)) };
+}
+
+/**
  * A distance in at most four characters, or as many as its size needs.
  *
  * @param {number | null} value
