@@ -23,7 +23,7 @@ import { drawTuning } from "./languages/language-tuning.js";
 import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
 import { drawGestures } from "./gestures/gesture-cards.js";
-import { openGestureTable } from "./gestures/gesture-table.js";
+import { drawTableButton, openGestureTable } from "./gestures/gesture-table.js";
 import { rememberFrame } from "./studio/playback.js";
 import {
   answerQuestion,
@@ -71,9 +71,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
   follow(["clips", "jobs"], drawBatch);
-  follow(["clips"], ({ clips }) => {
-    byId("make-gestures").hidden = !clips.length;
-  });
+  follow(["clips", "gestures"], drawTableButton);
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);

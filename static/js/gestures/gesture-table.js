@@ -11,9 +11,9 @@ import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
-import { problemsOf, rangeText, rangeWarning, rowsOf } from "./gesture-rows.js";
+import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
 
-/** @import { GestureRow, Language, Take } from "../core/types.d.ts" */
+/** @import { GestureRow, Language, State, Take } from "../core/types.d.ts" */
 
 /**
  * The table on display; `edited` is what the user chose, `refused` what the server
@@ -63,13 +63,22 @@ function loadTakes() {
 /** The language to save into; null for a new one. */
 const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.gestures : null);
 
-const rows = () =>
-  rowsOf(
-    state.clips.filter(({ status }) => status === "done" || BUSY.has(status)),
-    takes,
-    targetLanguage(),
-    onDisplay().edited,
-  );
+/** The clips of which gestures can be made, now or as soon as their poses are found. */
+const usable = () => state.clips.filter(({ status }) => status === "done" || BUSY.has(status));
+
+/**
+ * Show the button that opens the table, which stands out as long as several clips show no gesture.
+ *
+ * @param {State} state
+ */
+export function drawTableButton({ gestures }) {
+  const button = byId("make-gestures");
+  const clips = usable();
+  button.hidden = !clips.length;
+  button.classList.toggle("primary", withoutGesture(clips, gestures).length > 1);
+}
+
+const rows = () => rowsOf(usable(), takes, targetLanguage(), onDisplay().edited);
 
 /**
  * @param {string} key
