@@ -307,6 +307,8 @@ export interface State {
   why: Explanation | null;
   trial: Trial | null;
   question: { clip: string; expected: string } | null;
+  /** What the token may do; null until the server has told. */
+  role: Session["role"] | null;
   connected: boolean | null;
   /** How often the server came back: what could not be asked meanwhile is asked then. */
   returns: number;
@@ -399,8 +401,8 @@ export interface KeyListActions {
 
 /** A command of a menu, or a file to download. */
 export type MenuItem =
-  | { text: string; run: () => unknown; href?: undefined }
-  | { text: string; href: string; run?: undefined };
+  | { text: string; run: () => unknown; href?: undefined; writes?: boolean }
+  | { text: string; href: string; run?: undefined; writes?: undefined };
 
 /** The range in seconds on which buttons act, the part of it to show, and the take it is, if any. */
 export interface SelectedRange {

@@ -1,7 +1,7 @@
 // The editor of a gesture. Only "Save" changes the language; until then there is a draft.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/keys.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
@@ -169,7 +169,7 @@ function build(section, about) {
   const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
   const saving = h(
     "button",
-    { type: "submit", className: "primary" },
+    { type: "submit", className: "primary", ...WRITES },
     gesture === null ? "Save gesture" : "Save",
   );
   const status = h("span", { className: "draft-state dim", role: "status" });

@@ -1,7 +1,7 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural, readable } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -121,6 +121,7 @@ function figure(gesture, demonstration) {
       "button",
       {
         type: "button",
+        ...WRITES,
         disabled: alone,
         title: alone ? "The only demonstration stays; delete the gesture instead" : "",
         "aria-label": `Remove ${name.toLowerCase()}`,
@@ -166,7 +167,7 @@ function addForm(label) {
     h("input", { type: "text", id: "demonstration-diver", autocomplete: "off" }),
     LONGEST_NAME,
   );
-  const button = h("button", { type: "submit", className: "primary" }, "Add");
+  const button = h("button", { type: "submit", className: "primary", ...WRITES }, "Add");
   /** @type {Range[]} */
   let ranges = [];
   const load = async () => {

@@ -2,7 +2,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
-import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
 import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
@@ -99,7 +99,7 @@ function draw(gesture, element) {
       iconButton("rename", `Change ${gesture.label}`, () =>
         go("gesture", { gesture: gesture.label }),
       ),
-      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture)),
+      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture), WRITES),
     ),
   );
   card.dataset.signature = signature;

@@ -3,7 +3,7 @@
 import { BUSY } from "../clips/busy.js";
 import { statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
-import { byId, h, reconcile } from "../core/dom.js";
+import { byId, h, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -271,7 +271,7 @@ export function openGestureTable() {
   const { element, name, target } = languageChoice();
   const note = h("p", { className: "dim", role: "status" });
   const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
-  const button = h("button", { type: "submit", className: "primary" });
+  const button = h("button", { type: "submit", className: "primary", ...WRITES });
   table = {
     list,
     note,

@@ -1,7 +1,7 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
 import { statusText } from "../clips/clip-store.js";
-import { h, iconButton } from "../core/dom.js";
+import { h, iconButton, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
@@ -39,6 +39,7 @@ function drop() {
   const input = h("input", {
     type: "file",
     id: "test-clips",
+    ...WRITES,
     multiple: true,
     accept: "video/*,.mkv",
     className: "visually-hidden",
@@ -53,7 +54,7 @@ function drop() {
     input,
     h(
       "label",
-      { for: "test-clips" },
+      { for: "test-clips", ...WRITES },
       h("b", {}, "Drop labelled clips"),
       h(
         "span",
@@ -73,7 +74,7 @@ function labelSelect(name, value, onchange) {
   const known = value && !labels().includes(value) ? [value] : [];
   const select = h(
     "select",
-    { "aria-label": `What ${name} shows`, onchange: () => onchange(select.value) },
+    { "aria-label": `What ${name} shows`, ...WRITES, onchange: () => onchange(select.value) },
     value ? null : h("option", { value: "" }, "choose\u2026"),
     [...labels(), ...known].map((label) =>
       h("option", { value: label, selected: label === value }, label),
@@ -263,7 +264,7 @@ function takeRow(take, takes) {
     h(
       "td",
       {},
-      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name)),
+      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name), WRITES),
     ),
   );
 }
@@ -365,6 +366,7 @@ function libraryChoice() {
     {
       type: "button",
       className: "primary",
+      ...WRITES,
       onclick: () =>
         addLibraryClips(boxes.filter(({ box }) => box.checked).map(({ box }) => box.value)),
     },
@@ -394,7 +396,7 @@ function runControl({ waiting }) {
     return waiting
       ? h(
           "button",
-          { type: "button", className: "primary", onclick: () => runTestSet() },
+          { type: "button", className: "primary", ...WRITES, onclick: () => runTestSet() },
           `Recognise ${plural(waiting, "take")} again`,
         )
       : null;
@@ -407,7 +409,7 @@ function runControl({ waiting }) {
       max: Math.max(1, testing.total),
       value: testing.done,
     }),
-    h("button", { type: "button", onclick: cancelTestRun }, "Cancel"),
+    h("button", { type: "button", ...WRITES, onclick: cancelTestRun }, "Cancel"),
   );
 }
 

@@ -1,7 +1,7 @@
 // What was found, the worst first, each with what would help and where to do it.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
@@ -46,7 +46,11 @@ async function switchOn(kind, gestures, text, button) {
  * @param {string} text
  */
 function apply(kind, gestures, text) {
-  const button = h("button", { type: "button", "aria-label": `Apply: ${text}` }, "Apply");
+  const button = h(
+    "button",
+    { type: "button", "aria-label": `Apply: ${text}`, ...WRITES },
+    "Apply",
+  );
   button.onclick = () => switchOn(kind, gestures, text, button);
   return button;
 }

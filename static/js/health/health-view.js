@@ -1,7 +1,7 @@
 // The health view: the estimates of the health check, and the test with clips.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
@@ -90,7 +90,11 @@ function progress({ health }) {
       h("span", { className: "dim num" }, "Beginning"),
     ),
     h("progress", { "aria-label": "Progress of the check" }),
-    h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"),
+    h(
+      "button",
+      { type: "button", ...WRITES, onclick: () => attempt("Cancelling", cancel) },
+      "Cancel",
+    ),
   );
 }
 

@@ -1,6 +1,6 @@
 // The library: every language as a card, or the history of one.
 
-import { h, icon, reconcile } from "../core/dom.js";
+import { h, icon, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { drawCard } from "./language-card.js";
@@ -19,6 +19,7 @@ function importButton() {
     multiple: true,
     accept: ".json,application/json",
     className: "visually-hidden",
+    ...WRITES,
   });
   input.onchange = async () => {
     for (const file of [...(input.files ?? [])]) await importLanguage(file);
@@ -28,7 +29,7 @@ function importButton() {
     "span",
     { className: "import" },
     input,
-    h("label", { for: "language-file", className: "button" }, "Import a file\u2026"),
+    h("label", { for: "language-file", className: "button", ...WRITES }, "Import a file\u2026"),
   );
 }
 
@@ -103,7 +104,7 @@ function library() {
       importButton(),
       h(
         "button",
-        { type: "button", className: "primary", onclick: () => newLanguage() },
+        { type: "button", className: "primary", ...WRITES, onclick: () => newLanguage() },
         icon("plus"),
         "New language",
       ),

@@ -1,7 +1,7 @@
 // A language's history: its revisions with names, and two of them side by side.
 
 import * as api from "../core/api.js";
-import { h, icon, reconcile } from "../core/dom.js";
+import { h, icon, reconcile, WRITES } from "../core/dom.js";
 import { ago, dateAndTime } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
@@ -86,6 +86,7 @@ function drawRevision(row, element) {
           {
             type: "button",
             className: "quiet",
+            ...WRITES,
             "aria-label": `Go back to revision ${row.revision}`,
             onclick: () => goBack(row),
           },

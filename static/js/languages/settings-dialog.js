@@ -1,7 +1,7 @@
 // The settings of the language on display: its profile and voters' weights beside the defaults.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
 import { currentLanguage, state } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
@@ -264,7 +264,12 @@ export async function openSettings() {
         h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
         h(
           "button",
-          { type: "submit", className: "primary", disabled: JSON.stringify(chosen) === before },
+          {
+            type: "submit",
+            className: "primary",
+            ...WRITES,
+            disabled: JSON.stringify(chosen) === before,
+          },
           "Save",
         ),
       ),

@@ -1,6 +1,6 @@
 // Fields of the phrases' form. Each saves when it loses the focus or Enter is pressed.
 
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { limit } from "../core/text-limit.js";
 
 /**
@@ -70,6 +70,7 @@ export function textField({
 }) {
   const input = h(multiline ? "textarea" : "input", {
     id,
+    ...WRITES,
     defaultValue: value,
     autocomplete: "off",
     ...(multiline
@@ -131,7 +132,7 @@ export const asOptions = (values) => values.map((each) => [each, each]);
 export function choice({ id, label, value, options, commit, hidden = false }) {
   const select = h(
     "select",
-    { id, onchange: () => commit(/** @type {V} */ (select.value)) },
+    { id, ...WRITES, onchange: () => commit(/** @type {V} */ (select.value)) },
     options.map(([key, text]) => h("option", { value: key }, text)),
   );
   select.value = value;
@@ -147,6 +148,7 @@ export function choice({ id, label, value, options, commit, hidden = false }) {
 export function checkbox({ id, label, checked, commit }) {
   const input = h("input", {
     type: "checkbox",
+    ...WRITES,
     id,
     checked,
     onchange: () => commit(input.checked),
@@ -169,6 +171,7 @@ export function tool(id, name, label, run, disabled = false) {
     {
       type: "button",
       className: "quiet icon",
+      ...WRITES,
       id,
       title: label,
       "aria-label": label,

@@ -1,6 +1,6 @@
 // The form of a phrase's parts: gestures, slots, and groups of both.
 
-import { h, icon } from "../core/dom.js";
+import { h, icon, WRITES } from "../core/dom.js";
 import { asOptions, checkbox, choice, numberField, textField, tool } from "./form-fields.js";
 import {
   gesturePart,
@@ -290,7 +290,12 @@ export function addButtons(phrase, path = []) {
    * @param {() => unknown} run
    */
   const button = (kind, text, run) =>
-    h("button", { type: "button", id: `${id}-${kind}`, onclick: run }, icon("plus"), text);
+    h(
+      "button",
+      { type: "button", id: `${id}-${kind}`, ...WRITES, onclick: run },
+      icon("plus"),
+      text,
+    );
   return h(
     "div",
     { className: "part-add" },

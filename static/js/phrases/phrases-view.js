@@ -1,6 +1,6 @@
 // The phrases view: a form for the phrases, their ambiguities, and a trial by clicked gestures.
 
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { showDone } from "../core/undo.js";
@@ -88,7 +88,7 @@ function beginning() {
     ),
     h(
       "button",
-      { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+      { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
       icon("plus"),
       "Add the first phrase",
     ),
@@ -122,7 +122,7 @@ function list() {
       h("span", { className: "spacer" }),
       h(
         "button",
-        { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+        { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
         icon("plus"),
         "New phrase",
       ),
@@ -168,7 +168,7 @@ export function open(section) {
           {},
           h(
             "button",
-            { type: "button", className: "quiet", id: "take-out", onclick: takeOut },
+            { type: "button", className: "quiet", id: "take-out", ...WRITES, onclick: takeOut },
             "Take all phrases out",
           ),
         ),

@@ -1,6 +1,6 @@
 // The panel of slot types: gestures, each with the value it stands for.
 
-import { h, icon } from "../core/dom.js";
+import { h, icon, WRITES } from "../core/dom.js";
 import { asOptions, choice, textField, tool } from "./form-fields.js";
 import {
   inSlotType,
@@ -188,6 +188,7 @@ function slotType(type, place) {
       {
         type: "button",
         className: "link",
+        ...WRITES,
         id: `${id}-add`,
         onclick: () => addValue(type),
         hidden: type.values.length === labels().length,
@@ -218,6 +219,7 @@ export function slotTypesPanel() {
         {
           type: "button",
           id: "add-slot-type",
+          ...WRITES,
           onclick: () => save("New values", (base) => withSlotType(base, labels())),
         },
         icon("plus"),

@@ -2,7 +2,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
-import { h, iconButton } from "../core/dom.js";
+import { h, iconButton, WRITES } from "../core/dom.js";
 import { moment, percent, plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -75,7 +75,7 @@ function takeRow(take, remove) {
           clip.name,
         )
       : h("span", { className: "dim" }, "its clip was deleted"),
-    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take)),
+    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take), WRITES),
   );
 }
 
@@ -162,7 +162,11 @@ export function open(section) {
   const gesture = h("select", { id: "practice-gesture" });
   const clip = h("select", { id: "practice-clip" });
   const picture = h("img", { className: "practice-picture", alt: "", width: 160, height: 160 });
-  const show = h("button", { type: "submit", className: "primary" }, "Show it by this clip");
+  const show = h(
+    "button",
+    { type: "submit", className: "primary", ...WRITES },
+    "Show it by this clip",
+  );
   const answer = h("div", { className: "practice-answer", role: "status" });
   const records = h("div", { className: "practice-records" });
   const note = h("p", { className: "dim" });

@@ -2,7 +2,7 @@
 // is edited only when the intervention is kept.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -165,7 +165,11 @@ export function trialBar(trial, result) {
     h(
       "span",
       { className: "joined" },
-      h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep"),
+      h(
+        "button",
+        { type: "button", className: "primary", ...WRITES, onclick: () => keep(trial) },
+        "Keep",
+      ),
       h("button", { type: "button", onclick: () => discard(trial) }, "Discard"),
     ),
   );

@@ -5,7 +5,7 @@ import { needsTopic, select, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { selectedClip, state, update } from "../core/state.js";
@@ -148,7 +148,7 @@ function welcome(samples, languages) {
       { className: "welcome-actions" },
       h(
         "button",
-        { type: "button", className: "primary", onclick: () => byId("file").click() },
+        { type: "button", className: "primary", ...WRITES, onclick: () => byId("file").click() },
         "Choose clips",
       ),
       samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null,

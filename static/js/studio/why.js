@@ -1,7 +1,7 @@
 // The explanation of a recognition: its sentence, the differences in time, and counterfactuals.
 
 import * as api from "../core/api.js";
-import { byId, h, svg } from "../core/dom.js";
+import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { selectedClip, state, update } from "../core/state.js";
@@ -198,7 +198,7 @@ const shares = (result, why) =>
           {},
           h(
             "button",
-            { type: "button", className: "link", onclick: () => keepAsTest(result) },
+            { type: "button", className: "link", ...WRITES, onclick: () => keepAsTest(result) },
             "Keep as a test",
           ),
           h("small", { className: "dim" }, " recognised again after every change"),
