@@ -207,7 +207,8 @@ export const languages = {
       headers: matching(language),
     }),
   /** @type {(language: string, body: object) => Promise<Preview>} */
-  preview: (language, body) => request("POST", `/languages/${id(language)}/preview`, { body }),
+  preview: (language, body) =>
+    request("POST", `/languages/${id(language)}/preview?marks=true`, { body }),
   /** @type {(language: string, body: object) => Promise<Outlook>} */
   previewHealth: (language, body) =>
     request("POST", `/languages/${id(language)}/preview/health`, { body }),

@@ -49,7 +49,7 @@ function descriptor({ voter, unit, values }) {
 export function image() {
   const drawing = h("img", {
     className: "trajectory",
-    alt: "Trajectory image of the gesture",
+    alt: "Trajectory image of the gesture, from the dot along the arrow",
     width: 224,
     height: 224,
     hidden: true,
