@@ -35,6 +35,7 @@ import {
   stageButtons,
 } from "./studio/stage.js";
 import { drawNow } from "./studio/timeline.js";
+import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
 import { drawFlat, drawRatio } from "./studio/stage-view.js";
 import { drawTransport } from "./studio/transport.js";
@@ -79,6 +80,7 @@ function drawEverything() {
   follow(["gestures"], drawTuning);
   follow(["gestures", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
+  follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
   follow(["clips", "clip"], drawRatio);

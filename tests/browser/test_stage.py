@@ -106,6 +106,21 @@ def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Lib
     assert after["y"] == pytest.approx(before["y"], abs=4)
 
 
+def test_the_tracks_of_the_moving_wrists_are_shown_in_the_flat_view_and_remembered(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, size=(1440, 900), scene=False)
+    track = page.get_by_role("img", name="Track of the right wrist")
+    page.get_by_role("button", name="Tracks", exact=True).click()
+    expect(track).to_be_visible()
+    expect(track.locator("path").first).to_have_attribute("d", re.compile("^M"))
+    expect(page.get_by_role("img", name="Track of the left wrist")).to_have_count(0)
+    page.reload()
+    expect(track).to_be_visible()
+    page.keyboard.press("g")
+    expect(track).to_be_hidden()
+
+
 def test_without_webgl_the_page_draws_the_same_picture_and_says_why(
     open_page: OpenPage, library: Library
 ) -> None:

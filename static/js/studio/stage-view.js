@@ -7,12 +7,11 @@ import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/keys.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { movingWrists } from "./wrist-motion.js";
 
 /** @import { Clip, Poses } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: the cube was shown last.
-const STILL = 0.5; // Share of the larger wrist's path below which a wrist is no part of the stroke.
-const WRISTS = ["left_wrist", "right_wrist"];
 
 let cube = localStorage.getItem(KEY) !== null;
 let own = false; // whether the page draws the picture itself
@@ -147,28 +146,4 @@ export async function drawFlat() {
   const frames = [nearestFrame(poses.time, range[0]), nearestFrame(poses.time, range[1])];
   const frame = Math.min(state.position?.frame ?? frames[0], poses.time.length - 1);
   picture.draw(frame, frames, movingWrists(poses, frames));
-}
-
-/**
- * The wrists that move in a range of frames.
- *
- * @param {Poses} poses
- * @param {[number, number]} range
- */
-function movingWrists({ landmarks, xy }, [first, last]) {
-  const extents = WRISTS.map((name) => {
-    const at = landmarks.indexOf(name);
-    const places = xy
-      .slice(first, last + 1)
-      .map((points) => points[at])
-      .filter((place) => place && place[0] !== null);
-    /** @param {0 | 1} axis */
-    const spread = (axis) => {
-      const values = places.map((place) => Number(place[axis]));
-      return values.length ? Math.max(...values) - Math.min(...values) : 0;
-    };
-    return Math.max(spread(0), spread(1));
-  });
-  const most = Math.max(...extents);
-  return WRISTS.filter((_, index) => extents[index] > 0 && extents[index] >= STILL * most);
 }

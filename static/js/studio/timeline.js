@@ -8,6 +8,7 @@ import { salutesIn, saluteWarning } from "../clips/salutes.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
+import { tracksArea } from "./tracks.js";
 
 /** @import { SelectedRange, Take, Timeline } from "../core/types.d.ts" */
 
@@ -308,6 +309,7 @@ export function drawTimeline() {
     { className: "along" },
     lane,
     behind,
+    tracksArea(),
     h("i", { className: "now", id: "now" }),
   );
   box.replaceChildren(along, h("div", { className: "under" }, ruler(duration), legend()));

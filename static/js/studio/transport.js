@@ -7,6 +7,7 @@ import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./stage-view.js";
 import { setEnd, setStart } from "./timeline.js";
+import { toggleTracks, tracksButton } from "./tracks.js";
 import { showFlat } from "./workspace.js";
 
 /** @import { Binding, State } from "../core/types.d.ts" */
@@ -117,6 +118,7 @@ export function buildTransport() {
         "End here",
       ),
     ),
+    tracksButton(),
     cubeButton(),
   );
   followChoice({ changed: showFlat, play: toggle });
@@ -138,6 +140,7 @@ export function buildTransport() {
   keys(["L"], "Play; again: twice as fast", () => shuttle(1));
   keys(["T"], "Next take", () => neighbour(1));
   keys(["Shift+T"], "Take before", () => neighbour(-1));
+  keys(["G"], "Tracks of the wrists", toggleTracks);
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
 }
