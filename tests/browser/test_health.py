@@ -103,9 +103,15 @@ def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
 def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Library) -> None:
     client = library.client
     listed = client.get("/api/v1/languages").json()
-    # Of eight gestures: long enough not to be done before it is cancelled.
+    # Of sixteen gestures: long enough for its progress to be seen before it is cancelled.
     eight = next(each["id"] for each in listed if each["name"] == "Table 2: eight signs")
     copy = client.post(f"/api/v1/languages/{eight}/duplicate").json()["id"]
+    more = [{"label": f"circle {number}", "clip_id": library.clip} for number in range(8)]
+    client.post(
+        f"/api/v1/languages/{copy}/gestures/batch",
+        json={"gestures": more},
+        headers={"If-Match": '"1"'},
+    ).raise_for_status()
     page = open_page({"view": "health", "language": copy}, scene=False)
     progress = page.get_by_text(re.compile(r"Simulating trials of every gesture, \d+ of \d+"))
     cancelled = page.get_by_text("The check was cancelled")
