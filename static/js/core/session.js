@@ -29,8 +29,8 @@ export const mayWrite = () => state.role !== "read";
 function disable(controls) {
   for (const control of controls) {
     if (control.title !== READS_ONLY) control.title = READS_ONLY;
-    if (!("disabled" in control)) control.setAttribute("aria-disabled", "true");
-    else if (!control.disabled) control.disabled = true;
+    control.dataset.writes = "no"; // A label of a disabled field looks as it does.
+    if ("disabled" in control && !control.disabled) control.disabled = true;
   }
 }
 
