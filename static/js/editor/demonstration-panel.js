@@ -17,9 +17,11 @@ import { chosenIn } from "./salient-keypoints.js";
 
 /** @import { Proposal } from "./salient-keypoints.js" */
 
-/** What is on display: of a clip, or as the language keeps it.
+/**
+ * What is on display: of a clip, or as the language keeps it.
  *
- * @typedef {{ id: string, poses: Poses, takes: Take[], timeline: Timeline } | { id: null, poses: Poses, takes: Take[] }} Source */
+ * @typedef {{ id: string, poses: Poses, takes: Take[], timeline: Timeline } | { id: null, poses: Poses, takes: Take[] }} Source
+ */
 
 /** @typedef {"start" | "end"} End */
 

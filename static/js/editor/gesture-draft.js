@@ -2,13 +2,17 @@
 
 /** @import { Gesture } from "../core/types.d.ts" */
 
-/** A range of a clip, as the API takes it.
+/**
+ * A range of a clip, as the API takes it.
  *
- * @typedef {{ clip_id: string, start: number, end: number, keep_transit: boolean }} Where */
+ * @typedef {{ clip_id: string, start: number, end: number, keep_transit: boolean }} Where
+ */
 
-/** What is edited; no keypoints are those proposed, and no clip is the demonstration as saved.
+/**
+ * What is edited; no keypoints are those proposed, and no clip is the demonstration as saved.
  *
- * @typedef {Pick<Gesture, "label" | "description" | "direction" | "tempo" | "mirror"> & { command: string, salient: string[] | null, clip: Where | null }} Draft */
+ * @typedef {Pick<Gesture, "label" | "description" | "direction" | "tempo" | "mirror"> & { command: string, salient: string[] | null, clip: Where | null }} Draft
+ */
 
 const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.
 const MOST_STEPS = 200; // Of undo: an hour of tireless clicking, a few hundred bytes each.

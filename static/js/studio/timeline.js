@@ -111,7 +111,8 @@ const lastMoment = () => timeOfFrames().at(-1) || 1;
  */
 const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 
-/** How many frames a key moves a handle on.
+/**
+ * How many frames a key moves a handle on.
  *
  * @type {Record<string, number>}
  */
