@@ -14,7 +14,7 @@ export default [
         "error",
         {
           code: 100,
-          ignorePattern: "@(import|param|type|returns) ",
+          ignorePattern: "@(import|param|type|typedef|returns) ",
           ignoreStrings: true,
           ignoreTemplateLiterals: true,
         },

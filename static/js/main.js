@@ -23,7 +23,7 @@ import { drawTuning } from "./languages/language-tuning.js";
 import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
 import { drawGestures } from "./gestures/gesture-cards.js";
-import { openGestureTable } from "./gestures/gesture-table.js";
+import { drawTableButton, openGestureTable } from "./gestures/gesture-table.js";
 import { rememberFrame } from "./studio/playback.js";
 import {
   answerQuestion,
@@ -35,6 +35,7 @@ import {
   stageButtons,
 } from "./studio/stage.js";
 import { drawNow } from "./studio/timeline.js";
+import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
 import { drawFlat, drawRatio } from "./studio/stage-view.js";
 import { drawTransport } from "./studio/transport.js";
@@ -43,6 +44,8 @@ import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart } from "./studio/workspace.js";
 import { acceptFiles, drawUploads } from "./upload/upload-list.js";
+
+/** @import { State } from "./core/types.d.ts" */
 
 const VIEWS = [
   { name: "studio", title: "Studio" },
@@ -69,9 +72,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip"], drawClips);
   follow(["clips", "jobs"], drawBatch);
-  follow(["clips"], ({ clips }) => {
-    byId("make-gestures").hidden = !clips.length;
-  });
+  follow(["clips", "gestures"], drawTableButton);
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
@@ -79,6 +80,7 @@ function drawEverything() {
   follow(["gestures"], drawTuning);
   follow(["gestures", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
+  follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
   follow(["clips", "clip"], drawRatio);
@@ -115,7 +117,11 @@ function loadWithSelection() {
 
 const OF_A_CLIP = new Set([null, "studio", "gesture"]); // Views that show the clip on display.
 
-/** Show which clip or language of a link is missing. */
+/**
+ * Show which clip or language of a link is missing.
+ *
+ * @param {Pick<State, "clip" | "language">} linked
+ */
 function reportMissing({ clip, language }) {
   const gone = [
     clip && !selectedClip() && OF_A_CLIP.has(state.view) ? "clip" : null,

@@ -212,6 +212,18 @@ def test_a_gesture_whose_clip_is_deleted_is_shown_as_the_language_keeps_it(
     expect(page.get_by_text("As saved", exact=True)).to_be_visible()
 
 
+def test_after_a_look_at_a_clip_the_demonstration_as_it_is_saved_is_chosen_again(
+    open_page: OpenPage, library: Library
+) -> None:
+    sample = next(each for each in library.client.get("/api/v1/languages").json() if each["sample"])
+    query = {"view": "gesture", "language": sample["id"], "gesture": sample["labels"][0]}
+    page = open_page(query, scene=False)
+    page.locator("#editor-clip").select_option(library.clip)
+    expect(page.locator("#editor-take")).to_be_visible()
+    page.locator("#editor-clip").select_option("As it is saved")
+    expect(page.locator("#editor-take")).to_be_hidden()
+
+
 def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(
     open_page: OpenPage, library: Library
 ) -> None:

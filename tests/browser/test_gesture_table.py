@@ -47,8 +47,10 @@ def counting(page: Page) -> Page:
 
 
 def open_table(page: Page) -> Locator:
-    """Open the table."""
-    page.get_by_role("button", name="Make gestures of these clips").click()
+    """Open the table by its button, which is in sight above the clips."""
+    button = page.get_by_role("button", name="Make gestures of these clips")
+    expect(button).to_be_in_viewport()
+    button.click()
     return page.get_by_role("dialog", name="Make gestures of these clips")
 
 
@@ -85,6 +87,8 @@ def test_eight_clips_become_eight_gestures_in_one_step_that_can_be_undone(
         add_clip(server, "circle", name=f"IMG_{number:04}.mp4")
     page = counting(open_page({"language": language}, scene=False))
     expect(page.get_by_role("list", name="Clips").get_by_text("IMG_0000.mp4")).to_be_visible()
+    button = page.get_by_role("button", name="Make gestures of these clips")
+    expect(button).to_have_class(re.compile("primary"))
     dialog = open_table(page)
     for row in dialog.get_by_role("listitem").all():
         if "IMG_" not in row.inner_text():

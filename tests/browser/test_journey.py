@@ -126,7 +126,12 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     support = support_in(table)
     assert len(support) == 9
     assert 95 <= sum(support.values()) <= 105
-    assert table.locator("tbody tr").count() == len(VOTERS)
+    silent = page.locator("#votes").get_by_text(re.compile(r"^\d+ voters? without weight"))
+    without_weight = int(silent.inner_text().split()[0])
+    assert table.locator("tbody tr").count() == len(VOTERS) - without_weight
+    page.get_by_role("button", name="Show the voters without weight").click()
+    expect(table.locator("tbody tr")).to_have_count(len(VOTERS))
+    page.get_by_role("button", name="Hide the voters without weight").click()
     outcome = page.locator("#outcome")
     expect(outcome).to_have_text(re.compile(r"Recognised as .*voters with \d+ % of the weight"))
     winner = outcome.locator("b.chosen").inner_text()

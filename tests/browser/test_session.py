@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import httpx
 import pytest
 from playwright.sync_api import Browser, expect
 
 from app.settings import Settings
 from app.store import Role, TokenFile
 from tests.api.running import running
+from tests.browser.files import drop
+from tests.browser.library import library_of
 
 pytestmark = pytest.mark.slow
 
 
-def test_a_reader_signs_in_is_refused_an_edit_with_its_reason_and_logs_out(
+def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
     browser: Browser, tmp_path: Path
 ) -> None:
     settings = Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "none")
-    token = TokenFile(settings.tokens).add("Ada", Role.READ)
-    with running(settings) as server:
+    tokens = TokenFile(settings.tokens)
+    token, editor = tokens.add("Ada", Role.READ), tokens.add("Eve", Role.EDIT)
+    with (
+        running(settings) as server,
+        httpx.Client(
+            base_url=server.address, headers={"Authorization": f"Bearer {editor}"}, timeout=60
+        ) as client,
+    ):
+        library_of(server, client, "circle")
         page = browser.new_context(base_url=server.address).new_page()
+        page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+        page.route("**/viser/**", lambda route: route.fulfill(body=""))
         page.goto("/")
         page.get_by_label("Token").fill(token)
         page.get_by_role("button", name="Sign in").click()
@@ -31,11 +44,24 @@ def test_a_reader_signs_in_is_refused_an_edit_with_its_reason_and_logs_out(
             "headers: {'Content-Type': 'application/json'}}).then((answer) => answer.json())"
         )
         assert refused["code"] == "role_required"
-        page.get_by_role("button", name="New language").click()
-        page.get_by_role("dialog").get_by_role("textbox").first.fill("pool")
-        page.get_by_role("dialog").get_by_role("button", name="Create").click()
-        expect(page.get_by_text("has the role read, and this needs edit")).to_be_visible()
-        page.keyboard.press("Escape")
+        for control in (
+            "New language",
+            "Save as gesture",
+            "Make gestures of these clips",
+            "Delete circle.mp4",
+            "Delete line",
+        ):
+            button = page.get_by_role("button", name=control, exact=control.startswith("Delete"))
+            expect(button).to_be_disabled()
+            expect(button).to_have_attribute("title", re.compile("has the role read"))
+        file = tmp_path / "pool.json"
+        file.write_text("{}", encoding="utf-8")
+        drop(page, file)
+        expect(page.get_by_text("Nothing was added")).to_be_visible()
+        # Recognising changes nothing that others see.
+        page.get_by_role("list", name="Clips").get_by_role("button", name="Show circle.mp4").click()
+        page.get_by_role("button", name="Recognise", exact=True).click()
+        expect(page.locator("#outcome")).to_contain_text("Recognised as circle")
         page.get_by_role("button", name="Log out").click()
         expect(page.get_by_label("Token")).to_be_visible()
         page.context.close()

@@ -86,6 +86,7 @@ def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons
     assert picture is not None
     assert picture["height"] >= 480
     table = page.get_by_role("table", name="Votes")
+    page.get_by_role("button", name="Show the voters without weight").click()
     expect(table.locator("tbody tr")).to_have_count(len(VOTERS))
     expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
     for part in (page.locator("#lab-box"), page.locator("#outcome"), table):
@@ -103,6 +104,21 @@ def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Lib
     assert before is not None
     assert after is not None
     assert after["y"] == pytest.approx(before["y"], abs=4)
+
+
+def test_the_tracks_of_the_moving_wrists_are_shown_in_the_flat_view_and_remembered(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, size=(1440, 900), scene=False)
+    track = page.get_by_role("img", name="Track of the right wrist")
+    page.get_by_role("button", name="Tracks", exact=True).click()
+    expect(track).to_be_visible()
+    expect(track.locator("path").first).to_have_attribute("d", re.compile("^M"))
+    expect(page.get_by_role("img", name="Track of the left wrist")).to_have_count(0)
+    page.reload()
+    expect(track).to_be_visible()
+    page.keyboard.press("g")
+    expect(track).to_be_hidden()
 
 
 def test_without_webgl_the_page_draws_the_same_picture_and_says_why(
@@ -136,14 +152,14 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
 ) -> None:
     query = {**library.address, "recognition": library.recognise("circle")}
     page = open_page(query, size=(1440, 900), scene=False)
-    weight = page.get_by_label(re.compile("^Weight of path:"))
+    weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
     weight.select_option("off")
     trial = page.get_by_role("region", name="Why").get_by_role("status")
-    expect(trial).to_contain_text("without the voter path")
-    expect(page.get_by_label("Weight of path: 0 %")).to_have_value("0")
+    expect(trial).to_contain_text("without the voter velocity")
+    expect(page.get_by_label("Weight of velocity: 0 %")).to_have_value("0")
     language = f"/api/v1/languages/{library.language}"
     assert library.client.get(language).json()["tuning"] is None
     trial.get_by_role("button", name="Keep").click()
     expect(page.locator("#tuning")).to_be_visible()
-    assert library.client.get(language).json()["tuning"]["weights"] == {"path": 0.0}
+    assert library.client.get(language).json()["tuning"]["weights"] == {"velocity": 0.0}

@@ -35,3 +35,21 @@ test("every custom property that is used is defined, and the page loads every sh
   const index = await read("index.html");
   for (const sheet of sheets) assert.ok(index.includes(`/static/${sheet}`), sheet);
 });
+
+test("margins, paddings and gaps are steps of the one scale", async () => {
+  const SPACING =
+    /(?:^|[\s;{])((?:scroll-)?(?:margin|padding)[\w-]*|(?:row-|column-)?gap):([^;}]+)/g;
+  // A negative pixel lets two borders lie on each other.
+  const raw = (value) =>
+    /(?<![\w.])\d*\.?\d+(?:px|r?em|ch|pt)\b/.test(value.replace(/-1px\b/g, ""));
+  for (const file of [...sheets, ...analysis.filter((each) => each.endsWith(".css"))]) {
+    const found = [...(await read(file)).matchAll(SPACING)].filter(([, , value]) => raw(value));
+    assert.deepEqual(
+      found.map(([declaration]) => declaration.trim()),
+      [],
+      file,
+    );
+  }
+  const steps = (await read("styles/tokens.css")).match(/--space-\d+:/g);
+  assert.ok(steps.length <= 12, `${steps.length} steps`);
+});

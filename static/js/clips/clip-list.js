@@ -1,7 +1,7 @@
 // The list of clips in the library: each with its picture, its progress and its buttons.
 
 import * as api from "../core/api.js";
-import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
@@ -40,8 +40,11 @@ async function retry(clip) {
 function buttons(clip) {
   if (BUSY.has(clip.status))
     return [
-      iconButton("close", `Cancel ${clip.name}`, () =>
-        attempt("Cancelling", () => api.jobs.cancel(clip.job_id)),
+      iconButton(
+        "close",
+        `Cancel ${clip.name}`,
+        () => attempt("Cancelling", () => api.jobs.cancel(clip.job_id)),
+        WRITES,
       ),
     ];
   const choose = needsTopic(clip)
@@ -50,6 +53,7 @@ function buttons(clip) {
         {
           type: "button",
           className: "choose-topic",
+          ...WRITES,
           "aria-label": `Choose the topic of ${clip.name}`,
           onclick: () => openTopics(clip),
         },
@@ -59,8 +63,8 @@ function buttons(clip) {
   const again =
     clip.status === "done" || choose
       ? null
-      : iconButton("retry", `Retry ${clip.name}`, () => retry(clip));
-  return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip))];
+      : iconButton("retry", `Retry ${clip.name}`, () => retry(clip), WRITES);
+  return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip), WRITES)];
 }
 
 /**

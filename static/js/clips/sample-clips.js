@@ -1,7 +1,7 @@
 // The sample clips, each a button that adds it to the library.
 
 import * as api from "../core/api.js";
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { attempt } from "../core/toasts.js";
 import { reloadClips, select } from "./clip-store.js";
 
@@ -40,7 +40,12 @@ export function samplesList(samples) {
     "ul",
     { className: "samples" },
     samples.map((sample) => {
-      const button = h("button", { type: "button" }, icon("plus"), readable(sample.name));
+      const button = h(
+        "button",
+        { type: "button", ...WRITES },
+        icon("plus"),
+        readable(sample.name),
+      );
       button.onclick = () => addSampleClip(sample, button);
       return h("li", {}, button);
     }),

@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, Workspace } from "./types.d.ts" */
+/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, Workspace } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -107,13 +107,13 @@ export const clips = {
   poses: (clip) => request("GET", `/clips/${id(clip)}/poses`),
   /** @type {(clip: string) => Promise<Take[]>} */
   takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
-  /** @type {(clip: string) => Promise<any>} */
+  /** @type {(clip: string) => Promise<unknown>} */
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
-  /** @type {(clip: string) => Promise<any>} */
+  /** @type {(clip: string) => Promise<unknown>} */
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
-  /** @type {(clip: string) => Promise<any>} */
+  /** @type {(clip: string) => Promise<unknown>} */
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
-  /** @type {(clip: string, topic: string) => Promise<any>} */
+  /** @type {(clip: string, topic: string) => Promise<unknown>} */
   chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
   /** @type {(clip: string) => string} */
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
@@ -126,14 +126,14 @@ export const clips = {
 export const jobs = {
   /** @type {(job: string) => Promise<Job>} */
   get: (job) => request("GET", `/jobs/${id(job)}`),
-  /** @type {(job: string) => Promise<any>} */
+  /** @type {(job: string) => Promise<unknown>} */
   cancel: (job) => request("DELETE", `/jobs/${id(job)}`),
 };
 
 export const samples = {
   /** @type {() => Promise<Sample[]>} */
   list: () => request("GET", "/samples"),
-  /** @type {(name: string) => Promise<any>} */
+  /** @type {(name: string) => Promise<ClipAccepted>} */
   add: (name) => request("POST", "/samples", { body: { name } }),
   /** @type {() => Promise<SampleLanguage[]>} */
   languages: () => request("GET", "/samples/languages"),
@@ -176,7 +176,7 @@ export const languages = {
   /** @type {(language: string, revision: number) => Promise<HealthReport>} */
   check: (language, revision) =>
     request("GET", `/languages/${id(language)}/check?revision=${revision}`),
-  /** @type {(language: string, revision: number) => Promise<any>} */
+  /** @type {(language: string, revision: number) => Promise<unknown>} */
   cancelCheck: (language, revision) =>
     request("DELETE", `/languages/${id(language)}/check?revision=${revision}`),
   /** @type {(language: string, one: string, other: string, revision: number) => Promise<PairDifference>} */
@@ -190,7 +190,7 @@ export const languages = {
     `${BASE}${gestureAt({ id: language }, label, "/image")}&revision=${revision}&marks=true`,
   /** @type {(language: string) => Promise<Language>} */
   restore: (language) => request("POST", `/languages/${id(language)}/restore`),
-  /** @type {(language: { id: string, revision?: number }) => Promise<any>} */
+  /** @type {(language: { id: string, revision?: number }) => Promise<unknown>} */
   remove: (language) =>
     request(
       "DELETE",
@@ -207,7 +207,8 @@ export const languages = {
       headers: matching(language),
     }),
   /** @type {(language: string, body: object) => Promise<Preview>} */
-  preview: (language, body) => request("POST", `/languages/${id(language)}/preview`, { body }),
+  preview: (language, body) =>
+    request("POST", `/languages/${id(language)}/preview?marks=true`, { body }),
   /** @type {(language: string, body: object) => Promise<Outlook>} */
   previewHealth: (language, body) =>
     request("POST", `/languages/${id(language)}/preview/health`, { body }),
@@ -266,7 +267,7 @@ export const testSets = {
   remove: (language, take) => request("DELETE", `/languages/${id(language)}/test-set/${id(take)}`),
   /** @type {(language: string) => Promise<TestSet>} */
   run: (language) => request("POST", `/languages/${id(language)}/test-set/run`),
-  /** @type {(language: string) => Promise<any>} */
+  /** @type {(language: string) => Promise<unknown>} */
   cancel: (language) => request("DELETE", `/languages/${id(language)}/test-set/run`),
 };
 
@@ -297,9 +298,9 @@ export const workspaces = {
   open: (dark) => request("POST", "/workspaces", { body: { dark } }),
   /** @type {(workspace: string) => Promise<Workspace>} */
   find: (workspace) => request("GET", `/workspaces/${id(workspace)}`),
-  /** @type {(workspace: string, look: { dark?: boolean, flat?: boolean, animate?: boolean }) => Promise<any>} */
+  /** @type {(workspace: string, look: { dark?: boolean, flat?: boolean, animate?: boolean }) => Promise<unknown>} */
   change: (workspace, look) => request("PATCH", `/workspaces/${id(workspace)}`, { body: look }),
-  /** @type {(workspace: string, view: object) => Promise<any>} */
+  /** @type {(workspace: string, view: object) => Promise<unknown>} */
   show: (workspace, view) => request("PUT", `/workspaces/${id(workspace)}/view`, { body: view }),
 };
 

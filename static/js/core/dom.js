@@ -22,6 +22,9 @@ const ICONS = {
   up: "M5 12l5-5 5 5",
 };
 
+/** Marks a control that changes what others see, and that `session.js` disables for readers. */
+export const WRITES = { "data-writes": "" };
+
 /**
  * Find an element that index.html promises.
  *
@@ -89,11 +92,19 @@ export function icon(name) {
  * @param {string} name
  * @param {string} label
  * @param {() => unknown} onclick
+ * @param {Record<string, string>} [more] attributes, such as `WRITES`
  */
-export function iconButton(name, label, onclick) {
+export function iconButton(name, label, onclick, more = {}) {
   return h(
     "button",
-    { type: "button", className: "quiet icon", title: label, "aria-label": label, onclick },
+    {
+      type: "button",
+      className: "quiet icon",
+      title: label,
+      "aria-label": label,
+      onclick,
+      ...more,
+    },
     icon(name),
   );
 }

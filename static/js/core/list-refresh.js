@@ -35,8 +35,9 @@ async function loaded(id, load) {
  * `take(list, member)` gets the new one.
  *
  * @template {{ id: string }} T
+ * @template {T} M
  * @param {string} id
- * @param {{ load: (id: string) => Promise<any>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: any) => void }} source
+ * @param {{ load: (id: string) => Promise<M>, current: () => T[], order: (one: T, other: T) => number, take: (list: T[], member: M | null) => void }} source
  */
 export async function refresh(id, { load, current, order, take }) {
   const answer = await loaded(id, load);

@@ -1,6 +1,6 @@
 // A menu: a button that opens a short list of commands.
 
-import { h, icon } from "./dom.js";
+import { h, icon, WRITES } from "./dom.js";
 
 /** @import { MenuItem } from "./types.d.ts" */
 
@@ -30,13 +30,14 @@ addEventListener("click", (event) => {
  */
 export function menu(label, items) {
   /** @param {MenuItem} item */
-  const entry = ({ text, run, href }) =>
+  const entry = ({ text, run, href, writes }) =>
     href
       ? h("a", { href, download: "", onclick: () => close() }, text)
       : h(
           "button",
           {
             type: "button",
+            ...(writes ? WRITES : {}),
             onclick: () => {
               close(true);
               run?.();
@@ -69,9 +70,9 @@ export function menu(label, items) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (!step || !element.open) return;
     event.preventDefault();
-    const entries = /** @type {HTMLElement[]} */ ([...list.children]);
+    const entries = /** @type {HTMLElement[]} */ ([...list.querySelectorAll(":enabled, a")]);
     const at = entries.findIndex((each) => each === document.activeElement);
-    entries[(at + step + items.length) % items.length].focus();
+    entries[(at + step + entries.length) % entries.length].focus();
   };
   return element;
 }

@@ -1,7 +1,8 @@
-// Who is signed in: the name and the role of the token, and log-out.
+// Who is signed in: the name and the role of the token, what that role cannot do, and log-out.
 
 import * as api from "./api.js";
 import { byId } from "./dom.js";
+import { state, update } from "./state.js";
 import { attempt } from "./toasts.js";
 
 /** @import { Session } from "./types.d.ts" */
@@ -13,9 +14,42 @@ import { attempt } from "./toasts.js";
  */
 export const describeSession = ({ name, role }) => (name ? `Signed in as ${name} (${role})` : "");
 
+/** Why a reader cannot press what writes. */
+export const READS_ONLY =
+  "Your token has the role read. Ask an administrator for one with the role edit to change this.";
+
+/** Whether what is done here may change what others see. */
+export const mayWrite = () => state.role !== "read";
+
+/**
+ * Disable controls that write, and say why; one that enables itself again is disabled again.
+ *
+ * @param {Iterable<HTMLElement>} controls
+ */
+function disable(controls) {
+  for (const control of controls) {
+    if (control.title !== READS_ONLY) control.title = READS_ONLY;
+    control.dataset.writes = "no"; // A label of a disabled field looks as it does.
+    if ("disabled" in control && !control.disabled) control.disabled = true;
+  }
+}
+
+/** Disable all that writes, now and whenever something is drawn. */
+function holdToReading() {
+  const hold = () => disable(document.querySelectorAll("[data-writes]"));
+  new MutationObserver(hold).observe(document.body, {
+    subtree: true,
+    childList: true,
+    attributeFilter: ["disabled", "title"],
+  });
+  hold();
+}
+
 /** Show who is signed in, with a button to log out where a cookie keeps the token. */
 export async function showSession() {
   const session = await attempt("Reading who is signed in", api.session.get);
+  update({ role: session?.role ?? null });
+  if (!mayWrite()) holdToReading();
   if (!session?.name) return;
   byId("session-name").textContent = describeSession(session);
   byId("log-out").hidden = !session.signed_in;

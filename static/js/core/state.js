@@ -44,6 +44,7 @@ const values = {
   why: null,
   trial: null,
   question: null,
+  role: null,
   connected: null,
   returns: 0,
   loaded: false,

@@ -5,6 +5,7 @@ import type { components } from "./api-schema.d.ts";
 type Schemas = components["schemas"];
 
 export type Clip = Schemas["ClipView"];
+export type ClipAccepted = Schemas["ClipAccepted"];
 export type Job = Schemas["JobView"];
 export type Take = Schemas["TakeView"];
 export type Topic = Schemas["TopicSeen"];
@@ -37,7 +38,9 @@ export type Source = Schemas["SourceView"];
 export type Workspace = Schemas["OpenedWorkspace"];
 export type LanguageSettings = Schemas["SettingsView"];
 export type PracticeRecord = Schemas["PracticeRecordView"];
-export type PracticeAnswer = Schemas["PracticeAnswerView"];
+export type PracticeTake = Schemas["PracticeTakeView"];
+export type Demonstration = Schemas["DemonstrationView"];
+export type WorkspaceView = Schemas["ViewRequest"];
 export type TestSet = Schemas["TestSetView"];
 export type LabelledTake = Schemas["LabelledTakeView"];
 export type Tuning = Schemas["TuningEntry"];
@@ -58,22 +61,31 @@ export type Outlook = Omit<Schemas["OutlookView"], "pairs" | "missed" | "refused
   refused: Rate | null;
 };
 
+/** A position, x right and y down; null where it was not seen. */
+export type Place = [number, number] | null;
+
 /** How dynamic time warping pairs the steps of a take with those of a gesture. */
 export interface Alignment {
   label: string;
   voter: string;
+  distance: number;
+  backward: boolean;
+  mirrored: boolean;
   parts: string[];
   time: number[];
   gesture_time: number[];
   pairs: [number, number][];
+  /** Per step and part, of the take and of the gesture. */
+  query: Place[][];
+  gesture: Place[][];
   /** Per pair and part. */
   costs: number[][];
 }
 
-/** One voter's score for the gesture that was expected and the one it is compared with. */
-export interface Verdict {
-  voter: string;
-  [name: string]: any;
+/** How a take differs from the expected gesture; `start` is null where it does throughout. */
+export interface Lesson {
+  words: string;
+  start: number | null;
 }
 
 /** What an intervention does to the other gestures of the language. */
@@ -84,18 +96,44 @@ export interface SideEffect {
   lost: string[];
 }
 
+/** What an intervention changes, and in which words. */
+export type Intervention = { words: string } & (
+  | { kind: "trim"; start: number; end: number }
+  | { kind: "voter_weight" | "weight_factor"; voter: string; factor: number }
+  | { kind: "simplification"; tolerance: number }
+  | { kind: "keypoint_repair"; on: boolean }
+  | { kind: "profile"; profile: Language["profile"] }
+  | { kind: "salient"; label: string; salient: string[] }
+  | { kind: "switch"; label: string; switch: SwitchName; position: Gesture["direction"] }
+  | { kind: "demonstration" | "further_demonstration"; label: string }
+);
+
+/** What of a movement may count or not. */
+export type SwitchName = "direction" | "tempo" | "mirror";
+
 /** A change under which the take is recognised as expected. */
 export interface Counterfactual {
-  change: { kind: string; words: string; [name: string]: any };
+  change: Intervention;
   label: string;
   confidence: number;
   effect: SideEffect | null;
 }
 
-export type Explanation = Omit<
-  Schemas["ExplanationView"],
-  "alignments" | "counterfactuals" | "verdicts"
-> & { alignments: Alignment[]; counterfactuals: Counterfactual[]; verdicts: Verdict[] };
+/** Why a take was recognised as it was; the fields that the page reads. */
+export interface Explanation {
+  id: string;
+  expected: string;
+  label: string | null;
+  nearest: string;
+  right: boolean;
+  sentence: string;
+  alignments: Alignment[];
+  counterfactuals: Counterfactual[];
+  lesson: Lesson | null;
+  /** How many changes were tried. */
+  tried: number;
+  notes: string[];
+}
 
 /** The answer to a recognition; the fields that the page reads. */
 export interface Recognition {
@@ -120,6 +158,11 @@ export interface Recognition {
   weights: Record<string, number>;
   fault: string | null;
 }
+
+/** The answer to a take that a diver practised. */
+export type PracticeAnswer = Omit<Schemas["PracticeAnswerView"], "lesson"> & {
+  lesson: Lesson | null;
+};
 
 export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;
@@ -157,19 +200,29 @@ export interface GestureEstimate {
 export interface PairEstimate {
   gestures: [string, string];
   confusion: Rate | null;
-  reverse: Rate | null;
+  first_as_second: Rate | null;
+  second_as_first: Rate | null;
   distance: number | null;
-  [name: string]: any;
 }
 
 export interface HealthReport {
   ok: boolean;
+  /** Simulated trials of each gesture. */
+  takes: number;
   warnings: Finding[];
   gestures: GestureEstimate[];
   pairs: PairEstimate[];
   map: { label: string; x: number; y: number }[];
   bar: { missed: number; confusion: number };
-  [name: string]: any;
+}
+
+/** How far a health check is; `total` is 0 while it is not known. */
+export interface CheckProgress {
+  id: string;
+  revision: number;
+  stage: string;
+  done: number;
+  total: number;
 }
 
 /** The health report on display, or the progress towards it. */
@@ -224,7 +277,7 @@ export interface Position {
 
 /** A counterfactual that was recognised with, on a copy of the language, and is not kept yet. */
 export interface Trial {
-  change: Counterfactual["change"];
+  change: Intervention;
   base: Partial<State>;
   result: string;
 }
@@ -254,12 +307,14 @@ export interface State {
   why: Explanation | null;
   trial: Trial | null;
   question: { clip: string; expected: string } | null;
+  /** What the token may do; null until the server has told. */
+  role: Session["role"] | null;
   connected: boolean | null;
   /** How often the server came back: what could not be asked meanwhile is asked then. */
   returns: number;
   loaded: boolean;
   health: HealthState | null;
-  checking: any;
+  checking: CheckProgress | null;
   testSet: TestSet | null;
   /** How far the run of the test set is; null while none runs. */
   testing: { id: string; done: number; total: number } | null;
@@ -346,8 +401,8 @@ export interface KeyListActions {
 
 /** A command of a menu, or a file to download. */
 export type MenuItem =
-  | { text: string; run: () => unknown; href?: undefined }
-  | { text: string; href: string; run?: undefined };
+  | { text: string; run: () => unknown; href?: undefined; writes?: boolean }
+  | { text: string; href: string; run?: undefined; writes?: undefined };
 
 /** The range in seconds on which buttons act, the part of it to show, and the take it is, if any. */
 export interface SelectedRange {

@@ -13,16 +13,33 @@ import { change, draft, saved } from "./gesture-draft.js";
 import { figure } from "../studio/pose-picture.js";
 import { chosenIn } from "./salient-keypoints.js";
 
+/** @import { Poses, Take, Timeline } from "../core/types.d.ts" */
+
+/** @import { Proposal } from "./salient-keypoints.js" */
+
+/**
+ * What is on display: of a clip, or as the language keeps it.
+ *
+ * @typedef {{ id: string, poses: Poses, takes: Take[], timeline: Timeline } | { id: null, poses: Poses, takes: Take[] }} Source
+ */
+
+/** @typedef {"start" | "end"} End */
+
 const BY_HAND = "by hand";
 
 /**
  * Build the panel. `gesture` is null for a new one, `drawn` says that only its drawing is known;
  * `pick(landmark)` switches a keypoint.
+ *
+ * @param {{ language: string, gesture: string | null, drawn: boolean, pick: (landmark: string) => void }} about
  */
 export function take({ language, gesture, drawn, pick }) {
-  let source = null; // { id, poses, takes, timeline } of what is on display
+  /** @type {Source | null} */
+  let source = null;
+  /** @type {string | null | undefined} */
   let opening; // the clip of what is on its way; null is what the language keeps
   let frame = 0;
+  /** @type {string[]} */
   let chosen = [];
   let clock = 0; // of the animation that plays
   const picture = figure(pick);
@@ -30,7 +47,7 @@ export function take({ language, gesture, drawn, pick }) {
   const takes = h("select", {
     id: "editor-take",
     onchange: () => {
-      if (takes.value !== BY_HAND)
+      if (source?.id && takes.value !== BY_HAND)
         change({ clip: wholeOf(source.id, source.takes, source.poses.time, Number(takes.value)) });
     },
   });
@@ -43,7 +60,7 @@ export function take({ language, gesture, drawn, pick }) {
   });
   const clockText = h("output", { className: "num", for: "editor-frame" });
   const playing = h("button", { type: "button", className: "quiet icon", onclick: () => play() });
-  const ends = ["start", "end"].map((which) => edge(which));
+  const ends = /** @type {End[]} */ (["start", "end"]).map(edge);
   const strip = h(
     "div",
     { className: "track" },
@@ -53,7 +70,10 @@ export function take({ language, gesture, drawn, pick }) {
   const transit = h("input", {
     type: "checkbox",
     id: "editor-transit",
-    onchange: () => change({ clip: { ...draft().clip, keep_transit: !transit.checked } }),
+    onchange: () => {
+      const { clip } = draft();
+      if (clip) change({ clip: { ...clip, keep_transit: !transit.checked } });
+    },
   });
   const transitText = h("small", { className: "dim" });
   const trim = h(
@@ -83,6 +103,7 @@ export function take({ language, gesture, drawn, pick }) {
     clockText,
   );
 
+  /** @param {End} which */
   function edge(which) {
     const title = which === "start" ? "Start" : "End";
     const handle = h("input", {
@@ -108,22 +129,23 @@ export function take({ language, gesture, drawn, pick }) {
     };
   }
 
+  /**
+   * @param {End} which
+   * @param {number} to
+   */
   function move(which, to) {
-    if (!source?.id) return;
-    change(
-      { clip: movedTo(draft().clip, source.takes, source.poses.time, which, to) },
-      `trim ${which}`,
-    );
+    const { clip } = draft();
+    if (!source?.id || !clip) return;
+    change({ clip: movedTo(clip, source.takes, source.poses.time, which, to) }, `trim ${which}`);
     const [first, last] = span();
     go(which === "start" ? first : last);
   }
 
   /** @type {() => [number, number]} */
   const span = () =>
-    source.id
-      ? framesOf(draft().clip, source.takes, source.poses.time)
-      : [0, source.poses.time.length - 1];
+    source ? framesOf(source.id ? draft().clip : null, source.takes, source.poses.time) : [0, 0];
 
+  /** @param {string} id */
   async function choose(id) {
     if (!id) return change({ clip: null });
     if (id === saved().clip?.clip_id) return change({ clip: saved().clip });
@@ -132,10 +154,18 @@ export function take({ language, gesture, drawn, pick }) {
     return undefined;
   }
 
+  /**
+   * @param {string | null} id
+   * @returns {Promise<Source | null>}
+   */
   function load(id) {
     return attempt("Loading the demonstration", async () => {
       if (!id)
-        return { id: null, takes: [], poses: await api.languages.demonstration(language, gesture) };
+        return {
+          id: null,
+          takes: [],
+          poses: await api.languages.demonstration(language, gesture ?? ""),
+        };
       const [poses, found, timeline] = await Promise.all([
         api.clips.poses(id),
         api.clips.takes(id),
@@ -145,6 +175,7 @@ export function take({ language, gesture, drawn, pick }) {
     });
   }
 
+  /** @param {number} to */
   function go(to) {
     if (!source) return;
     frame = Math.max(0, Math.min(source.poses.time.length - 1, to));
@@ -157,10 +188,12 @@ export function take({ language, gesture, drawn, pick }) {
   /** Play the demonstration over and over, as fast as the camera saw it. */
   function play() {
     if (clock) return pause();
+    if (!source) return undefined;
     const { time } = source.poses;
     let [first, last] = span();
     if (frame < first || frame >= last) go(first);
     const began = performance.now() - 1000 * (time[frame] - time[first]);
+    /** @param {number} now */
     const step = (now) => {
       [first, last] = span();
       const length = time[last] - time[first] || 1;
@@ -193,11 +226,11 @@ export function take({ language, gesture, drawn, pick }) {
     ];
     clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
     clips.value = draft().clip?.clip_id ?? "";
-    const several = Boolean(source?.id);
-    /** @type {HTMLElement} */ (takes.parentElement).hidden = !several;
-    if (!several) return;
+    const shown = source?.id ? source : null;
+    /** @type {HTMLElement} */ (takes.parentElement).hidden = !shown;
+    if (!shown) return;
     takes.replaceChildren(
-      ...source.takes.map((each, index) =>
+      ...shown.takes.map((each, index) =>
         h(
           "option",
           { value: index },
@@ -206,13 +239,13 @@ export function take({ language, gesture, drawn, pick }) {
       ),
       h("option", { value: BY_HAND }, "Range by hand"),
     );
-    const taken = takeOf(draft().clip, source.takes);
-    takes.value = taken ? source.takes.indexOf(taken) : BY_HAND;
+    const taken = takeOf(draft().clip, shown.takes);
+    takes.value = taken ? String(shown.takes.indexOf(taken)) : BY_HAND;
   }
 
   function drawTrim() {
     trim.hidden = !source?.id;
-    if (trim.hidden) return;
+    if (!source?.id) return;
     const { time } = source.poses;
     const frames = span();
     ends.forEach(({ which, handle, number, seconds }, index) => {
@@ -225,18 +258,20 @@ export function take({ language, gesture, drawn, pick }) {
       seconds.textContent = moment(time[frames[index]]);
       seconds.dataset.end = which;
     });
+    /** @param {number} index */
     const share = (index) => (100 * index) / (time.length - 1);
     const range = /** @type {HTMLElement} */ (strip.querySelector(".range"));
     range.style.left = `${share(frames[0])}%`;
     range.style.width = `${share(frames[1]) - share(frames[0])}%`;
-    const own = takeOf(draft().clip, source.takes);
+    const { clip } = draft();
+    const own = takeOf(clip, source.takes);
     const warning = saluteWarning(
       own ? [] : salutesIn(source.timeline, time[frames[0]], time[frames[1]]),
     );
     salutes.textContent = warning;
     salutes.hidden = !warning;
     transit.disabled = !own;
-    transit.checked = Boolean(own) && !draft().clip.keep_transit;
+    transit.checked = Boolean(own) && !clip?.keep_transit;
     transitText.textContent = own
       ? `${moment(own.stroke_start - own.start)} before and ${moment(own.end - own.stroke_end)} after the gesture`
       : "A range chosen by hand is used as it is; choose a take to have the transit found.";
@@ -261,6 +296,7 @@ export function take({ language, gesture, drawn, pick }) {
     show(loaded);
   }
 
+  /** @param {Source} loaded */
   function show(loaded) {
     source = loaded;
     const { id } = source;
@@ -271,10 +307,11 @@ export function take({ language, gesture, drawn, pick }) {
     draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
     go(span()[0]);
     const clip = state.clips.find((each) => each.id === id);
-    if (clip && strip.clientWidth)
+    if (clip && source.id && strip.clientWidth)
       strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
   }
 
+  /** @param {Proposal | null} preview */
   function draw(preview) {
     chosen = chosenIn(preview);
     drawChoices();
@@ -320,7 +357,9 @@ export function take({ language, gesture, drawn, pick }) {
     draw,
     play,
     pause,
+    /** @param {number} by */
     step: (by) => go(frame + by),
+    /** @param {End} which */
     setHere: (which) => move(which, frame),
   };
 }

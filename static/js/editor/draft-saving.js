@@ -4,15 +4,37 @@ import * as api from "../core/api.js";
 import { edit } from "../languages/revision-edit.js";
 import { read } from "../languages/robot-command.js";
 
+/** @import { Gesture, Language, SwitchName } from "../core/types.d.ts" */
+
+/** @import { Draft } from "./gesture-draft.js" */
+
+/** @typedef {Partial<Omit<Gesture, "source">> & { demonstration?: Draft["clip"] }} Change */
+
+/** @type {SwitchName[]} */
 const SWITCHES = ["direction", "tempo", "mirror"];
 
+/**
+ * @param {unknown} one
+ * @param {unknown} other
+ */
 const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
 
-/** Whether a draft shows the gesture by another demonstration than the one that is saved. */
+/**
+ * Whether a draft shows the gesture by another demonstration than the one that is saved.
+ *
+ * @param {string | null} gesture
+ * @param {Pick<Draft, "clip">} values
+ * @param {Draft} saved
+ */
 const isAnew = (gesture, { clip }, saved) =>
   Boolean(clip) && (gesture === null || !same(clip, saved.clip));
 
-/** What of a draft changes what is recognised. */
+/**
+ * What of a draft changes what is recognised.
+ *
+ * @param {Draft} draft
+ * @param {boolean} anew
+ */
 function content({ clip, salient, ...values }, anew) {
   return {
     ...(anew ? { demonstration: clip } : {}),
@@ -21,17 +43,31 @@ function content({ clip, salient, ...values }, anew) {
   };
 }
 
-/** What is asked of the preview. A drawing without its demonstration keeps its keypoints. */
+/**
+ * What is asked of the preview. A drawing without its demonstration keeps its keypoints.
+ *
+ * @param {string | null} gesture
+ * @param {Draft} values
+ * @param {Draft} saved
+ * @param {boolean} [fixed]
+ */
 export const requestOf = (gesture, values, saved, fixed = false) => ({
   label: gesture,
   change: content(fixed ? { ...values, salient: null } : values, isAnew(gesture, values, saved)),
 });
 
-/** Only what was changed: the rest may meanwhile be another's. */
+/**
+ * Only what was changed: the rest may meanwhile be another's.
+ *
+ * @param {string} gesture
+ * @param {Draft} values
+ * @param {Draft} saved
+ */
 function changeOf(gesture, values, saved) {
+  /** @type {Change} */
   const change = {};
   const anew = isAnew(gesture, values, saved);
-  for (const name of ["label", "description"])
+  for (const name of /** @type {const} */ (["label", "description"]))
     if (values[name].trim() !== saved[name]) change[name] = values[name].trim();
   if (values.command !== saved.command) change.command = read(values.command).command;
   for (const name of SWITCHES) if (values[name] !== saved[name]) change[name] = values[name];
@@ -41,7 +77,14 @@ function changeOf(gesture, values, saved) {
   return change;
 }
 
-/** Save a draft as one revision of the language, which can be taken back. */
+/**
+ * Save a draft as one revision of the language, which can be taken back.
+ *
+ * @param {Language} language
+ * @param {string | null} gesture
+ * @param {Draft} values
+ * @param {Draft} saved
+ */
 export function save(language, gesture, values, saved) {
   if (gesture === null) {
     const { clip, label, description, command, ...rest } = values;

@@ -1,24 +1,58 @@
 // The draft of a gesture: unsaved changes with their own undo, kept in localStorage.
 
+/** @import { Gesture } from "../core/types.d.ts" */
+
+/**
+ * A range of a clip, as the API takes it.
+ *
+ * @typedef {{ clip_id: string, start: number, end: number, keep_transit: boolean }} Where
+ */
+
+/**
+ * What is edited; no keypoints are those proposed, and no clip is the demonstration as saved.
+ *
+ * @typedef {Pick<Gesture, "label" | "description" | "direction" | "tempo" | "mirror"> & { command: string, salient: string[] | null, clip: Where | null }} Draft
+ */
+
 const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.
 const MOST_STEPS = 200; // Of undo: an hour of tireless clicking, a few hundred bytes each.
 const SHELF_LIFE = 30 * 24 * 3600e3; // ms. Nobody remembers what a draft of last month was for.
 
+/** @type {string | null} */
 let place = null; // under which the draft is kept
+/** @type {Draft | null} */
 let base = null;
+/** @type {Draft | null} */
 let now = null;
+/** @type {Draft[]} */
 let past = [];
+/** @type {Draft[]} */
 let future = [];
+/** @type {string | null} */
 let typing = null; // the text field that the newest step belongs to
 let listener = () => {};
 
+/**
+ * @param {unknown} one
+ * @param {unknown} other
+ */
 const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
 
+/**
+ * A draft, for code that runs only while there is one.
+ *
+ * @param {Draft | null} values
+ */
+function begun(values) {
+  if (!values) throw new Error("No gesture is edited.");
+  return values;
+}
+
 /** The draft as it is; read only. */
-export const draft = () => now;
+export const draft = () => begun(now);
 
 /** What the draft began from; read only. */
-export const saved = () => base;
+export const saved = () => begun(base);
 
 export const isChanged = () => now !== null && !same(now, base);
 /** Whether there is a changed draft that comes back when the gesture is opened again. */
@@ -27,12 +61,22 @@ export const isKept = () => isChanged() && read(place) !== null;
 export const canUndo = () => past.length > 0;
 export const canRedo = () => future.length > 0;
 
-/** The key of the draft of a gesture of a language; of a new one, by where it is shown. */
+/**
+ * The key of the draft of a gesture of a language; of a new one, by where it is shown.
+ *
+ * @param {string} language
+ * @param {string} gesture
+ */
 export const placeOf = (language, gesture) => `${KEY}.${language}.${gesture}`;
 
 /**
  * Begin with `values`, or with the draft kept from another time. `changed()` is called after every
  * change. Returns when the kept draft was left, in ms, or null.
+ *
+ * @param {string} at
+ * @param {Draft} values
+ * @param {() => void} changed
+ * @returns {number | null}
  */
 export function begin(at, values, changed) {
   [place, base, now, past, future, typing, listener] = [at, values, values, [], [], null, changed];
@@ -43,12 +87,16 @@ export function begin(at, values, changed) {
   return kept.time;
 }
 
-/** Change some values. Typing on in the same `field` stays one step. */
-/** @type {(values: object, field?: string | null) => void} */
+/**
+ * Change some values. Typing on in the same `field` stays one step.
+ *
+ * @param {Partial<Draft>} values
+ * @param {string | null} [field]
+ */
 export function change(values, field = null) {
-  const next = { ...now, ...values };
+  const next = { ...draft(), ...values };
   if (same(next, now)) return;
-  if (field === null || field !== typing) past = [...past, now].slice(-MOST_STEPS);
+  if (field === null || field !== typing) past = [...past, draft()].slice(-MOST_STEPS);
   typing = field;
   future = [];
   turn(next);
@@ -60,19 +108,24 @@ export const rest = () => {
 };
 
 export function undo() {
-  if (!canUndo()) return;
-  future = [...future, now];
-  turn(past.at(-1), past.slice(0, -1));
+  const before = past.at(-1);
+  if (!before) return;
+  future = [...future, draft()];
+  turn(before, past.slice(0, -1));
 }
 
 export function redo() {
-  if (!canRedo()) return;
-  past = [...past, now];
   const next = future.at(-1);
+  if (!next) return;
+  past = [...past, draft()];
   future = future.slice(0, -1);
   turn(next);
 }
 
+/**
+ * @param {Draft} next
+ * @param {Draft[]} [steps]
+ */
 function turn(next, steps = past) {
   [now, past] = [next, steps];
   keep();
@@ -86,21 +139,26 @@ export function forget() {
 
 /** Drop the draft and go back to what it began from; one undo brings it back. */
 export function discard() {
-  change(base);
+  change(saved());
 }
 
 function keep() {
   try {
-    if (isChanged()) localStorage.setItem(place, JSON.stringify({ values: now, time: Date.now() }));
+    if (place && isChanged())
+      localStorage.setItem(place, JSON.stringify({ values: now, time: Date.now() }));
     else forget();
   } catch {
     /* A full or forbidden store: the draft lives as long as its tab. */
   }
 }
 
+/**
+ * @param {string | null} at
+ * @returns {{ values: Draft, time: number } | null}
+ */
 function read(at) {
   try {
-    const kept = JSON.parse(localStorage.getItem(at) ?? "null");
+    const kept = JSON.parse((at && localStorage.getItem(at)) || "null");
     return kept && Date.now() - kept.time < SHELF_LIFE ? kept : null;
   } catch {
     return null;

@@ -1,7 +1,7 @@
 // The editor of a gesture. Only "Save" changes the language; until then there is a draft.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/keys.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
@@ -33,10 +33,18 @@ import { previewing } from "./preview-requests.js";
 import { health, image } from "./preview-results.js";
 import { keypoints, toggle } from "./salient-keypoints.js";
 
-/** @import { SelectedRange } from "../core/types.d.ts" */
+/** @import { Gesture, Language, Outlook, Preview, SelectedRange } from "../core/types.d.ts" */
+
+/** @import { Draft, Where } from "./gesture-draft.js" */
+
+/**
+ * What is edited; no gesture is a new one.
+ *
+ * @typedef {{ language: Language, gesture: string | null, key: string }} Subject */
 
 const GROUP = "Editing a gesture";
 
+/** @type {{ about: Subject, take: ReturnType<typeof take>, changed: () => void } | null} */
 let editor = null; // the one on display
 
 /** The gesture to edit: one of the language, or a new one from the selected range. */
@@ -54,11 +62,19 @@ function subject() {
   return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
 }
 
-/** Whether the clip of a demonstration can be shown. */
+/**
+ * Whether the clip of a demonstration can be shown.
+ *
+ * @param {Pick<Where, "clip_id"> | null | undefined} where
+ */
 const isThere = (where) =>
-  Boolean(where) && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
+  where && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
 
-/** The demonstration of a source as the API takes it. */
+/**
+ * The demonstration of a source as the API takes it.
+ *
+ * @param {Where} source
+ */
 const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
   clip_id,
   start,
@@ -66,6 +82,21 @@ const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
   keep_transit,
 });
 
+/**
+ * The gesture that is edited, for code that runs only where there is one.
+ *
+ * @param {Pick<Subject, "language" | "gesture">} about
+ */
+function gestureOf({ language, gesture }) {
+  const found = language.gestures.find(({ label }) => label === gesture);
+  if (!found) throw new Error(`No gesture is called ${gesture}.`);
+  return found;
+}
+
+/**
+ * @param {Subject} about
+ * @returns {Draft}
+ */
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
@@ -77,11 +108,13 @@ function valuesOf({ language, gesture }) {
       direction: "auto",
       tempo: "auto",
       mirror: "auto",
-      clip: { clip_id: state.clip, start, end, keep_transit: false },
+      clip: { clip_id: state.clip ?? "", start, end, keep_transit: false },
     };
   }
-  const { label, description, command, salient, direction, tempo, mirror, source } =
-    language.gestures.find((each) => each.label === gesture);
+  const { label, description, command, salient, direction, tempo, mirror, source } = gestureOf({
+    language,
+    gesture,
+  });
   return {
     label,
     description,
@@ -90,21 +123,28 @@ function valuesOf({ language, gesture }) {
     direction,
     tempo,
     mirror,
-    clip: isThere(source) ? demonstrationOf(source) : null,
+    clip: source && isThere(source) ? demonstrationOf(source) : null,
   };
 }
 
+/**
+ * @param {HTMLElement} section
+ * @param {Subject} about
+ */
 function build(section, about) {
   const { language, gesture } = about;
   const others = () =>
     currentLanguage()
       .gestures.map((each) => each.label)
       .filter((label) => label !== gesture);
-  const drawn =
-    gesture !== null && !language.gestures.find((each) => each.label === gesture).has_trajectory;
+  const drawn = gesture !== null && !gestureOf(about).has_trajectory;
+  /** @type {Preview | null} */
   let preview = null;
+  /** @type {Outlook | null} */
   let estimate = null;
+  /** @type {Outlook | null} */
   let before = null; // the estimate of what is saved
+  /** @param {string} landmark */
   const pick = (landmark) => {
     if (!toggle(landmark, preview))
       toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
@@ -117,13 +157,19 @@ function build(section, about) {
     texts: texts(others),
     switches: switches(),
   };
+  /**
+   * @param {string} text
+   * @param {string} title
+   * @param {() => unknown} run
+   * @param {string} [className]
+   */
   const button = (text, title, run, className = "") =>
     h("button", { type: "button", className, title, onclick: run }, text);
   const undoing = button("Undo", "Undo (Ctrl+Z)", undo);
   const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
   const saving = h(
     "button",
-    { type: "submit", className: "primary" },
+    { type: "submit", className: "primary", ...WRITES },
     gesture === null ? "Save gesture" : "Save",
   );
   const status = h("span", { className: "draft-state dim", role: "status" });
@@ -166,6 +212,7 @@ function build(section, about) {
     go(null, { gesture: null });
   }
 
+  /** @param {SubmitEvent} event */
   async function submit(event) {
     event.preventDefault();
     const fault = textProblem(draft(), others());
@@ -185,6 +232,10 @@ function build(section, about) {
     return undefined;
   }
 
+  /**
+   * @param {string} text
+   * @param {HTMLElement | null} [input]
+   */
   function showProblem(text, input) {
     problem.textContent = text;
     problem.hidden = false;
@@ -247,8 +298,9 @@ function close() {
 
 /** After leaving by the browser's Back: show that the draft is kept. */
 function left() {
-  const { gesture, language } = editor?.about ?? {};
-  const kept = editor && isKept();
+  if (!editor) return;
+  const { gesture, language } = editor.about;
+  const kept = isKept();
   close();
   if (!kept) return;
   const away = state.view !== "gesture" || state.language !== language.id;
@@ -261,12 +313,16 @@ function left() {
   });
 }
 
-/** Leave the editor after its language was deleted elsewhere. */
-function bereft() {
+/**
+ * Leave the editor after its language was deleted elsewhere.
+ *
+ * @param {Subject} about
+ */
+function bereft(about) {
   const {
     gesture,
     language: { id, name },
-  } = editor.about;
+  } = about;
   const kept = isKept();
   close();
   go(null, { gesture: null });
@@ -285,6 +341,7 @@ function bereft() {
 
 const leave = () => go(null, { gesture: null });
 
+/** @param {HTMLElement} section */
 function explain(section) {
   const { gestures, gesture } = state;
   const missing = gestures && gesture && !gestures.gestures.some((each) => each.label === gesture);
@@ -305,7 +362,11 @@ function explain(section) {
   );
 }
 
-/** Whether the language has the gesture that is edited. */
+/**
+ * Whether the language has the gesture that is edited.
+ *
+ * @param {Subject} about
+ */
 const isKnown = ({ language, gesture }) =>
   gesture === null || language.gestures.some((each) => each.label === gesture);
 
@@ -313,7 +374,11 @@ const isKnown = ({ language, gesture }) =>
 const nothingComes = () =>
   state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip);
 
-/** Build the view, and build it anew when something else is edited. */
+/**
+ * Build the view, and build it anew when something else is edited.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   follow(
     [
@@ -330,15 +395,16 @@ export function open(section) {
     ],
     () => {
       if (state.view !== "gesture") return left();
-      if (editor && !state.languages.some(({ id }) => id === editor.about.language.id))
-        return bereft();
+      const edited = editor?.about;
+      if (edited && !state.languages.some(({ id }) => id === edited.language.id))
+        return bereft(edited);
       const about = subject();
       if (!about || !isKnown(about)) {
         left();
         if (nothingComes()) explain(section);
         return undefined;
       }
-      if (editor?.about.key === about.key) return adopt(about);
+      if (edited?.key === about.key) return adopt(edited, about);
       left();
       return build(section, about);
     },
@@ -349,25 +415,37 @@ export function open(section) {
 }
 
 const when = () => state.view === "gesture" && editor !== null;
+/**
+ * @param {string[]} names
+ * @param {string} text
+ * @param {() => void} run
+ */
 const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
 keys(["Ctrl+Z"], "Undo in the draft", undo);
 keys(["Ctrl+Shift+Z", "Ctrl+Y"], "Redo in the draft", redo);
-keys(["Space"], "Play or pause the demonstration", () => editor.take.play());
-for (const [key, by, text] of [
+keys(["Space"], "Play or pause the demonstration", () => editor?.take.play());
+for (const [key, by, text] of /** @type {[string, number, string][]} */ ([
   [",", -1, "One frame back"],
   [".", 1, "One frame on"],
   ["Shift+,", -10, "Ten frames back"],
   ["Shift+.", 10, "Ten frames on"],
-])
-  keys([key], text, () => editor.take.step(by));
-keys(["["], "Let the demonstration start here", () => editor.take.setHere("start"));
-keys(["]"], "Let the demonstration end here", () => editor.take.setHere("end"));
+]))
+  keys([key], text, () => editor?.take.step(by));
+keys(["["], "Let the demonstration start here", () => editor?.take.setHere("start"));
+keys(["]"], "Let the demonstration end here", () => editor?.take.setHere("end"));
 
-/** The language has another revision: where this gesture stayed as it was, that one is changed. */
-function adopt(about) {
-  const now = about.language.gestures.find((each) => each.label === about.gesture);
-  const then = editor.about.language.gestures.find((each) => each.label === about.gesture);
+/**
+ * The language has another revision: where this gesture stayed as it was, that one is changed.
+ *
+ * @param {Subject} edited
+ * @param {Subject} about
+ */
+function adopt(edited, about) {
+  /** @param {Gesture} gesture */
+  const named = ({ label }) => label === about.gesture;
+  const [now, then] = [about, edited].map(({ language }) => language.gestures.find(named));
+  /** @param {Gesture | undefined} gesture */
   const content = (gesture) =>
     gesture && JSON.stringify({ ...gesture, thumbnail: null, source: null });
-  if (content(now) === content(then)) editor.about.language = about.language;
+  if (content(now) === content(then)) edited.language = about.language;
 }

@@ -5,8 +5,20 @@ import { limit } from "../core/text-limit.js";
 import { read } from "../languages/robot-command.js";
 import { change, draft, rest } from "./gesture-draft.js";
 
+/** @import { Outlook, SwitchName } from "../core/types.d.ts" */
+
+/** @import { Draft } from "./gesture-draft.js" */
+
+/** @typedef {{ name: SwitchName, title: string, words: Record<Draft[SwitchName], string> }} Switch */
+
+/** @typedef {{ input: HTMLInputElement | HTMLTextAreaElement, note: HTMLElement }} Field */
+
 const MOST = { label: 80, description: 2000, command: 4000 };
 
+/** @type {Draft[SwitchName][]} */
+const POSITIONS = ["auto", "on", "off"];
+
+/** @type {Switch[]} */
 const SWITCHES = [
   {
     name: "direction",
@@ -37,6 +49,12 @@ const SWITCHES = [
   },
 ];
 
+/**
+ * @param {keyof typeof MOST} name
+ * @param {string} label
+ * @param {HTMLInputElement | HTMLTextAreaElement} input
+ * @param {string} [hint]
+ */
 function field(name, label, input, hint = "") {
   const note = h("p", { className: "dim", id: `editor-${name}-note` }, hint);
   input.id = `editor-${name}`;
@@ -51,7 +69,11 @@ function field(name, label, input, hint = "") {
   };
 }
 
-/** Build the text fields; `draw` writes the draft into them and shows what is invalid. */
+/**
+ * Build the text fields; `draw` writes the draft into them and shows what is invalid.
+ *
+ * @param {() => string[]} taken
+ */
 export function texts(taken) {
   const label = field(
     "label",
@@ -67,6 +89,11 @@ export function texts(taken) {
   const command = field("command", "Command", h("textarea", { rows: 3, spellcheck: false }));
   const fields = { label, description, command };
 
+  /**
+   * @param {Field} field
+   * @param {string | null | undefined} problem
+   * @param {string} text
+   */
   function annotate({ input, note }, problem, text) {
     note.textContent = problem ?? text;
     note.className = problem ? "field-problem" : "dim";
@@ -75,8 +102,8 @@ export function texts(taken) {
 
   function draw() {
     const values = draft();
-    for (const [name, { input }] of Object.entries(fields))
-      if (input.value !== values[name]) input.value = values[name];
+    for (const name of /** @type {const} */ (["label", "description", "command"]))
+      if (fields[name].input.value !== values[name]) fields[name].input.value = values[name];
     annotate(
       label,
       labelProblem(values.label, taken()),
@@ -99,6 +126,10 @@ export function texts(taken) {
   };
 }
 
+/**
+ * @param {string} label
+ * @param {string[]} taken
+ */
 function labelProblem(label, taken) {
   const trimmed = label.trim();
   return taken.includes(trimmed)
@@ -106,7 +137,12 @@ function labelProblem(label, taken) {
     : null;
 }
 
-/** The first invalid text and its field; null when all are valid. */
+/**
+ * The first invalid text and its field; null when all are valid.
+ *
+ * @param {Draft} values
+ * @param {string[]} taken
+ */
 export function textProblem(values, taken) {
   if (!values.label.trim()) return { id: "editor-label", text: "Label is empty; type one." };
   const label = labelProblem(values.label, taken);
@@ -115,9 +151,10 @@ export function textProblem(values, taken) {
   return problem ? { id: "editor-command", text: problem } : null;
 }
 
+/** @param {Switch} choice */
 function choice({ name, title, words }) {
   const id = `switch-${name}`;
-  const inputs = ["auto", "on", "off"].map((position) =>
+  const inputs = POSITIONS.map((position) =>
     h("input", {
       type: "radio",
       name: id,
@@ -126,12 +163,12 @@ function choice({ name, title, words }) {
       onchange: () => change({ [name]: position }),
     }),
   );
-  const options = inputs.flatMap((input) => [
-    input,
+  const options = POSITIONS.flatMap((position, index) => [
+    inputs[index],
     h(
       "label",
-      { for: input.id, title: words[input.value] },
-      input.value[0].toUpperCase() + input.value.slice(1),
+      { for: inputs[index].id, title: words[position] },
+      position[0].toUpperCase() + position.slice(1),
     ),
   ]);
   const meaning = h("p", { className: "dim" });
@@ -144,6 +181,7 @@ function choice({ name, title, words }) {
     meaning,
     outcome,
   );
+  /** @param {Outlook | null} found */
   function draw(found) {
     const position = draft()[name];
     for (const input of inputs) input.checked = input.value === position;
@@ -165,6 +203,7 @@ export function switches() {
       h("h2", {}, "Invariances"),
       choices.map((each) => each.element),
     ),
+    /** @param {Outlook | null} found */
     draw: (found) => choices.forEach((each) => each.draw(found)),
   };
 }

@@ -3,11 +3,20 @@
 import { byId, h } from "../core/dom.js";
 import { forget } from "./gesture-draft.js";
 
-/** Ask. Resolves to whether to leave. */
+/**
+ * Ask. Resolves to whether to leave.
+ *
+ * @returns {Promise<boolean>}
+ */
 export function mayLeave() {
   const dialog = byId("dialog");
   return new Promise((resolve) => {
     let leaves = false;
+    /**
+     * @param {string} text
+     * @param {() => void} run
+     * @param {string} [className]
+     */
     const pick = (text, run, className = "") =>
       h(
         "button",

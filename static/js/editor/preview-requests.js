@@ -2,11 +2,16 @@
 
 import * as api from "../core/api.js";
 
+/** @import { Outlook, Preview } from "../core/types.d.ts" */
+
 const SETTLED = 120; // ms without a change: dragging a slider makes many.
 
 /**
  * Return `ask(request)`; `shown(preview, null)` is called with what the gesture would be, then
  * `shown(preview, estimate)` with its estimated rates, `failed(error)` instead of them.
+ *
+ * @param {{ shown: (preview: Preview, estimate: Outlook | null) => void, failed: (error: Error) => void }} answers
+ * @returns {(language: string, body: object) => void}
  */
 export function previewing({ shown, failed }) {
   let timer = 0;

@@ -3,11 +3,18 @@
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 
+/** @import { Descriptor, Outlook, Preview, Rate } from "../core/types.d.ts" */
+
 const HEIGHT = 22; // of a descriptor's drawing, in its own units
 
+/** @param {number} share */
 const percent = (share) => `${share > 0 && share < 0.01 ? "under 1" : Math.round(100 * share)} %`;
 
-/** A descriptor of many numbers as bars around a line, of one as the number. */
+/**
+ * A descriptor of many numbers as bars around a line, of one as the number.
+ *
+ * @param {Descriptor} descriptor
+ */
 function descriptor({ voter, unit, values }) {
   const most = Math.max(...values.map(Math.abs)) || 1;
   const bars = values.map((value, index) => {
@@ -42,7 +49,7 @@ function descriptor({ voter, unit, values }) {
 export function image() {
   const drawing = h("img", {
     className: "trajectory",
-    alt: "Trajectory image of the gesture",
+    alt: "Trajectory image of the gesture, from the dot along the arrow",
     width: 224,
     height: 224,
     hidden: true,
@@ -57,6 +64,7 @@ export function image() {
     list,
   );
   const length = h("small", { className: "dim num" });
+  /** @param {Preview | null} preview */
   function draw(preview) {
     if (!preview) return;
     problem.hidden = !preview.problem;
@@ -85,7 +93,14 @@ export function image() {
   };
 }
 
-/** One estimated rate, as a bar, a number and a mark. */
+/**
+ * One estimated rate, as a bar, a number and a mark.
+ *
+ * @param {string | HTMLElement} words
+ * @param {Rate} share
+ * @param {number} threshold
+ * @param {Rate | null | undefined} before
+ */
 function rateRow(words, share, threshold, before) {
   const bad = share.rate > threshold;
   const was =
@@ -118,40 +133,55 @@ function rateRow(words, share, threshold, before) {
   );
 }
 
-function rows(found, before) {
+/**
+ * @param {Outlook} found
+ * @param {Rate} missed
+ * @param {Outlook | null} before
+ */
+function rows(found, missed, before) {
+  /** @param {string} label */
   const earlier = (label) => before?.pairs.find((pair) => pair.gestures[1] === label)?.confusion;
   return [
     rateRow(
       "Missed: recognised as another gesture, or rejected",
-      found.missed,
+      missed,
       found.most_missed,
       before?.missed,
     ),
-    ...found.pairs
-      .filter((pair) => pair.confusion)
-      .map((pair) =>
-        rateRow(
-          h(
-            "span",
-            {},
-            "Confused with ",
-            h("b", {}, pair.gestures[1]),
-            pair.distance === null
-              ? ""
-              : h("small", { className: "dim" }, ` distance ${pair.distance.toFixed(2)}`),
+    ...found.pairs.flatMap((pair) =>
+      !pair.confusion
+        ? []
+        : rateRow(
+            h(
+              "span",
+              {},
+              "Confused with ",
+              h("b", {}, pair.gestures[1]),
+              pair.distance === null
+                ? ""
+                : h("small", { className: "dim" }, ` distance ${pair.distance.toFixed(2)}`),
+            ),
+            pair.confusion,
+            found.most_confusion,
+            earlier(pair.gestures[1]),
           ),
-          pair.confusion,
-          found.most_confusion,
-          earlier(pair.gestures[1]),
-        ),
-      ),
+    ),
   ];
 }
 
-/** Build the estimated rates; `draw(found, before)` compares them with the saved gesture's. */
+/**
+ * Build the estimated rates; `draw(found, before)` compares them with the saved gesture's.
+ *
+ * @param {string} name
+ */
 export function health(name) {
   const list = h("ul", { className: "estimates", "aria-label": "Estimated rates" });
   const note = h("p", { className: "dim", role: "status" });
+  /**
+   * @param {Outlook | null} found
+   * @param {Outlook | null} before
+   * @param {string | null | undefined} problem
+   */
   function draw(found, before, problem) {
     list.classList.toggle("stale", !found);
     if (!found) {
@@ -160,13 +190,14 @@ export function health(name) {
         : "Simulating trials\u2026";
       return;
     }
-    const empty = found.missed === null;
-    note.textContent = empty
-      ? "Without a demonstration no trials can be simulated: choose a clip that shows the gesture."
-      : found.pairs.length
-        ? "Estimated for another diver from simulated trials, with the nearest gestures. The line is the threshold of the health report."
-        : "The only gesture of a language cannot be confused with another.";
-    list.replaceChildren(...(empty ? [] : rows(found, before)));
+    const { missed } = found;
+    note.textContent =
+      missed === null
+        ? "Without a demonstration no trials can be simulated: choose a clip that shows the gesture."
+        : found.pairs.length
+          ? "Estimated for another diver from simulated trials, with the nearest gestures. The line is the threshold of the health report."
+          : "The only gesture of a language cannot be confused with another.";
+    list.replaceChildren(...(missed === null ? [] : rows(found, missed, before)));
   }
   return {
     element: h(

@@ -4,7 +4,15 @@ import { h, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { change, draft } from "./gesture-draft.js";
 
-/** The keypoints that are followed: as chosen, or as proposed. */
+/** @import { Keypoint, Preview } from "../core/types.d.ts" */
+
+/** @typedef {{ keypoints: Pick<Keypoint, "landmark" | "proposed">[] }} Proposal */
+
+/**
+ * The keypoints that are followed: as chosen, or as proposed.
+ *
+ * @param {Proposal | null} preview
+ */
 export function chosenIn(preview) {
   return (
     draft().salient ??
@@ -12,7 +20,12 @@ export function chosenIn(preview) {
   );
 }
 
-/** Switch a keypoint on or off. The last one stays: without any there is no gesture. */
+/**
+ * Switch a keypoint on or off. The last one stays: without any there is no gesture.
+ *
+ * @param {string} landmark
+ * @param {Proposal | null} preview
+ */
 export function toggle(landmark, preview) {
   const chosen = chosenIn(preview);
   const next = chosen.includes(landmark)
@@ -22,19 +35,28 @@ export function toggle(landmark, preview) {
   return next.length > 0;
 }
 
-/** What the bars mean, or why there are none. */
+/**
+ * What the bars mean, or why there are none.
+ *
+ * @param {Preview | null} preview
+ * @param {number} count
+ */
 function noteOn(preview, count) {
   if (!preview) return "\u2026";
   if (count) {
     const unit = preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent";
-    return `Movement in ${unit}. From the line, ${preview.threshold.toFixed(2)}, a keypoint is proposed.`;
+    return `Movement in ${unit}. From the line, ${(preview.threshold ?? 0).toFixed(2)}, a keypoint is proposed.`;
   }
   if (draft().clip)
     return "No keypoint is seen in this range of the clip: choose another range, or another clip.";
   return "Imported without its demonstration: its keypoints cannot be changed. Choose a clip that shows the gesture.";
 }
 
-/** Build the list; `draw(preview)` shows what moves. */
+/**
+ * Build the list; `draw(preview)` shows what moves.
+ *
+ * @param {() => Preview | null} latest
+ */
 export function keypoints(latest) {
   let all = false;
   const list = h("ul", { className: "bars", "aria-label": "Keypoints" });
@@ -58,45 +80,59 @@ export function keypoints(latest) {
     "As proposed",
   );
 
+  /** @param {string} landmark */
+  function makeRow(landmark) {
+    const input = h("input", {
+      type: "checkbox",
+      onchange: () => {
+        problem.hidden = toggle(landmark, latest());
+        draw(latest());
+      },
+    });
+    return h(
+      "li",
+      {},
+      h(
+        "label",
+        {},
+        input,
+        h("span", { className: "name" }),
+        h(
+          "span",
+          { className: "bar-track" },
+          h("i", { className: "fill" }),
+          h("i", { className: "mark" }),
+        ),
+        h("span", { className: "num" }),
+      ),
+    );
+  }
+
+  /**
+   * @param {Keypoint} keypoint
+   * @param {HTMLElement | undefined} element
+   * @param {number} most
+   * @param {number} threshold
+   * @param {string[]} chosen
+   */
   function row(keypoint, element, most, threshold, chosen) {
     const { landmark, displacement, seen } = keypoint;
     const on = chosen.includes(landmark);
-    if (!element) {
-      const input = h("input", {
-        type: "checkbox",
-        onchange: () => {
-          problem.hidden = toggle(landmark, latest());
-          draw(latest());
-        },
-      });
-      element = h(
-        "li",
-        {},
-        h(
-          "label",
-          {},
-          input,
-          h("span", { className: "name" }),
-          h(
-            "span",
-            { className: "bar-track" },
-            h("i", { className: "fill" }),
-            h("i", { className: "mark" }),
-          ),
-          h("span", { className: "num" }),
-        ),
-      );
-    }
-    element.querySelector("input").checked = on;
-    element.classList.toggle("on", on);
-    element.querySelector(".name").textContent = readable(landmark);
-    element.querySelector(".fill").style.width = `${(100 * displacement) / most}%`;
-    element.querySelector(".mark").style.left = `${(100 * threshold) / most}%`;
-    element.querySelector(".num").textContent = displacement.toFixed(2);
-    element.title = `${readable(landmark)} moves ${displacement.toFixed(2)}${seen < 1 ? `, seen ${Math.round(100 * seen)} % of the time` : ""}${keypoint.proposed ? "; proposed" : ""}`;
-    return element;
+    const drawn = element ?? makeRow(landmark);
+    const [input, name, fill, mark, number] = /** @type {[HTMLInputElement, ...HTMLElement[]]} */ (
+      ["input", ".name", ".fill", ".mark", ".num"].map((each) => drawn.querySelector(each))
+    );
+    input.checked = on;
+    drawn.classList.toggle("on", on);
+    name.textContent = readable(landmark);
+    fill.style.width = `${(100 * displacement) / most}%`;
+    mark.style.left = `${(100 * threshold) / most}%`;
+    number.textContent = displacement.toFixed(2);
+    drawn.title = `${readable(landmark)} moves ${displacement.toFixed(2)}${seen < 1 ? `, seen ${Math.round(100 * seen)} % of the time` : ""}${keypoint.proposed ? "; proposed" : ""}`;
+    return drawn;
   }
 
+  /** @param {Preview | null} preview */
   function draw(preview) {
     const found = preview?.keypoints ?? [];
     const chosen = chosenIn(preview);
@@ -110,7 +146,7 @@ export function keypoints(latest) {
       list,
       shown,
       (each) => each.landmark,
-      (each, element) => row(each, element, most, preview.threshold, chosen),
+      (each, element) => row(each, element, most, preview?.threshold ?? 0, chosen),
     );
     every.hidden = found.length === 0;
     every.textContent = all ? "Fewer keypoints" : `All ${found.length} keypoints`;

@@ -51,14 +51,20 @@ const fileName = (name, { suffix = ".json" }) =>
 /**
  * @param {ExportedFile} file
  * @param {boolean} chosen
- * @param {(event: Event) => void} onchange
+ * @param {(format: ExportedFile["format"]) => void} choose
  */
-function choice({ format, bytes: size }, chosen, onchange) {
+function choice({ format, bytes: size }, chosen, choose) {
   const { title, text } = FORMATS[format];
   return h(
     "label",
     { className: "export-choice" },
-    h("input", { type: "radio", name: "format", value: format, checked: chosen, onchange }),
+    h("input", {
+      type: "radio",
+      name: "format",
+      value: format,
+      checked: chosen,
+      onchange: () => choose(format),
+    }),
     h("span", {}, h("b", {}, title), h("span", { className: "dim" }, text)),
     h("small", { className: "dim num" }, bytes(size)),
   );
@@ -150,9 +156,9 @@ export async function openExport() {
     download.href = api.languages.exportUrl(language.id, format);
     code.textContent = command();
   };
-  /** @param {any} event */
-  const choose = (event) => {
-    format = event.target.value;
+  /** @param {ExportedFile["format"]} chosen */
+  const choose = (chosen) => {
+    format = chosen;
     show();
   };
   show();

@@ -1,7 +1,7 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural, readable } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -10,10 +10,15 @@ import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 
+/** @import { Clip, Demonstration, Gesture, Source, Take } from "../core/types.d.ts" */
+
+/** @typedef {{ text: string, start: number | null, end: number | null }} Range */
+
 const MOST = 5; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
 const LONGEST_NAME = 80; // `MAX_DIVER_LENGTH` there
 
-let shown = null; // { label, content, adding } of the dialog on display
+/** @type {{ label: string, content: HTMLElement, adding: ReturnType<typeof addForm> } | null} */
+let shown = null; // the dialog on display
 let followed = false;
 
 /**
@@ -27,21 +32,25 @@ export const withMarks = (thumbnail) =>
 /**
  * The fault of a demonstration in two words; its clause says the rest.
  *
- * @param {{ salutes: number, fault: string }} source
+ * @param {Pick<Source, "salutes" | "fault">} source
  */
 export const shortFault = ({ salutes, fault }) =>
   salutes
     ? `contains ${plural(salutes, "salute")}`
-    : fault.startsWith("is cut short")
+    : fault?.startsWith("is cut short")
       ? "cut short"
       : "contains rest";
 
 const gestureShown = () => currentLanguage().gestures.find(({ label }) => label === shown?.label);
 
+/** @param {Source | null | undefined} source */
 const clipOf = (source) => source && state.clips.find(({ id }) => id === source.clip_id);
 
-async function remove(index) {
-  const { label } = shown;
+/**
+ * @param {string} label
+ * @param {number} index
+ */
+async function remove(label, index) {
   try {
     await edit("Removing the demonstration", `Removal of a demonstration of ${label}`, (language) =>
       api.languages.removeDemonstration(language, label, index),
@@ -52,10 +61,14 @@ async function remove(index) {
   }
 }
 
-/** The clip that a demonstration was taken from, as a link to its range. */
+/**
+ * The clip that a demonstration was taken from, as a link to its range.
+ *
+ * @param {Source | null | undefined} source
+ */
 function origin(source) {
   const clip = clipOf(source);
-  if (!clip) return h("span", { className: "dim" }, "its clip is not here");
+  if (!clip || !source) return h("span", { className: "dim" }, "its clip is not here");
   const place = {
     clip: clip.id,
     take: null,
@@ -76,6 +89,10 @@ function origin(source) {
   );
 }
 
+/**
+ * @param {Gesture} gesture
+ * @param {Demonstration} demonstration
+ */
 function figure(gesture, demonstration) {
   const { index, diver, seconds, salient, thumbnail, source } = demonstration;
   const name = `Demonstration ${index + 1}`;
@@ -104,19 +121,26 @@ function figure(gesture, demonstration) {
       "button",
       {
         type: "button",
+        ...WRITES,
         disabled: alone,
         title: alone ? "The only demonstration stays; delete the gesture instead" : "",
         "aria-label": `Remove ${name.toLowerCase()}`,
-        onclick: () => remove(index),
+        onclick: () => remove(gesture.label, index),
       },
       "Remove",
     ),
   );
 }
 
-/** The ranges of a clip that can be added: its takes, and what is selected on the timeline. */
+/**
+ * The ranges of a clip that can be added: its takes, and what is selected on the timeline.
+ *
+ * @param {string} clip
+ * @param {Take[]} takes
+ */
 function rangesOf(clip, takes) {
   const selected = clip === state.clip ? selectedRange() : null;
+  /** @type {Range[]} */
   const own = takes.map(({ start, end, stroke_start: from, stroke_end: to }, number) => ({
     text: `Take ${number + 1}, ${moment(from)} to ${moment(to)}`,
     start,
@@ -131,15 +155,20 @@ function rangesOf(clip, takes) {
   return own.length ? own : [{ text: "The whole clip", start: null, end: null }];
 }
 
-/** The form that adds a take of a clip. */
-function addForm() {
+/**
+ * The form that adds a take of a clip.
+ *
+ * @param {string} label
+ */
+function addForm(label) {
   const clips = h("select", { id: "demonstration-clip" });
   const takes = h("select", { id: "demonstration-take" });
   const diver = limit(
     h("input", { type: "text", id: "demonstration-diver", autocomplete: "off" }),
     LONGEST_NAME,
   );
-  const button = h("button", { type: "submit", className: "primary" }, "Add");
+  const button = h("button", { type: "submit", className: "primary", ...WRITES }, "Add");
+  /** @type {Range[]} */
   let ranges = [];
   const load = async () => {
     const clip = clips.value;
@@ -162,6 +191,10 @@ function addForm() {
     if (ready.some(({ id }) => id === wanted)) clips.value = wanted ?? "";
     load();
   };
+  /**
+   * @param {string} label
+   * @param {HTMLElement} input
+   */
   const field = (label, input) =>
     h("div", { className: "field" }, h("label", { for: input.id }, label), input);
   const form = h(
@@ -175,8 +208,7 @@ function addForm() {
   );
   form.onsubmit = async (event) => {
     event.preventDefault();
-    const { label } = shown;
-    const { start, end } = ranges[Number(takes.value)] ?? {};
+    const { start, end } = ranges[Number(takes.value)] ?? { start: null, end: null };
     const body = { label, clip_id: clips.value, start, end, diver: diver.value.trim() };
     button.disabled = true;
     try {
@@ -205,11 +237,15 @@ function draw() {
   return undefined;
 }
 
-/** Compare the demonstrations of a gesture in a dialog. */
+/**
+ * Compare the demonstrations of a gesture in a dialog.
+ *
+ * @param {string} label
+ */
 export function openDemonstrations(label) {
   const dialog = byId("dialog");
   const content = h("ul", { className: "demonstration-cards", "aria-label": "Demonstrations" });
-  const adding = addForm();
+  const adding = addForm(label);
   shown = { label, content, adding };
   dialog.replaceChildren(
     h(

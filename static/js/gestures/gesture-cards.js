@@ -2,7 +2,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
-import { byId, h, iconButton, reconcile } from "../core/dom.js";
+import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
 import { plural, readable } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
@@ -12,6 +12,9 @@ import { edit } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
 import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
 
+/** @import { Gesture, Language, Recognition, State } from "../core/types.d.ts" */
+
+/** @param {Gesture} gesture */
 async function remove(gesture) {
   const from = currentLanguage();
   const mine = { ...from, gestures: from.gestures.filter((each) => each.label !== gesture.label) };
@@ -28,21 +31,29 @@ async function remove(gesture) {
   }
 }
 
-/** The tag of a gesture with a bad demonstration; the text says what is wrong with it. */
+/**
+ * The tag of a gesture with a bad demonstration; the text says what is wrong with it.
+ *
+ * @param {Gesture} gesture
+ */
 function faultTag({ demonstrations }) {
-  const bad = demonstrations.find(({ source }) => source?.fault);
+  const bad = demonstrations.map(({ source }) => source).find((source) => source?.fault);
   return bad
     ? h(
         "span",
         {
           className: "tag fault",
-          title: `The demonstration ${bad.source.fault}. Save it again from a take.`,
+          title: `The demonstration ${bad.fault}. Save it again from a take.`,
         },
-        shortFault(bad.source),
+        shortFault(bad),
       )
     : null;
 }
 
+/**
+ * @param {Gesture} gesture
+ * @param {HTMLElement | undefined} element
+ */
 function draw(gesture, element) {
   const mark =
     state.result &&
@@ -88,26 +99,32 @@ function draw(gesture, element) {
       iconButton("rename", `Change ${gesture.label}`, () =>
         go("gesture", { gesture: gesture.label }),
       ),
-      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture)),
+      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture), WRITES),
     ),
   );
   card.dataset.signature = signature;
   return card;
 }
 
-/** The revision and the code by which a robot's language is compared with this one. */
+/**
+ * The revision and the code by which a robot's language is compared with this one.
+ *
+ * @param {Language | null} language
+ */
 function drawCarried(language) {
   const box = byId("carried");
-  box.hidden = !language?.gestures.length;
-  if (box.hidden) return;
+  const carried = language?.gestures.length ? language : null;
+  box.hidden = !carried;
+  if (!carried) return;
   box.replaceChildren(
-    `Revision ${language.revision}, code `,
-    h("code", {}, language.code),
+    `Revision ${carried.revision}, code `,
+    h("code", {}, carried.code),
     h("span", { className: "dim" }, ", as a robot with it shows. "),
     h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
   );
 }
 
+/** @param {State} state */
 export function drawGestures({ gestures, result }) {
   const members = gestures?.gestures ?? [];
   byId("gesture-count").textContent = members.length ? String(members.length) : "";
@@ -124,7 +141,12 @@ export function drawGestures({ gestures, result }) {
 /** @type {{ result: string | null, clip: string | null | undefined }} */
 let shown = { result: null, clip: null };
 
-/** Fill the choice of the expected label; a recognition that is opened brings its own. */
+/**
+ * Fill the choice of the expected label; a recognition that is opened brings its own.
+ *
+ * @param {Gesture[]} members
+ * @param {Recognition | null} result
+ */
 function drawExpected(members, result) {
   const expected = byId("expected");
   const clip = selectedClip();

@@ -24,6 +24,29 @@ export function labelOf(name) {
 }
 
 /**
+ * The clips of which the language's demonstrations were taken.
+ *
+ * @param {Language | null} language
+ */
+const demonstrated = (language) =>
+  new Set(
+    (language?.gestures ?? []).flatMap(({ demonstrations }) =>
+      demonstrations.map(({ source }) => source?.clip_id),
+    ),
+  );
+
+/**
+ * The clips that show no gesture of the language yet.
+ *
+ * @param {Clip[]} clips
+ * @param {Language | null} language
+ */
+export function withoutGesture(clips, language) {
+  const shown = demonstrated(language);
+  return clips.filter(({ id }) => !shown.has(id));
+}
+
+/**
  * The rows of clips, in their order. A row is chosen at first unless its clip shows a gesture of
  * the language already, or its label is one of the language's or of a row before.
  *
@@ -34,11 +57,7 @@ export function labelOf(name) {
  * @returns {GestureRow[]}
  */
 export function rowsOf(clips, takes, language, edited) {
-  const shown = new Set(
-    (language?.gestures ?? []).flatMap(({ demonstrations }) =>
-      demonstrations.map(({ source }) => source?.clip_id),
-    ),
-  );
+  const shown = demonstrated(language);
   const taken = new Set(language?.labels ?? []);
   return clips.flatMap((clip) => {
     const found = takes.get(clip.id) ?? null;

@@ -3,7 +3,7 @@
 import { BUSY } from "../clips/busy.js";
 import { statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
-import { byId, h, reconcile } from "../core/dom.js";
+import { byId, h, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -11,20 +11,40 @@ import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
-import { problemsOf, rangeText, rangeWarning, rowsOf } from "./gesture-rows.js";
+import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
 
-/** @import { Language } from "../core/types.d.ts" */
+/** @import { GestureRow, Language, State, Take } from "../core/types.d.ts" */
+
+/**
+ * The table on display; `edited` is what the user chose, `refused` what the server
+ * refused, both by row.
+ *
+ * @typedef {object} Table
+ * @property {HTMLElement} list
+ * @property {HTMLElement} note
+ * @property {HTMLButtonElement} save
+ * @property {HTMLInputElement} name of the new language
+ * @property {string} target the language to save into; empty for a new one
+ * @property {Map<string, Partial<GestureRow>>} edited
+ * @property {Map<string, string>} refused
+ * @property {boolean} saving
+ */
 
 const NEW = "";
 const PROPOSED_NAME = "My gestures";
 const LONGEST_LABEL = 80;
 const LONGEST_NAME = 80;
 
-let table = null; // the one on display: { list, note, save, edited, target, refused }
+/** @type {Table | null} */
+let table = null;
+
+/** The table, for code that runs only while it is on display. */
+const onDisplay = () => /** @type {Table} */ (table);
 let followed = false;
 
-/** @type {Map<string, any>} */
+/** @type {Map<string, Take[]>} */
 const takes = new Map(); // by clip; a clip's takes never change
+/** @type {Set<string>} */
 const asked = new Set();
 
 /** Load the takes of the clips that have poses by now. */
@@ -41,22 +61,37 @@ function loadTakes() {
 }
 
 /** The language to save into; null for a new one. */
-const targetLanguage = () => (state.gestures?.id === table.target ? state.gestures : null);
+const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.gestures : null);
 
-const rows = () =>
-  rowsOf(
-    state.clips.filter(({ status }) => status === "done" || BUSY.has(status)),
-    takes,
-    targetLanguage(),
-    table.edited,
-  );
+/** The clips of which gestures can be made, now or as soon as their poses are found. */
+const usable = () => state.clips.filter(({ status }) => status === "done" || BUSY.has(status));
 
+/**
+ * Show the button that opens the table, which stands out as long as several clips show no gesture.
+ *
+ * @param {State} state
+ */
+export function drawTableButton({ gestures }) {
+  const button = byId("make-gestures");
+  const clips = usable();
+  button.hidden = !clips.length;
+  button.classList.toggle("primary", withoutGesture(clips, gestures).length > 1);
+}
+
+const rows = () => rowsOf(usable(), takes, targetLanguage(), onDisplay().edited);
+
+/**
+ * @param {string} key
+ * @param {Partial<GestureRow>} values
+ */
 function change(key, values) {
-  table.edited.set(key, { ...table.edited.get(key), ...values });
-  table.refused.delete(key);
+  const { edited, refused } = onDisplay();
+  edited.set(key, { ...edited.get(key), ...values });
+  refused.delete(key);
   draw();
 }
 
+/** @param {GestureRow} row */
 function makeRow(row) {
   const { key, clip } = row;
   const box = h("input", {
@@ -89,19 +124,25 @@ function makeRow(row) {
   );
 }
 
-/** Write what changed into a row; the field that is being typed in keeps its text and focus. */
+/**
+ * Write what changed into a row; the field that is being typed in keeps its text and focus.
+ *
+ * @param {GestureRow} row
+ * @param {string | undefined} problem
+ * @param {HTMLElement | undefined} element
+ */
 function drawRow(row, problem, element) {
   const drawn = element ?? makeRow(row);
-  const box = drawn.querySelector("input[type=checkbox]");
-  const label = drawn.querySelector(".row-label");
+  const [box, label] = drawn.querySelectorAll("input");
+  const [range, note] = [".row-clip span", ".row-note"].map((each) => drawn.querySelector(each));
+  if (!range || !note) return drawn;
   box.checked = row.chosen;
   if (label.value !== row.label) label.value = row.label;
   label.setAttribute("aria-invalid", String(Boolean(problem)));
   drawn.classList.toggle("left-out", !row.chosen);
-  drawn.querySelector(".row-clip span").textContent = row.takes
+  range.textContent = row.takes
     ? rangeText(row)
     : statusText(row.clip, state.jobs.get(row.clip.job_id));
-  const note = drawn.querySelector(".row-note");
   note.textContent = row.chosen ? problem || rangeWarning(row) : "";
   note.classList.toggle("problem", Boolean(row.chosen && problem));
   return drawn;
@@ -109,28 +150,35 @@ function drawRow(row, problem, element) {
 
 function draw() {
   if (!table?.list.isConnected) return;
+  const { list, name, note: line, refused, save: button, saving, target } = table;
   const all = rows();
   const { problems, note } = problemsOf(all, targetLanguage()?.labels ?? []);
   reconcile(
-    table.list,
+    list,
     all,
     ({ key }) => key,
-    (row, element) => drawRow(row, table.refused.get(row.key) ?? problems.get(row.key), element),
+    (row, element) => drawRow(row, refused.get(row.key) ?? problems.get(row.key), element),
   );
   const count = all.filter(({ chosen }) => chosen).length;
-  const unnamed = table.target === NEW && !table.name.value.trim();
-  table.note.textContent = unnamed ? "The new language has no name." : note;
-  table.save.textContent = `Save ${plural(count, "gesture")}`;
-  table.save.disabled = Boolean(table.saving || note || unnamed);
+  const unnamed = target === NEW && !name.value.trim();
+  line.textContent = unnamed ? "The new language has no name." : note;
+  button.textContent = `Save ${plural(count, "gesture")}`;
+  button.disabled = Boolean(saving || note || unnamed);
 }
 
+/** @param {GestureRow} row */
 const draftOf = ({ clip, take, label }) => ({
   label: label.trim(),
   clip_id: clip.id,
   ...(take ? { start: take.start, end: take.end } : {}),
 });
 
-/** Save into a new language; where the gestures are refused, there is none afterwards. */
+/**
+ * Save into a new language; where the gestures are refused, there is none afterwards.
+ *
+ * @param {string} name
+ * @param {ReturnType<typeof draftOf>[]} drafts
+ */
 async function saveIntoNew(name, drafts) {
   const made = await api.languages.create(name);
   try {
@@ -142,6 +190,10 @@ async function saveIntoNew(name, drafts) {
   }
 }
 
+/**
+ * @param {string} id
+ * @param {ReturnType<typeof draftOf>[]} drafts
+ */
 async function saveInto(id, drafts) {
   await choose(id);
   const title = plural(drafts.length, "gesture");
@@ -154,20 +206,21 @@ async function saveInto(id, drafts) {
 async function save() {
   const chosen = rows().filter((row) => row.chosen);
   const drafts = chosen.map(draftOf);
-  table.saving = true;
+  const shown = onDisplay();
+  shown.saving = true;
   draw();
   try {
-    if (table.target === NEW) await saveIntoNew(table.name.value.trim(), drafts);
-    else await saveInto(table.target, drafts);
+    if (shown.target === NEW) await saveIntoNew(shown.name.value.trim(), drafts);
+    else await saveInto(shown.target, drafts);
     byId("dialog").close();
   } catch (error) {
     const at = Number(
       /^\/gestures\/(\d+)/.exec(error.errors?.[0]?.pointer ?? "")?.[1] ?? Number.NaN,
     );
-    if (chosen[at]) table.refused.set(chosen[at].key, error.message);
+    if (chosen[at]) shown.refused.set(chosen[at].key, error.message);
     else complain(error, "Saving the gestures");
   } finally {
-    table.saving = false;
+    shown.saving = false;
     draw();
   }
 }
@@ -197,9 +250,9 @@ function languageChoice() {
   );
   select.value = own.find(({ id }) => id === state.language)?.id ?? NEW;
   select.onchange = async () => {
-    table.target = select.value;
-    nameRow.hidden = table.target !== NEW;
-    if (table.target !== NEW) await choose(table.target);
+    onDisplay().target = select.value;
+    nameRow.hidden = select.value !== NEW;
+    if (select.value !== NEW) await choose(select.value);
     draw();
   };
   nameRow.hidden = select.value !== NEW;
@@ -218,8 +271,17 @@ export function openGestureTable() {
   const { element, name, target } = languageChoice();
   const note = h("p", { className: "dim", role: "status" });
   const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
-  const button = h("button", { type: "submit", className: "primary" });
-  table = { list, note, save: button, name, target, edited: new Map(), refused: new Map() };
+  const button = h("button", { type: "submit", className: "primary", ...WRITES });
+  table = {
+    list,
+    note,
+    save: button,
+    name,
+    target,
+    edited: new Map(),
+    refused: new Map(),
+    saving: false,
+  };
   const form = h(
     "form",
     { method: "dialog", className: "gesture-table", noValidate: true },

@@ -2,6 +2,8 @@
 
 /** @import { TestSet } from "../core/types.d.ts" */
 
+/** @typedef {ReturnType<typeof testedOf>[number]} TestedTake */
+
 /** Of a take that no revision has recognised yet. */
 const UNKNOWN = {
   label: null,
@@ -37,6 +39,7 @@ export function testedOf(testSet) {
     );
 }
 
+/** @type {(keyof TestedTake)[]} */
 const COLUMNS = [
   "clip",
   "start",
@@ -50,14 +53,22 @@ const COLUMNS = [
   "id",
 ];
 
-/** A value as CSV (RFC 4180); a text that a spreadsheet would calculate is marked as text. */
+/**
+ * A value as CSV (RFC 4180); a text that a spreadsheet would calculate is marked as text.
+ *
+ * @param {unknown} value
+ */
 function field(value) {
   const text =
     typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-/** The table of takes as a CSV file. */
+/**
+ * The table of takes as a CSV file.
+ *
+ * @param {TestedTake[]} takes
+ */
 export const csvOf = (takes) =>
   [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => take[name]))]
     .map((row) => `${row.map(field).join(",")}\r\n`)

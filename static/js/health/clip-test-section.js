@@ -1,7 +1,7 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
 import { statusText } from "../clips/clip-store.js";
-import { h, iconButton } from "../core/dom.js";
+import { h, iconButton, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
@@ -22,16 +22,24 @@ import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
 import { rateText } from "./rates.js";
 
+/** @import { TestSet, Upload } from "../core/types.d.ts" */
+
+/** @import { TestedTake } from "./clip-test-results.js" */
+
+/** @typedef {ReturnType<typeof waitingClips>[number]} WaitingClip */
+
 const REFUSED = "refused";
 const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.
 
 const labels = () => state.gestures?.labels ?? [];
+/** @param {Pick<TestedTake, "label">} take */
 const readAs = ({ label }) => label ?? REFUSED;
 
 function drop() {
   const input = h("input", {
     type: "file",
     id: "test-clips",
+    ...WRITES,
     multiple: true,
     accept: "video/*,.mkv",
     className: "visually-hidden",
@@ -46,7 +54,7 @@ function drop() {
     input,
     h(
       "label",
-      { for: "test-clips" },
+      { for: "test-clips", ...WRITES },
       h("b", {}, "Drop labelled clips"),
       h(
         "span",
@@ -57,11 +65,16 @@ function drop() {
   );
 }
 
+/**
+ * @param {string} name
+ * @param {string} value
+ * @param {(label: string) => void} onchange
+ */
 function labelSelect(name, value, onchange) {
   const known = value && !labels().includes(value) ? [value] : [];
   const select = h(
     "select",
-    { "aria-label": `What ${name} shows`, onchange: () => onchange(select.value) },
+    { "aria-label": `What ${name} shows`, ...WRITES, onchange: () => onchange(select.value) },
     value ? null : h("option", { value: "" }, "choose\u2026"),
     [...labels(), ...known].map((label) =>
       h("option", { value: label, selected: label === value }, label),
@@ -104,20 +117,26 @@ function advances() {
 
 /**
  * Move texts and bars on in the rows that are there: what is just being pressed stays where it is.
+ *
+ * @param {HTMLElement} content
  */
 function advance(content) {
   const rows = new Map(
-    [...content.querySelectorAll("tr.waiting")].map((row) => [row.dataset.key, row]),
+    /** @type {HTMLElement[]} */ ([...content.querySelectorAll("tr.waiting")]).map((row) => [
+      row.dataset.key,
+      row,
+    ]),
   );
   for (const { key, text, total, done } of advances()) {
     const row = rows.get(key);
     if (!row) continue;
-    row.querySelector(".stage-text").textContent = text;
+    row.querySelector(".stage-text")?.replaceChildren(text ?? "");
     const bar = row.querySelector("progress");
     if (bar && total) Object.assign(bar, { max: total, value: done });
   }
 }
 
+/** @param {WaitingClip} waiting */
 function waitingRow({ clip, expected, busy }) {
   return h(
     "tr",
@@ -142,6 +161,7 @@ function waitingRow({ clip, expected, busy }) {
   );
 }
 
+/** @param {Upload} upload */
 function uploadRow({ key, file, status, cancel }) {
   return h(
     "tr",
@@ -154,11 +174,20 @@ function uploadRow({ key, file, status, cancel }) {
       h("span", { className: "stage-text" }),
       status === "failed" ? null : h("progress", { "aria-label": `Upload of ${file.name}` }),
     ),
-    h("td", {}, status === "uploading" ? iconButton("close", `Cancel ${file.name}`, cancel) : null),
+    h(
+      "td",
+      {},
+      status === "uploading" && cancel ? iconButton("close", `Cancel ${file.name}`, cancel) : null,
+    ),
   );
 }
 
-/** Where a take and its recognition are shown. */
+/**
+ * Where a take and its recognition are shown.
+ *
+ * @param {TestedTake} take
+ * @param {TestedTake[]} takes
+ */
 function placeOf(take, takes) {
   const alone = takes.filter((each) => each.clip_id === take.clip_id).length === 1;
   return {
@@ -172,7 +201,11 @@ function placeOf(take, takes) {
   };
 }
 
-/** How a take was recognised, and whether that is better or worse than before. */
+/**
+ * How a take was recognised, and whether that is better or worse than before.
+ *
+ * @param {TestedTake} take
+ */
 function outcomeOf(take) {
   if (!take.known) return [h("span", { className: "dim" }, "not recognised yet")];
   const extra = [
@@ -193,6 +226,10 @@ function outcomeOf(take) {
   ];
 }
 
+/**
+ * @param {TestedTake} take
+ * @param {TestedTake[]} takes
+ */
 function takeRow(take, takes) {
   const several = takes.filter((each) => each.clip_id === take.clip_id);
   const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
@@ -227,12 +264,16 @@ function takeRow(take, takes) {
     h(
       "td",
       {},
-      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name)),
+      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name), WRITES),
     ),
   );
 }
 
-/** The counts, meant by read; a cell opens its clip, or the list of its clips. */
+/**
+ * The counts, meant by read; a cell opens its clip, or the list of its clips.
+ *
+ * @param {TestedTake[]} takes
+ */
 function matrix(takes) {
   const rows = [...new Set([...labels(), ...takes.map(({ expected }) => expected)])].filter(
     (label) => takes.some(({ expected }) => expected === label),
@@ -240,6 +281,10 @@ function matrix(takes) {
   const columns = [...new Set([...labels(), ...takes.map(readAs)])]
     .filter((label) => label !== REFUSED)
     .concat(REFUSED);
+  /**
+   * @param {number} row
+   * @param {number} column
+   */
   const cell = (row, column) => {
     const meant = takes.filter(({ expected }) => expected === rows[row]);
     const found = meant.filter((take) => readAs(take) === columns[column]);
@@ -265,23 +310,40 @@ function matrix(takes) {
   });
 }
 
+/** @param {TestedTake[]} takes */
 function download(takes) {
   const url = URL.createObjectURL(new Blob([csvOf(takes)], { type: "text/csv" }));
   h("a", { href: url, download: `${currentLanguage().name} test.csv` }).click();
   setTimeout(() => URL.revokeObjectURL(url), SAVED_BY);
 }
 
-/** The rates of the gestures, the lowest first. */
+/**
+ * A measured share in words; empty where nothing was asked.
+ *
+ * @param {TestSet["overall"]} share
+ */
+const shareText = ({ rate, low, high }) =>
+  rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
+
+/**
+ * The rates of the gestures, the lowest first.
+ *
+ * @param {TestSet} testSet
+ */
 const rates = ({ gestures }) =>
   h(
     "ul",
     { className: "test-rates", "aria-label": "Rate of each gesture" },
-    gestures.map(({ label, right, asked, ...rate }) =>
-      h("li", {}, h("b", {}, label), ` ${right} of ${asked}, ${rateText(rate)}`),
+    gestures.map((share) =>
+      h("li", {}, h("b", {}, share.label), ` ${share.right} of ${share.asked}${shareText(share)}`),
     ),
   );
 
-/** What is said of takes that count nothing. */
+/**
+ * What is said of takes that count nothing.
+ *
+ * @param {number} count
+ */
 const leftOutNote = (count) =>
   count
     ? h(
@@ -304,6 +366,7 @@ function libraryChoice() {
     {
       type: "button",
       className: "primary",
+      ...WRITES,
       onclick: () =>
         addLibraryClips(boxes.filter(({ box }) => box.checked).map(({ box }) => box.value)),
     },
@@ -322,14 +385,18 @@ function libraryChoice() {
   );
 }
 
-/** The progress of a run with its Cancel; where takes wait, the button that begins one. */
+/**
+ * The progress of a run with its Cancel; where takes wait, the button that begins one.
+ *
+ * @param {TestSet} testSet
+ */
 function runControl({ waiting }) {
   const { testing } = state;
   if (!testing)
     return waiting
       ? h(
           "button",
-          { type: "button", className: "primary", onclick: () => runTestSet() },
+          { type: "button", className: "primary", ...WRITES, onclick: () => runTestSet() },
           `Recognise ${plural(waiting, "take")} again`,
         )
       : null;
@@ -342,10 +409,14 @@ function runControl({ waiting }) {
       max: Math.max(1, testing.total),
       value: testing.done,
     }),
-    h("button", { type: "button", onclick: cancelTestRun }, "Cancel"),
+    h("button", { type: "button", ...WRITES, onclick: cancelTestRun }, "Cancel"),
   );
 }
 
+/**
+ * @param {TestSet} testSet
+ * @param {TestedTake[]} takes
+ */
 function summary(testSet, takes) {
   const { overall, waiting } = testSet;
   const change = changeWords(testSet);
@@ -358,7 +429,7 @@ function summary(testSet, takes) {
       overall.asked
         ? [
             h("b", { className: "num" }, `${overall.right} of ${overall.asked}`),
-            ` recognised as labelled, ${rateText(overall)}`,
+            ` recognised as labelled${shareText(overall)}`,
           ]
         : "Nothing is recognised yet",
       change ? `; since the revision before: ${change}` : null,
@@ -372,7 +443,12 @@ function summary(testSet, takes) {
   );
 }
 
-/** The takes of the chosen cell, or all; the wrong ones first. */
+/**
+ * The takes of the chosen cell, or all; the wrong ones first.
+ *
+ * @param {TestedTake[]} takes
+ * @param {Upload[]} uploads
+ */
 function list(takes, uploads) {
   const cell = pairOf(state.cell);
   const shown = cell

@@ -8,6 +8,8 @@ import { complain, toast } from "../core/toasts.js";
 import { addToTestSet, removeTake } from "../languages/test-set.js";
 import { addFiles } from "../upload/upload-list.js";
 
+/** @import { Clip, LabelledTake, PendingClip } from "../core/types.d.ts" */
+
 const KEY = "osg-studio.batch"; // sessionStorage: clips that wait for their poses.
 
 const stored = () => {
@@ -20,19 +22,28 @@ const stored = () => {
 
 update({ pending: stored() });
 
+/** @param {PendingClip[]} pending */
 function setPending(pending) {
   update({ pending });
   sessionStorage.setItem(KEY, JSON.stringify(pending));
 }
 
-/** Take clips into the test, each with the label that its name begins with. */
+/**
+ * Take clips into the test, each with the label that its name begins with.
+ *
+ * @param {Iterable<File>} files
+ */
 export function addTestClips(files) {
   addFiles(files, (id) =>
     setPending([...state.pending, { clip: id, language: state.language, expected: null }]),
   );
 }
 
-/** Take clips of the library into the test. */
+/**
+ * Take clips of the library into the test.
+ *
+ * @param {string[]} ids
+ */
 export const addLibraryClips = (ids) =>
   setPending([
     ...state.pending,
@@ -53,31 +64,57 @@ export function candidates() {
     .map((clip) => ({ clip, expected: labelInName(clip.name, state.gestures?.labels ?? []) }));
 }
 
-/** The expected label of a pending clip: as chosen, or as its name suggests. */
+/**
+ * The expected label of a pending clip: as chosen, or as its name suggests.
+ *
+ * @param {PendingClip} pending
+ */
 export const meantBy = ({ clip, expected }) =>
   expected ??
   labelInName(state.clips.find(({ id }) => id === clip)?.name ?? "", state.gestures?.labels ?? []);
 
-/** Set the expected label of a pending clip. */
+/**
+ * Set the expected label of a pending clip.
+ *
+ * @param {string} clip
+ * @param {string} expected
+ */
 export const means = (clip, expected) =>
   setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
 
-/** A clip that was waiting is recognised, or is no part of the test any more. */
+/**
+ * A clip that was waiting is recognised, or is no part of the test any more.
+ *
+ * @param {string} clip
+ */
 const forget = (clip) => setPending(state.pending.filter((each) => each.clip !== clip));
 
+/**
+ * @param {string} name
+ * @param {() => void} run
+ */
 const leftOut = (name, run) =>
   toast("Left out of the test", `${name} stays among the clips.`, {
     action: { label: "Undo", run },
   });
 
-/** Leave a clip out of the test that was not recognised yet. */
+/**
+ * Leave a clip out of the test that was not recognised yet.
+ *
+ * @param {Pick<Clip, "id" | "name">} clip
+ */
 export function leaveWaiting({ id, name }) {
   const kept = state.pending.find(({ clip }) => clip === id);
   forget(id);
-  leftOut(name, () => setPending([...state.pending, kept]));
+  leftOut(name, () => setPending(kept ? [...state.pending, kept] : state.pending));
 }
 
-/** Leave a take out of the test; `name` is what it is called. */
+/**
+ * Leave a take out of the test; `name` is what it is called.
+ *
+ * @param {Pick<LabelledTake, "id" | "clip_id" | "start" | "end" | "expected">} take
+ * @param {string} name
+ */
 export async function leaveOut({ id, clip_id, start, end, expected }, name) {
   await removeTake(id);
   leftOut(name, () => addToTestSet([{ clip_id, start, end, expected }]));

@@ -2,9 +2,14 @@
 
 import { h } from "../core/dom.js";
 
+/** @typedef {{ label: string, image?: string }} Head */
+
+/** @typedef {{ text: string, amount: number, label: string, className?: string, open?: (() => void) | null }} Cell */
+
 const MANY = 12; // Columns; more fit into a page only when their names are written upwards.
 const STRONGEST = 55; // Per cent of the accent in a full cell: the number on it stays readable.
 
+/** @type {Record<string, [number, number]>} */
 const STEPS = {
   ArrowLeft: [0, -1],
   ArrowRight: [0, 1],
@@ -14,29 +19,39 @@ const STEPS = {
   End: [0, Infinity],
 };
 
+/**
+ * @param {HTMLTableElement} table
+ * @param {KeyboardEvent} event
+ */
 function walk(table, event) {
-  const cells = [...table.tBodies[0].rows].map((row) => [
-    ...row.querySelectorAll("[role=gridcell]"),
-  ]);
-  const row = cells.findIndex((each) => each.includes(event.target));
+  const target = /** @type {HTMLElement} */ (event.target);
+  const cells = [...table.tBodies[0].rows].map(
+    (row) => /** @type {HTMLElement[]} */ ([...row.querySelectorAll("[role=gridcell]")]),
+  );
+  const row = cells.findIndex((each) => each.includes(target));
   if (row < 0) return;
-  const column = cells[row].indexOf(event.target);
+  const column = cells[row].indexOf(target);
   if (event.key === "Enter" || event.key === " ") {
     event.preventDefault();
-    event.target.click();
+    target.click();
     return;
   }
   const step = STEPS[event.key];
   if (!step || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
+  /**
+   * @param {number} value
+   * @param {number} count
+   */
   const within = (value, count) => Math.max(0, Math.min(count - 1, value));
   const next =
     cells[within(row + step[0], cells.length)][within(column + step[1], cells[row].length)];
-  event.target.tabIndex = -1;
+  target.tabIndex = -1;
   next.tabIndex = 0;
   next.focus();
 }
 
+/** @param {Cell} cell */
 function drawCell({ text, amount, label, className = "", open = null }) {
   return h(
     "td",
@@ -53,6 +68,10 @@ function drawCell({ text, amount, label, className = "", open = null }) {
   );
 }
 
+/**
+ * @param {"rowheader" | "columnheader"} role
+ * @param {Head} head
+ */
 const head = (role, { label, image }) =>
   h(
     "th",
@@ -68,6 +87,8 @@ const head = (role, { label, image }) =>
 /**
  * Make a grid. `rows` and `columns` are `{ label, image }`; `cell(row, column)` gets their indices
  * and returns `{ text, amount, label, className, open }`, `amount` in [0, 1].
+ *
+ * @param {{ label: string, corner: string, rows: Head[], columns: Head[], cell: (row: number, column: number) => Cell }} grid
  */
 export function confusionGrid({ label, corner, rows, columns, cell }) {
   const table = h(

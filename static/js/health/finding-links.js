@@ -4,7 +4,12 @@ import { h } from "../core/dom.js";
 import { state, update } from "../core/state.js";
 import { address, go, here, knows } from "../core/views.js";
 
-/** Two labels as the address names them; a comma in a label is not the one between them. */
+/**
+ * Two labels as the address names them; a comma in a label is not the one between them.
+ *
+ * @param {string} one
+ * @param {string} other
+ */
 export const pairName = (one, other) => [one, other].map(encodeURIComponent).join(",");
 
 /**
@@ -23,10 +28,20 @@ export function pairOf(name) {
   }
 }
 
-/** Show two gestures side by side. */
+/**
+ * Show two gestures side by side.
+ *
+ * @param {string} one
+ * @param {string} other
+ */
 export const compare = (one, other) => update({ pair: pairName(one, other) });
 
-/** A link to the editor of a gesture; null where the language has no such gesture. */
+/**
+ * A link to the editor of a gesture; null where the language has no such gesture.
+ *
+ * @param {string} label
+ * @param {string} [text]
+ */
 export function editLink(label, text = `Edit ${label}`) {
   if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
   return h(

@@ -1,7 +1,7 @@
 // What was found, the worst first, each with what would help and where to do it.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
@@ -9,13 +9,21 @@ import { edit } from "../languages/revision-edit.js";
 import { compare, editLink } from "./finding-links.js";
 import { rateText } from "./rates.js";
 
-/** @import { Finding } from "../core/types.d.ts" */
+/** @import { Finding, Language, Remedy } from "../core/types.d.ts" */
 
 const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
 const SWITCHES = new Set(["direction", "tempo"]); // Remedies that need no new demonstration.
 
-/** Let a switch of some gestures count; one undo takes it back. */
+/**
+ * Let a switch of some gestures count; one undo takes it back.
+ *
+ * @param {string} kind
+ * @param {string[]} gestures
+ * @param {string} text
+ * @param {HTMLButtonElement} button
+ */
 async function switchOn(kind, gestures, text, button) {
+  /** @param {Language} base */
   const change = async (base) => {
     let language = base;
     for (const label of gestures)
@@ -32,12 +40,25 @@ async function switchOn(kind, gestures, text, button) {
   }
 }
 
+/**
+ * @param {string} kind
+ * @param {string[]} gestures
+ * @param {string} text
+ */
 function apply(kind, gestures, text) {
-  const button = h("button", { type: "button", "aria-label": `Apply: ${text}` }, "Apply");
+  const button = h(
+    "button",
+    { type: "button", "aria-label": `Apply: ${text}`, ...WRITES },
+    "Apply",
+  );
   button.onclick = () => switchOn(kind, gestures, text, button);
   return button;
 }
 
+/**
+ * @param {Remedy} remedy
+ * @param {string[]} gestures
+ */
 function remedy({ kind, gesture, text, before, after }, gestures) {
   return h(
     "li",
@@ -55,6 +76,7 @@ function remedy({ kind, gesture, text, before, after }, gestures) {
   );
 }
 
+/** @param {Finding} finding */
 function warning({ code, gestures, message, below_bar: below, remedies }) {
   const mended = new Set(
     remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture),
@@ -88,7 +110,11 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
           ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
           : null,
         gestures.length === 2
-          ? h("button", { type: "button", onclick: () => compare(...gestures) }, "Compare the two")
+          ? h(
+              "button",
+              { type: "button", onclick: () => compare(gestures[0], gestures[1]) },
+              "Compare the two",
+            )
           : null,
         gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)),
       ),

@@ -6,7 +6,14 @@ import { editLink } from "./finding-links.js";
 import { anglePlot } from "./angle-plot.js";
 import { intervalText, percent, rateText } from "./rates.js";
 
-/** A rate with its interval; above the threshold it is also marked by a sign. */
+/** @import { GestureEstimate, HealthReport, Rate } from "../core/types.d.ts" */
+
+/**
+ * A rate with its interval; above the threshold it is also marked by a sign.
+ *
+ * @param {Rate | null} estimate
+ * @param {number | null} threshold
+ */
 function rate(estimate, threshold) {
   if (!estimate) return h("td", { className: "dim" }, "not known");
   const over = threshold !== null && estimate.rate > threshold;
@@ -28,6 +35,7 @@ function rate(estimate, threshold) {
   );
 }
 
+/** @param {GestureEstimate["landmarks"]} landmarks */
 function seen(landmarks) {
   if (!landmarks.length) return h("td", { className: "dim" }, "not known");
   return h(
@@ -43,6 +51,11 @@ function seen(landmarks) {
   );
 }
 
+/**
+ * @param {GestureEstimate} gesture
+ * @param {string} image
+ * @param {HealthReport["bar"]} thresholds
+ */
 function row(gesture, image, thresholds) {
   const {
     label,
@@ -90,7 +103,12 @@ function row(gesture, image, thresholds) {
   );
 }
 
-/** Draw the table of all gestures. */
+/**
+ * Draw the table of all gestures.
+ *
+ * @param {HealthReport} report
+ * @param {(label: string) => string} imageOf
+ */
 export function estimateTable({ gestures, bar: thresholds }, imageOf) {
   const heads = [
     "Gesture",

@@ -3,9 +3,16 @@
 import * as api from "../core/api.js";
 import { currentLanguage, state, update } from "../core/state.js";
 
+/** @import { HealthState, Language, State } from "../core/types.d.ts" */
+
+/** @param {Pick<Language, "id" | "revision">} language */
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
-/** Whether a report is of the language and revision on display. */
+/**
+ * Whether a report is of the language and revision on display.
+ *
+ * @param {HealthState | null} health
+ */
 export const isCurrent = (health) =>
   Boolean(health && state.gestures && health.key === keyOf(state.gestures));
 
@@ -24,6 +31,7 @@ export async function check() {
     report: known?.report ?? null,
     shown: known?.shown ?? null,
   };
+  /** @param {Pick<HealthState, "status"> & Partial<HealthState>} change */
   const settle = (change) => {
     if (state.health?.key === key) update({ health: { ...base, ...change } });
   };
@@ -40,9 +48,13 @@ export async function check() {
   }
 }
 
-/** Check again where what is on display is not what was checked, or the server was away. */
+/**
+ * Check again where what is on display is not what was checked, or the server was away.
+ *
+ * @param {State} state
+ */
 export function keepChecked({ view, gestures, health }) {
-  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health.away))
+  if (view === "health" && gestures?.gestures.length && (!isCurrent(health) || health?.away))
     check();
 }
 

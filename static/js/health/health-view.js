@@ -1,7 +1,7 @@
 // The health view: the estimates of the health check, and the test with clips.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
@@ -12,13 +12,14 @@ import { compare } from "./finding-links.js";
 import { warningsList } from "./findings-list.js";
 import { estimateTable } from "./gesture-estimates.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
-import { languageMap } from "./language-map.js";
+import { languageMap, nearestOf } from "./language-map.js";
 import { narrow } from "./narrowed-report.js";
 import { predicted, showPair } from "./pair-page.js";
 import { percent, rateText } from "./rates.js";
 
-/** @import { State } from "../core/types.d.ts" */
+/** @import { HealthReport, State } from "../core/types.d.ts" */
 
+/** @type {Record<string, string>} */
 const STAGES = {
   rehearsing: "Simulating trials of every gesture",
   "accidental movements": "Simulating background motion",
@@ -26,6 +27,7 @@ const STAGES = {
   remedies: "Testing edits that would help",
 };
 
+/** @param {string} label */
 const imageOf = (label) =>
   api.languages.image(
     state.health?.id ?? currentLanguage().id,
@@ -33,6 +35,7 @@ const imageOf = (label) =>
     state.health?.shown ?? currentLanguage().revision,
   );
 
+/** @param {HealthReport} report */
 function verdict({ ok, warnings }) {
   const below = warnings.filter((warning) => warning.below_bar).length;
   const notes = warnings.length - below;
@@ -46,9 +49,13 @@ function verdict({ ok, warnings }) {
   );
 }
 
-/** The bar above the report while a check runs, and after it was cancelled or failed. */
+/**
+ * The bar above the report while a check runs, and after it was cancelled or failed.
+ *
+ * @param {State} state
+ */
 function progress({ health }) {
-  if (!isCurrent(health) || health.status === "done") return null;
+  if (!health || !isCurrent(health) || health.status === "done") return null;
   const again = h(
     "button",
     { type: "button", className: "primary", onclick: check },
@@ -83,23 +90,41 @@ function progress({ health }) {
       h("span", { className: "dim num" }, "Beginning"),
     ),
     h("progress", { "aria-label": "Progress of the check" }),
-    h("button", { type: "button", onclick: () => attempt("Cancelling", cancel) }, "Cancel"),
+    h(
+      "button",
+      { type: "button", ...WRITES, onclick: () => attempt("Cancelling", cancel) },
+      "Cancel",
+    ),
   );
 }
 
-/** Show the progress of the check in place, so that its button stays under the pointer. */
+/**
+ * Show the progress of the check in place, so that its button stays under the pointer.
+ *
+ * @param {HTMLElement} bar
+ * @param {State} state
+ */
 function advance(bar, { health, checking }) {
   const running = bar.querySelector("progress");
-  if (!running || checking?.id !== health.id || checking.revision !== health.revision) return;
+  if (!running || !checking || checking.id !== health?.id || checking.revision !== health.revision)
+    return;
   const { stage, done, total } = checking;
-  bar.querySelector(".num").textContent =
-    `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
+  bar
+    .querySelector(".num")
+    ?.replaceChildren(
+      `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`,
+    );
   if (total) Object.assign(running, { max: total, value: done });
   else running.removeAttribute("value");
 }
 
+/** @param {HealthReport} report */
 function matrix(report) {
   const heads = report.gestures.map(({ label }) => ({ label, image: imageOf(label) }));
+  /**
+   * @param {number} row
+   * @param {number} column
+   */
   const cell = (row, column) => {
     const [one, other] = [report.gestures[row], report.gestures[column]];
     if (row === column) {
@@ -137,16 +162,22 @@ function matrix(report) {
 
 /**
  * Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with
- * most.
+ * most, or the gesture alone where it was compared with none.
+ *
+ * @param {HealthReport} report
+ * @param {string} label
  */
 function openNearest(report, label) {
-  const pair = report.pairs.find(({ gestures }) => gestures.includes(label));
-  compare(
-    label,
-    pair.gestures.find((each) => each !== label),
-  );
+  const other = nearestOf(report.pairs, label);
+  if (other === null) go("gesture", { gesture: label });
+  else compare(label, other);
 }
 
+/**
+ * @param {string} title
+ * @param {string} hint
+ * @param {...Node} content
+ */
 const section = (title, hint, ...content) =>
   h(
     "section",
@@ -155,6 +186,7 @@ const section = (title, hint, ...content) =>
     ...content,
   );
 
+/** @param {HealthReport} report */
 function drawReport(report) {
   const alone = report.gestures.length === 1;
   const shown = narrow(report);
@@ -260,6 +292,7 @@ function overview() {
     );
     advance(bar, state);
   };
+  /** @type {HealthReport | "nothing" | null} */
   let drawn = null;
   const draw = () => {
     const { gestures, health, loaded } = state;
@@ -289,11 +322,16 @@ function overview() {
   );
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} root
+ */
 export function open(root) {
   const all = overview();
   const two = h("div", { className: "health-page pair-page", hidden: true });
   root.append(all, two);
+  /** @type {string | null} */
   let shown = null;
   follow(["view", "gestures", "returns"], keepChecked);
   follow(["pair", "gestures"], ({ pair, gestures }) => {

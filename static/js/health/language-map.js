@@ -2,20 +2,35 @@
 
 import { h, svg } from "../core/dom.js";
 
+/** @import { HealthReport, PairEstimate } from "../core/types.d.ts" */
+
+/** @typedef {{ x: number, y: number }} Point */
+
 const WIDTH = 600;
 const HEIGHT = 420;
 const ROUNDS = 300; // Of moving apart; thirty thumbnails come to rest within a hundred.
 const LABEL = 18; // Height of the line under a thumbnail.
 const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
 
-/** A size of which all fit with room to spare. */
+/**
+ * A size of which all fit with room to spare.
+ *
+ * @param {number} count
+ */
 const sizeOf = (count) =>
   Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
 
-/** Bring coordinates into the drawing, one scale for both axes. */
+/**
+ * Bring coordinates into the drawing, one scale for both axes.
+ *
+ * @param {Point[]} places
+ * @param {number} margin
+ */
 function scaled(places, margin) {
+  /** @param {"x" | "y"} key */
   const spread = (key) =>
     Math.max(...places.map((place) => place[key])) - Math.min(...places.map((place) => place[key]));
+  /** @param {"x" | "y"} key */
   const middle = (key) =>
     (Math.max(...places.map((place) => place[key])) +
       Math.min(...places.map((place) => place[key]))) /
@@ -30,6 +45,13 @@ function scaled(places, margin) {
   }));
 }
 
+/**
+ * @param {Point} one
+ * @param {Point} other
+ * @param {number} index
+ * @param {number} width
+ * @param {number} height
+ */
 function pushApart(one, other, index, width, height) {
   const dx = other.x - one.x || 0.01 * (index + 1);
   const dy = other.y - one.y;
@@ -41,7 +63,12 @@ function pushApart(one, other, index, width, height) {
   other[axis] += way;
 }
 
-/** Move thumbnails of a size apart until none hides another, staying in the drawing. */
+/**
+ * Move thumbnails of a size apart until none hides another, staying in the drawing.
+ *
+ * @param {Point[]} places
+ * @param {number} size
+ */
 export function apart(places, size) {
   const moved = places.map((place) => ({ ...place }));
   const [width, height] = [size + 8, size + LABEL + 6];
@@ -59,17 +86,31 @@ export function apart(places, size) {
 }
 
 /**
+ * The gesture that one is confused with most; null where it was compared with none. `pairs` are
+ * the report's, the most confused first.
+ *
+ * @param {Pick<PairEstimate, "gestures">[]} pairs
+ * @param {string} label
+ */
+export function nearestOf(pairs, label) {
+  const pair = pairs.find(({ gestures }) => gestures.includes(label));
+  return pair?.gestures.find((each) => each !== label) ?? null;
+}
+
+/**
  * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined
  * by a line; `imageOf(label)` and `open(label)` are what a thumbnail shows and does.
+ *
+ * @param {{ points: HealthReport["map"], worst: PairEstimate[], imageOf: (label: string) => string, open: (label: string) => void }} map
  */
 export function languageMap({ points, worst, imageOf, open }) {
   const size = sizeOf(points.length);
   const places = scaled(points, size / 2 + LABEL);
   const moved = apart(places, size);
   const at = new Map(points.map(({ label }, index) => [label, moved[index]]));
-  const lines = worst.map(({ gestures }) => {
+  const lines = worst.flatMap(({ gestures }) => {
     const [one, other] = gestures.map((label) => at.get(label));
-    return svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y });
+    return one && other ? [svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y })] : [];
   });
   const leaders = places.map((place, index) =>
     svg("path", {

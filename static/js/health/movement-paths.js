@@ -2,6 +2,12 @@
 
 import { svg } from "../core/dom.js";
 
+/** @import { PairDifference, Place } from "../core/types.d.ts" */
+
+/** @typedef {PairDifference["gestures"][number]} Paths */
+
+/** @typedef {NonNullable<ReturnType<typeof boxOf>>} Box */
+
 const MARGIN = 0.15; // Torso lengths around all that moves.
 
 const BONES = [
@@ -14,9 +20,15 @@ const BONES = [
   ["right_wrist", "right_index"],
 ];
 
-/** The box that holds every place of some gestures, so that both are drawn in one scale. */
+/**
+ * The box that holds every place of some gestures, so that both are drawn in one scale.
+ *
+ * @param {Paths[]} gestures
+ */
 export function boxOf(gestures) {
-  const places = gestures.flatMap(({ paths }) => Object.values(paths).flat()).filter(Boolean);
+  const places = gestures
+    .flatMap(({ paths }) => Object.values(paths).flat())
+    .filter((place) => place !== null);
   if (!places.length) return null;
   const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
   const [left, top] = [Math.min(...xs) - MARGIN, Math.min(...ys) - MARGIN];
@@ -28,10 +40,17 @@ export function boxOf(gestures) {
   };
 }
 
-/** The place of a landmark at a moment; null where it was not seen. */
+/**
+ * The place of a landmark at a moment; null where it was not seen.
+ *
+ * @param {Paths} gesture
+ * @param {Place[]} path
+ * @param {number} seconds
+ * @returns {Place}
+ */
 function placeAt({ time }, path, seconds) {
   const after = time.findIndex((each) => each >= seconds);
-  if (after < 0) return path.at(-1);
+  if (after < 0) return path.at(-1) ?? null;
   if (after === 0) return path[0];
   const [from, to] = [path[after - 1], path[after]];
   if (!from || !to) return null;
@@ -39,7 +58,11 @@ function placeAt({ time }, path, seconds) {
   return [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
 }
 
-/** A line along places, interrupted where there is none. */
+/**
+ * A line along places, interrupted where there is none.
+ *
+ * @param {Place[]} places
+ */
 function line(places) {
   let down = false;
   return places
@@ -55,10 +78,19 @@ function line(places) {
     .join("");
 }
 
-/** Make a drawing of a gesture; `show(seconds)` moves it to a moment. */
+/**
+ * Make a drawing of a gesture; `show(seconds)` moves it to a moment.
+ *
+ * @param {Paths} gesture
+ * @param {Box} box
+ */
 export function movingPaths(gesture, box) {
   const { time, paths, salient, label } = gesture;
   const followed = salient.filter((name) => paths[name]);
+  /**
+   * @param {string} name
+   * @param {string} [d]
+   */
   const path = (name, d = "") => svg("path", { class: name, d });
   const [bones, trail, dots] = [path("bones"), path("trail"), path("dots")];
   const whole = path("whole", followed.map((name) => line(paths[name])).join(""));
@@ -75,8 +107,10 @@ export function movingPaths(gesture, box) {
     trail,
     dots,
   );
+  /** @param {number} seconds */
   const show = (seconds) => {
-    const at = (name) => paths[name] && placeAt(gesture, paths[name], seconds);
+    /** @param {string} name */
+    const at = (name) => (paths[name] ? placeAt(gesture, paths[name], seconds) : null);
     const passed = time.findLastIndex((each) => each <= seconds);
     bones.setAttribute(
       "d",
@@ -93,7 +127,7 @@ export function movingPaths(gesture, box) {
       "d",
       followed
         .map(at)
-        .filter(Boolean)
+        .filter((place) => place !== null)
         .map(([x, y]) => `M${x} ${y}h0`)
         .join(""),
     );

@@ -1,11 +1,16 @@
 // The part of a large language's report that fits a grid and a map: the most confused gestures.
 
+/** @import { HealthReport } from "../core/types.d.ts" */
+
 /** Gestures in the grid and on the map; more cells cannot be told apart. */
 export const MOST_SHOWN = 64;
 
 /**
  * Return a report of at most `most` gestures, those of the most confused pairs first, in the
  * language's order. A report that fits is returned as it is.
+ *
+ * @param {HealthReport} report
+ * @param {number} [most]
  */
 export function narrow(report, most = MOST_SHOWN) {
   if (report.gestures.length <= most) return report;

@@ -5,13 +5,23 @@ import { moment } from "../core/format.js";
 import { bind } from "../core/keys.js";
 import { state } from "../core/state.js";
 
+/** @import { PairDifference } from "../core/types.d.ts" */
+
+/** @typedef {{ seconds: number[], cost: number }} Step */
+
 const FREE = 60; // Steps of the cursor where the two cannot be aligned: each shows its own share.
 const LONGEST = 0.5; // Seconds of one step while playing: where one of the two rests, nobody waits.
 const HEIGHT = 24; // of the strip, in its own units
 
+/** @type {{ toggle: () => void, step: (by: number) => void, element: HTMLElement } | null} */
 let active = null;
 
-/** The steps of the cursor: `{ seconds: [one, other], cost }` each. */
+/**
+ * The steps of the cursor: `{ seconds: [one, other], cost }` each.
+ *
+ * @param {Pick<PairDifference, "gestures" | "alignment">} pair
+ * @returns {Step[]}
+ */
 export function stepsOf({ gestures, alignment }) {
   if (!alignment) {
     return Array.from({ length: FREE + 1 }, (_, step) => ({
@@ -25,7 +35,11 @@ export function stepsOf({ gestures, alignment }) {
   }));
 }
 
-/** The difference of the two at each step, as a bar. */
+/**
+ * The difference of the two at each step, as a bar.
+ *
+ * @param {Step[]} steps
+ */
 function strip(steps) {
   const most = Math.max(...steps.map(({ cost }) => cost));
   if (!most) return null;
@@ -49,7 +63,13 @@ function strip(steps) {
   );
 }
 
-/** Make the cursor; `show(step)` is called whenever it moves. */
+/**
+ * Make the cursor; `show(step)` is called whenever it moves.
+ *
+ * @param {Step[]} steps
+ * @param {string[]} labels
+ * @param {(step: Step) => void} show
+ */
 export function timeCursor(steps, labels, show) {
   const last = steps.length - 1;
   const slider = h("input", {
@@ -62,13 +82,15 @@ export function timeCursor(steps, labels, show) {
   });
   const clocks = labels.map(() => h("b", { className: "num" }));
   const play = h("button", { type: "button", className: "quiet icon" });
-  let timer = null;
+  /** @type {number | undefined} */
+  let timer;
   const face = () => {
     const text = timer ? "Pause" : "Play both";
     play.replaceChildren(icon(timer ? "pause" : "play"));
     play.setAttribute("aria-label", text);
     play.title = `${text} (Space)`;
   };
+  /** @param {number} to */
   const move = (to) => {
     const step = Math.max(0, Math.min(last, to));
     slider.value = String(step);
@@ -84,7 +106,7 @@ export function timeCursor(steps, labels, show) {
   };
   const stop = () => {
     clearTimeout(timer);
-    timer = null;
+    timer = undefined;
     face();
   };
   const run = () => {
@@ -107,6 +129,7 @@ export function timeCursor(steps, labels, show) {
     if (Number(slider.value) >= last) move(0);
     return run();
   };
+  /** @param {number} by */
   const step = (by) => {
     stop();
     move(Number(slider.value) + by);
@@ -134,8 +157,13 @@ export function timeCursor(steps, labels, show) {
 }
 
 const shown = () => state.view === "health" && Boolean(active?.element.isConnected);
+/**
+ * @param {string[]} keys
+ * @param {string} text
+ * @param {() => void} run
+ */
 const key = (keys, text, run) =>
   bind({ keys, text, group: "Two gestures side by side", run, when: shown });
-key(["Space"], "Play or pause both", () => active.toggle());
-key([","], "One step back", () => active.step(-1));
-key(["."], "One step on", () => active.step(1));
+key(["Space"], "Play or pause both", () => active?.toggle());
+key([","], "One step back", () => active?.step(-1));
+key(["."], "One step on", () => active?.step(1));

@@ -11,6 +11,8 @@ import { boxOf, movingPaths } from "./movement-paths.js";
 import { stepsOf, timeCursor } from "./pair-cursor.js";
 import { rateText } from "./rates.js";
 
+/** @import { HealthReport, PairDifference, Rate } from "../core/types.d.ts" */
+
 const close = () => update({ pair: null });
 
 bind({
@@ -21,7 +23,13 @@ bind({
   when: () => state.view === "health" && state.pair !== null,
 });
 
-/** The estimated confusion of two gestures, from the first's side. */
+/**
+ * The estimated confusion of two gestures, from the first's side.
+ *
+ * @param {HealthReport | null} report
+ * @param {string} one
+ * @param {string} other
+ */
 export function predicted(report, one, other) {
   const pair = report?.pairs.find(
     ({ gestures }) => gestures.includes(one) && gestures.includes(other),
@@ -32,9 +40,20 @@ export function predicted(report, one, other) {
     : { forth: pair.second_as_first, back: pair.first_as_second };
 }
 
-/** The estimated rates of confusing the two; empty until the check is done. */
+/**
+ * The estimated rates of confusing the two; empty until the check is done.
+ *
+ * @param {HealthReport | null} report
+ * @param {string} one
+ * @param {string} other
+ */
 function rateLines(report, one, other) {
   const rates = predicted(report, one, other);
+  /**
+   * @param {Rate | null} estimate
+   * @param {string} from
+   * @param {string} to
+   */
   const rate = (estimate, from, to) =>
     estimate
       ? h(
@@ -49,7 +68,16 @@ function rateLines(report, one, other) {
     : [];
 }
 
+/**
+ * @param {[string, string]} labels
+ * @param {PairDifference} pair
+ */
 function sentences([one, other], { differs, alignment }) {
+  /**
+   * @param {string | null} words
+   * @param {string} from
+   * @param {string} to
+   */
   const difference = (words, from, to) =>
     words ? h("li", {}, `${from} differs from ${to} by: ${words}.`) : null;
   return h(
@@ -67,6 +95,11 @@ function sentences([one, other], { differs, alignment }) {
   );
 }
 
+/**
+ * @param {PairDifference["gestures"][number]} gesture
+ * @param {string} image
+ * @param {SVGElement | undefined} drawing
+ */
 function figure(gesture, image, drawing) {
   return h(
     "figure",
@@ -86,6 +119,10 @@ function figure(gesture, image, drawing) {
   );
 }
 
+/**
+ * @param {PairDifference} found
+ * @param {(label: string) => string} imageOf
+ */
 function sideBySide(found, imageOf) {
   const { gestures } = found;
   const labels = gestures.map(({ label }) => label);
@@ -93,7 +130,7 @@ function sideBySide(found, imageOf) {
   const moving = gestures.map((gesture) =>
     box && gesture.time.length ? movingPaths(gesture, box) : null,
   );
-  const cursor = moving.every(Boolean)
+  const cursor = moving.every((each) => each !== null)
     ? timeCursor(stepsOf(found), labels, ({ seconds }) =>
         moving.forEach(({ show }, index) => show(seconds[index])),
       )
@@ -106,15 +143,21 @@ function sideBySide(found, imageOf) {
         figure(gesture, imageOf(gesture.label), moving[index]?.drawing),
       ),
     ),
-    cursor?.element,
+    ...(cursor ? [cursor.element] : []),
   ];
 }
 
+/** @type {(() => void) | null} */
 let fill = null; // Draws the estimates; the report may come later than the gestures.
 
 follow(["health"], () => fill?.());
 
-/** Draw two gestures into a box, as soon as they are loaded. */
+/**
+ * Draw two gestures into a box, as soon as they are loaded.
+ *
+ * @param {HTMLElement} box
+ * @param {(label: string) => string} imageOf
+ */
 export async function showPair(box, imageOf) {
   const { pair } = state;
   const language = currentLanguage();
@@ -153,9 +196,7 @@ export async function showPair(box, imageOf) {
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
   const rates = h("ul", { className: "pair-words" });
   const warnings = h("div", { className: "pair-warnings" });
-  box.append(
-    ...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings].filter(Boolean),
-  );
+  box.append(...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings]);
   fill = () => {
     const report = state.health?.id === language.id ? state.health.report : null;
     rates.replaceChildren(...rateLines(report, ...labels));

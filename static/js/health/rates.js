@@ -1,8 +1,12 @@
 // Estimated rates as text.
 
+/** @import { Rate } from "../core/types.d.ts" */
+
 /**
  * An estimated rate in per cent, rounded half to even, as in the texts of the findings. A rate
  * above 0 is never written as 0.
+ *
+ * @param {number} rate
  */
 export function percent(rate) {
   const hundredths = 100 * rate;
@@ -11,11 +15,19 @@ export function percent(rate) {
   return rate > 0 && rounded === 0 ? "<1" : String(rounded);
 }
 
-/** The interval of an estimate in words; empty where both of its ends read the same. */
+/**
+ * The interval of an estimate in words; empty where both of its ends read the same.
+ *
+ * @param {Pick<Rate, "low" | "high">} estimate
+ */
 export const intervalText = ({ low, high }) =>
   percent(low) === percent(high) ? "" : `${percent(low)} to ${percent(high)}`;
 
-/** An estimate in words, with its interval. */
+/**
+ * An estimate in words, with its interval.
+ *
+ * @param {Rate} estimate
+ */
 export function rateText(estimate) {
   const interval = intervalText(estimate);
   return `${percent(estimate.rate)} %${interval && ` (${interval})`}`;

@@ -4,14 +4,25 @@
 import * as api from "../core/api.js";
 import { plural } from "../core/format.js";
 
-const reports = new Map(); // by language and revision; null while it is not known
+/** @import { HealthReport, LanguageSummary } from "../core/types.d.ts" */
+
+/** @type {Map<string, HealthReport>} */
+const reports = new Map(); // by language and revision
+/** @type {{ card: Element, language: LanguageSummary, line: HTMLElement }[]} */
 const waiting = [];
+/** @type {WeakMap<Element, LanguageSummary>} */
+const languageOf = new WeakMap(); // by card
 let offered = true; // false once the server turned out to have no such report
 let asking = false;
 
+/** @param {LanguageSummary} language */
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
-/** Show that the report is pending. */
+/**
+ * Show that the report is pending.
+ *
+ * @param {HTMLElement} line
+ */
 function promise(line) {
   line.hidden = false;
   line.className = "health pending";
@@ -19,10 +30,15 @@ function promise(line) {
   line.removeAttribute("title");
 }
 
-/** The line under a card: what was found, in words and with a mark of its own. */
+/**
+ * The line under a card: what was found, in words and with a mark of its own.
+ *
+ * @param {HTMLElement} line
+ * @param {HealthReport | undefined} report
+ */
 function write(line, report) {
   if (!report) return;
-  const warnings = report.warnings ?? [];
+  const { warnings } = report;
   line.hidden = false;
   line.className = `health ${report.ok ? "well" : "unwell"}`;
   const below = warnings.filter((warning) => warning.below_bar);
@@ -36,8 +52,9 @@ function write(line, report) {
 }
 
 async function next() {
-  const { language, line } = waiting.shift() ?? {};
-  if (!language || !offered) return;
+  const first = waiting.shift();
+  if (!first || !offered) return;
+  const { language, line } = first;
   asking = true;
   try {
     if (line.isConnected && !reports.has(keyOf(language)))
@@ -54,24 +71,29 @@ async function next() {
 
 const seen = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
-    const line = target.querySelector(".health");
+    const line = /** @type {HTMLElement | null} */ (target.querySelector(".health"));
     const at = waiting.findIndex((each) => each.card === target);
     // Whoever scrolls past a hundred cards does not ask for a hundred reports.
     if (at >= 0) waiting.splice(at, 1);
-    if (isIntersecting && line)
-      waiting.push({ card: target, language: /** @type {any} */ (target).language, line });
+    const language = languageOf.get(target);
+    if (isIntersecting && line && language) waiting.push({ card: target, language, line });
   }
   if (!asking) next();
 });
 
-/** Fill a card's line once the card is seen. */
+/**
+ * Fill a card's line once the card is seen.
+ *
+ * @param {HTMLElement} card
+ * @param {LanguageSummary} language
+ */
 export function showHealth(card, language) {
-  const line = card.querySelector(".health");
+  const line = /** @type {HTMLElement} */ (card.querySelector(".health"));
   line.hidden = true;
   seen.unobserve(card);
   if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
   if (!language.labels.length || !offered) return undefined;
   promise(line);
-  card.language = language;
+  languageOf.set(card, language);
   return seen.observe(card);
 }

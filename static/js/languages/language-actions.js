@@ -33,7 +33,9 @@ export async function rename({ id }) {
     action: "Save",
     submit: async (values) => {
       const change = Object.fromEntries(
-        Object.entries(values).filter(([name, value]) => value !== language[name]),
+        Object.entries(values).filter(
+          ([name, value]) => value !== language[/** @type {"name" | "author"} */ (name)],
+        ),
       );
       if (!Object.keys(change).length) return language;
       const mine = { ...language, ...change };

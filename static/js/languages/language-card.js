@@ -51,11 +51,11 @@ async function work(language) {
 /** @param {LanguageSummary} language */
 function commands(language) {
   return menu(`What to do with ${language.name}`, [
-    { text: "Rename\u2026", run: () => rename(language) },
-    { text: "Duplicate", run: () => duplicate(language) },
+    { text: "Rename\u2026", run: () => rename(language), writes: true },
+    { text: "Duplicate", run: () => duplicate(language), writes: true },
     { text: "History", run: () => openHistory(language) },
     { text: "Export", href: api.languages.exportUrl(language.id, "osg-studio") },
-    { text: "Delete", run: () => remove(language) },
+    { text: "Delete", run: () => remove(language), writes: true },
   ]);
 }
 
@@ -122,7 +122,8 @@ export function drawCard(language, element) {
       h("time", { dateTime: language.updated }, ago(language.updated)),
     ),
   );
-  if (focused) /** @type {any} */ (card.getElementsByClassName(focused)[0])?.focus();
+  if (focused)
+    /** @type {HTMLElement | undefined} */ (card.getElementsByClassName(focused)[0])?.focus();
   showHealth(card, language);
   return card;
 }

@@ -16,6 +16,7 @@ export function drawPicker({ languages, language }) {
 
 /** Bind what the header offers. */
 export function bindPicker() {
+  /** @param {Event & { target: HTMLSelectElement }} event */
   byId("language").onchange = (event) => choose(event.target.value);
   byId("new-language").onclick = () => newLanguage();
 }

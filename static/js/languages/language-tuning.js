@@ -1,7 +1,7 @@
 // The tuning of the language on display: where its recognition differs from the profile.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { currentLanguage } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -73,6 +73,10 @@ export function drawTuning({ gestures }) {
       tuningWords(currentLanguage()),
       ", here and on the robot.",
     ),
-    h("button", { type: "button", className: "link", onclick: reset }, "As the profile full does"),
+    h(
+      "button",
+      { type: "button", className: "link", ...WRITES, onclick: reset },
+      "As the profile full does",
+    ),
   );
 }

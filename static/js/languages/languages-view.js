@@ -1,12 +1,14 @@
 // The library: every language as a card, or the history of one.
 
-import { h, icon, reconcile } from "../core/dom.js";
+import { h, icon, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { drawCard } from "./language-card.js";
 import { importLanguage, newLanguage } from "./language-store.js";
 import { openHistoryPanel } from "./revision-history.js";
 import { drawSampleLanguages } from "./sample-languages.js";
+
+/** @import { LanguageSummary } from "../core/types.d.ts" */
 
 const REDRAWN_EVERY = 60000; // ms. "2 minutes ago" grows old.
 
@@ -17,6 +19,7 @@ function importButton() {
     multiple: true,
     accept: ".json,application/json",
     className: "visually-hidden",
+    ...WRITES,
   });
   input.onchange = async () => {
     for (const file of [...(input.files ?? [])]) await importLanguage(file);
@@ -26,11 +29,16 @@ function importButton() {
     "span",
     { className: "import" },
     input,
-    h("label", { for: "language-file", className: "button" }, "Import a file\u2026"),
+    h("label", { for: "language-file", className: "button", ...WRITES }, "Import a file\u2026"),
   );
 }
 
-/** Whether a language's name, author or labels contain the words of a search. */
+/**
+ * Whether a language's name, author or labels contain the words of a search.
+ *
+ * @param {LanguageSummary} language
+ * @param {string[]} words
+ */
 function answers({ name, author, labels }, words) {
   const text = [name, author, ...labels].join(" ").toLowerCase();
   return words.every((word) => text.includes(word));
@@ -96,7 +104,7 @@ function library() {
       importButton(),
       h(
         "button",
-        { type: "button", className: "primary", onclick: () => newLanguage() },
+        { type: "button", className: "primary", ...WRITES, onclick: () => newLanguage() },
         icon("plus"),
         "New language",
       ),
@@ -107,7 +115,11 @@ function library() {
   );
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   const cards = library();
   const past = h("div", { className: "history-page", hidden: true });

@@ -3,10 +3,14 @@
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 
-/** @import { GestureDiff, Revision, RevisionDiff } from "../core/types.d.ts" */
+/** @import { Gesture, GestureDiff, Revision, RevisionDiff } from "../core/types.d.ts" */
 
 const SIGNS = { added: "+", removed: "\u2212", changed: "\u2260", same: "=" };
 
+/**
+ * @param {Gesture | null} gesture
+ * @param {string} absent
+ */
 function picture(gesture, absent) {
   return gesture
     ? h(
@@ -59,6 +63,7 @@ const heading = (revision) => (revision ? `Revision ${revision.revision}` : "Not
 export function drawComparison(box, { older, newer, words, gestures }) {
   const changed = gestures.filter((each) => each.kind !== "same");
   const same = gestures.filter((each) => each.kind === "same");
+  /** @param {string} kind */
   const count = (kind) => gestures.filter((each) => each.kind === kind).length;
   const counts = ["added", "removed", "changed"]
     .map((kind) => (count(kind) ? `${count(kind)} ${kind}` : null))

@@ -1,7 +1,7 @@
 // A language's history: its revisions with names, and two of them side by side.
 
 import * as api from "../core/api.js";
-import { h, icon, reconcile } from "../core/dom.js";
+import { h, icon, reconcile, WRITES } from "../core/dom.js";
 import { ago, dateAndTime } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
@@ -10,7 +10,11 @@ import { address, here } from "../core/views.js";
 import { drawComparison } from "./revision-diff.js";
 import { edit } from "./revision-edit.js";
 
+/** @import { Revision, State } from "../core/types.d.ts" */
+
+/** @type {Revision[]} */
 let revisions = []; // of `of`, newest first
+/** @type {string | null} */
 let of = null;
 
 const shown = () =>
@@ -18,11 +22,17 @@ const shown = () =>
   state.panel === "history" &&
   state.gestures !== null &&
   state.gestures.id === state.language;
+/** @param {number} number */
 const before = (number) => revisions.find((each) => each.revision < number)?.revision ?? null;
 
-/** Show the diff of a revision against the one before it, or an empty language. */
+/**
+ * Show the diff of a revision against the one before it, or an empty language.
+ *
+ * @param {number} number
+ */
 const select = (number) => update({ newer: number, older: before(number) });
 
+/** @param {Revision} revision */
 async function goBack({ revision }) {
   try {
     await edit("Going back", `Going back to revision ${revision}`, (language) =>
@@ -34,6 +44,10 @@ async function goBack({ revision }) {
   }
 }
 
+/**
+ * @param {Revision} row
+ * @param {HTMLElement | undefined} element
+ */
 function drawRevision(row, element) {
   const newest = row === revisions[0];
   const chosen = row.revision === state.newer;
@@ -72,6 +86,7 @@ function drawRevision(row, element) {
           {
             type: "button",
             className: "quiet",
+            ...WRITES,
             "aria-label": `Go back to revision ${row.revision}`,
             onclick: () => goBack(row),
           },
@@ -82,13 +97,18 @@ function drawRevision(row, element) {
   return item;
 }
 
+/**
+ * @param {HTMLSelectElement} picker
+ * @param {(number | null)[]} numbers
+ * @param {number | null} value
+ */
 function options(picker, numbers, value) {
   picker.replaceChildren(
     ...numbers.map((number) =>
       h("option", { value: number ?? "" }, number === null ? "nothing" : `revision ${number}`),
     ),
   );
-  picker.value = value ?? "";
+  picker.value = String(value ?? "");
 }
 
 /** Load the history of the language on display when it is another, or has a new revision. */
@@ -105,13 +125,21 @@ async function load() {
   if (another || outgrown || !areKnown(state)) select(revisions[0].revision);
 }
 
-/** Whether both revisions of a diff are in the history. */
+/**
+ * Whether both revisions of a diff are in the history.
+ *
+ * @param {Pick<State, "newer" | "older">} state
+ */
 function areKnown({ newer, older }) {
   const numbers = [null, ...revisions.map(({ revision }) => revision)];
   return newer !== null && numbers.includes(newer) && numbers.includes(older);
 }
 
-/** Build the panel and keep it in step. */
+/**
+ * Build the panel and keep it in step.
+ *
+ * @param {HTMLElement} panel
+ */
 export function openHistoryPanel(panel) {
   const list = h("ol", { className: "revisions", "aria-label": "Revisions" });
   const title = h("h1", {});

@@ -17,7 +17,7 @@ export const written = (command) =>
  * one: a missing brace must not reach the robot as words.
  *
  * @param {string} text
- * @returns {{ command?: any, kind?: string, problem?: string }}
+ * @returns {{ command?: string | Record<string, unknown> | null, kind?: string, problem?: string }}
  */
 export function read(text) {
   const trimmed = text.trim();

@@ -1,7 +1,7 @@
 // The sample languages that are not in the library, each a button that adds it.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
@@ -20,7 +20,7 @@ const present = (sample) =>
 function offer(sample) {
   const button = h(
     "button",
-    { type: "button", className: "sample-language" },
+    { type: "button", className: "sample-language", ...WRITES },
     h("b", {}, sample.title),
     h(
       "span",

@@ -1,17 +1,22 @@
 // The settings of the language on display: its profile and voters' weights beside the defaults.
 
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
 import { currentLanguage, state } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { edit } from "./revision-edit.js";
 
-/** @import { LanguageSettings } from "../core/types.d.ts" */
+/** @import { Language, LanguageSettings, Tuning } from "../core/types.d.ts" */
+
+/** @typedef {{ profile: Language["profile"], weights: Record<string, number>, simplification: number, repaired: boolean | null }} Chosen */
+
+/** @typedef {(focused?: string | null) => void} Draw */
 
 const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
+/** @type {Record<Language["profile"], string>} */
 const PROFILE_WORDS = {
   full: "Whole movements, weighted distances; movements that are no gesture are rejected.",
   paper: "The paper\u2019s seven voters on trajectory images, by majority; nothing is rejected.",
@@ -20,7 +25,12 @@ const PROFILE_WORDS = {
 /** @type {(factor: number) => string} */
 const factorText = (factor) => (factor === 0 ? "off" : `${factor} \u00d7`);
 
-/** What is chosen, from a language's settings. */
+/**
+ * What is chosen, from a language's settings.
+ *
+ * @param {Pick<LanguageSettings, "profile" | "tuning" | "simplification">} settings
+ * @returns {Chosen}
+ */
 const chosenIn = ({ profile, tuning, simplification }) => ({
   profile,
   weights: { ...tuning?.weights },
@@ -28,7 +38,13 @@ const chosenIn = ({ profile, tuning, simplification }) => ({
   repaired: tuning?.keypoints_repaired ?? null,
 });
 
-/** The tuning as the API takes it; null where nothing differs from the profile. */
+/**
+ * The tuning as the API takes it; null where nothing differs from the profile.
+ *
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ * @returns {Tuning | null}
+ */
 function tuningOf({ weights, simplification, repaired }, settings) {
   const factors = Object.fromEntries(Object.entries(weights).filter(([, factor]) => factor !== 1));
   const drawn = simplification === settings.simplification ? null : simplification;
@@ -39,7 +55,7 @@ function tuningOf({ weights, simplification, repaired }, settings) {
 /**
  * How many settings differ from the default.
  *
- * @param {any} chosen
+ * @param {Chosen} chosen
  * @param {LanguageSettings} settings
  */
 export function countChanges(chosen, settings) {
@@ -52,6 +68,12 @@ export function countChanges(chosen, settings) {
   );
 }
 
+/**
+ * @param {string} voter
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ * @param {Draw} draw
+ */
 function weightRow(voter, chosen, settings, draw) {
   const factor = chosen.weights[voter] ?? 1;
   const select = h(
@@ -77,6 +99,11 @@ function weightRow(voter, chosen, settings, draw) {
   );
 }
 
+/**
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ * @param {Draw} draw
+ */
 function profileChoice(chosen, settings, draw) {
   return h(
     "fieldset",
@@ -99,13 +126,18 @@ function profileChoice(chosen, settings, draw) {
           {},
           h("b", {}, name),
           ` ${plural(voters.length, "voter")}${name === settings.default_profile ? ", the default" : ""}`,
-          h("small", { className: "dim" }, PROFILE_WORDS[name] ?? ""),
+          h("small", { className: "dim" }, PROFILE_WORDS[name]),
         ),
       );
     }),
   );
 }
 
+/**
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ * @param {Draw} draw
+ */
 function otherFields(chosen, settings, draw) {
   const drawn = h("input", {
     type: "number",
@@ -151,6 +183,10 @@ function otherFields(chosen, settings, draw) {
   ];
 }
 
+/**
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ */
 async function save(chosen, settings) {
   const change = { profile: chosen.profile, tuning: tuningOf(chosen, settings) };
   try {
@@ -228,7 +264,12 @@ export async function openSettings() {
         h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
         h(
           "button",
-          { type: "submit", className: "primary", disabled: JSON.stringify(chosen) === before },
+          {
+            type: "submit",
+            className: "primary",
+            ...WRITES,
+            disabled: JSON.stringify(chosen) === before,
+          },
           "Save",
         ),
       ),

@@ -2,6 +2,7 @@
 
 import * as api from "../core/api.js";
 import { plural } from "../core/format.js";
+import { mayWrite } from "../core/session.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
@@ -47,7 +48,7 @@ async function runWithNews() {
 
 async function runNow() {
   const { language } = state;
-  if (!language) return;
+  if (!language || !mayWrite()) return;
   update({ testing: { id: language, done: 0, total: state.testSet?.waiting ?? 0 } });
   try {
     show(await api.testSets.run(language));

@@ -1,6 +1,6 @@
 // The elements of the view, before anything is seen.
 
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
 
 /**
@@ -73,6 +73,7 @@ function controls() {
     h("button", {
       type: "button",
       id: "live-record",
+      ...WRITES,
       title: "Record a clip, after a countdown (R)",
     }),
     h("button", {

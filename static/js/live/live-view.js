@@ -339,7 +339,7 @@ bind({
   text: "Record a clip from the camera, or stop",
   group: "Live",
   run: () => {
-    if (!fromClip()) toggleRecording();
+    if (!fromClip() && !byId("live-record").disabled) toggleRecording();
   },
   when,
 });

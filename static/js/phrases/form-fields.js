@@ -1,24 +1,50 @@
 // Fields of the phrases' form. Each saves when it loses the focus or Enter is pressed.
 
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { limit } from "../core/text-limit.js";
+
+/**
+ * A labelled text field; `commit(text)` saves what was typed, and resolves to false where it could
+ * not be.
+ *
+ * @typedef {object} TextField
+ * @property {string} id
+ * @property {string} label
+ * @property {string} value
+ * @property {(text: string) => unknown} commit
+ * @property {boolean} [multiline]
+ * @property {boolean} [hidden] whether the label is for screen readers only
+ * @property {number} [most] code points
+ * @property {string} [placeholder]
+ */
+
+/** @typedef {TextField & { min: number, max: number, step?: number | "any" }} NumberField */
 
 let drawing = false;
 
-/** Replace the content of `root`, keeping the focus, the caret and unsaved input. */
+/**
+ * What is typed in a field and not saved, and where its caret stands; null for nothing.
+ *
+ * @param {Element | null} field
+ */
+function unsavedIn(field) {
+  const nothing = { typing: null, caret: null };
+  if (!(field instanceof HTMLInputElement || field instanceof HTMLTextAreaElement)) return nothing;
+  if (field.type === "checkbox" || field.value === field.defaultValue) return nothing;
+  return { typing: field.value, caret: field.selectionStart };
+}
+
+/**
+ * Replace the content of `root`, keeping the focus, the caret and unsaved input.
+ *
+ * @param {HTMLElement} root
+ * @param {...(Node | null)} content
+ */
 export function redraw(root, ...content) {
-  /** @type {any} */
   const active = root.contains(document.activeElement) ? document.activeElement : null;
-  const typing =
-    active &&
-    "defaultValue" in active &&
-    active.type !== "checkbox" &&
-    active.value !== active.defaultValue
-      ? active.value
-      : null;
-  const caret = typing === null ? null : active.selectionStart;
+  const { typing, caret } = unsavedIn(active);
   drawing = true;
-  root.replaceChildren(...content.filter(Boolean));
+  root.replaceChildren(...content.filter((each) => each !== null));
   drawing = false;
   const again = active?.id ? byId(active.id) : null;
   if (!again) return;
@@ -28,9 +54,9 @@ export function redraw(root, ...content) {
 }
 
 /**
- * A labelled text field; `commit(text)` saves what was typed and resolves to whether it could be.
+ * Make a text field.
  *
- * @param {any} field
+ * @param {TextField & Record<string, unknown>} field
  */
 export function textField({
   id,
@@ -44,6 +70,7 @@ export function textField({
 }) {
   const input = h(multiline ? "textarea" : "input", {
     id,
+    ...WRITES,
     defaultValue: value,
     autocomplete: "off",
     ...(multiline
@@ -77,7 +104,7 @@ export function textField({
   );
 }
 
-/** @type {(field: any) => HTMLElement} */
+/** @type {(field: NumberField) => HTMLElement} */
 export const numberField = ({ min, max, step = 1, ...rest }) =>
   textField({
     ...rest,
@@ -88,11 +115,24 @@ export const numberField = ({ min, max, step = 1, ...rest }) =>
     inputMode: step === 1 ? "numeric" : "decimal",
   });
 
-/** A labelled choice among `options`, each `[value, text]`. */
+/**
+ * Options whose text is their value.
+ *
+ * @param {string[]} values
+ * @returns {[string, string][]}
+ */
+export const asOptions = (values) => values.map((each) => [each, each]);
+
+/**
+ * A labelled choice among `options`, each `[value, text]`.
+ *
+ * @template {string} V
+ * @param {{ id: string, label: string, value: V, options: [V, string][], commit: (value: V) => unknown, hidden?: boolean }} field
+ */
 export function choice({ id, label, value, options, commit, hidden = false }) {
   const select = h(
     "select",
-    { id, onchange: () => commit(select.value) },
+    { id, ...WRITES, onchange: () => commit(/** @type {V} */ (select.value)) },
     options.map(([key, text]) => h("option", { value: key }, text)),
   );
   select.value = value;
@@ -104,9 +144,11 @@ export function choice({ id, label, value, options, commit, hidden = false }) {
   );
 }
 
+/** @param {{ id: string, label: string, checked: boolean, commit: (on: boolean) => unknown }} field */
 export function checkbox({ id, label, checked, commit }) {
   const input = h("input", {
     type: "checkbox",
+    ...WRITES,
     id,
     checked,
     onchange: () => commit(input.checked),
@@ -114,13 +156,22 @@ export function checkbox({ id, label, checked, commit }) {
   return h("label", { className: "tick" }, input, label);
 }
 
-/** A small button that shows only an icon; disabled where it can do nothing. */
+/**
+ * A small button that shows only an icon; disabled where it can do nothing.
+ *
+ * @param {string} id
+ * @param {string} name
+ * @param {string} label
+ * @param {() => unknown} run
+ * @param {boolean} [disabled]
+ */
 export function tool(id, name, label, run, disabled = false) {
   return h(
     "button",
     {
       type: "button",
       className: "quiet icon",
+      ...WRITES,
       id,
       title: label,
       "aria-label": label,

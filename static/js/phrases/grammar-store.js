@@ -7,6 +7,7 @@ import { edit } from "../languages/revision-edit.js";
 
 /** @import { Grammar } from "../core/types.d.ts" */
 
+/** @type {Grammar} */
 const EMPTY = {
   start: null,
   end: null,
@@ -22,14 +23,18 @@ export const labels = () => state.gestures?.gestures.map(({ label }) => label) ?
 
 let drawAgain = () => {};
 
-/** Call `react` when a step was refused: the form then shows what is not. */
+/**
+ * Call `react` when a step was refused: the form then shows what is not.
+ *
+ * @param {() => void} react
+ */
 export const followRefusals = (react) => {
   drawAgain = react;
 };
 
 // One after the other: a field may be left by pressing the next button.
-/** @type {Promise<any>} */
-let working = Promise.resolve();
+/** @type {Promise<boolean>} */
+let working = Promise.resolve(true);
 
 /**
  * Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to

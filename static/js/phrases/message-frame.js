@@ -1,25 +1,25 @@
 // The panel of a message's frame: gestures that open, close and cancel it, and the longest pause.
 
 import { h } from "../core/dom.js";
-import { choice, numberField } from "./form-fields.js";
+import { asOptions, choice, numberField } from "./form-fields.js";
 import { grammar, labels, save } from "./grammar-store.js";
 
+/** @import { Role } from "./grammar-edits.js" */
+
+/** @type {Record<Role, [string, string]>} */
 const TEXTS = {
   start: ["Starts with", "none: any phrase may begin"],
   end: ["Ends with", "none: a pause ends it"],
   cancel: ["Cancelled by", "none"],
 };
 
+/** @param {Role} name */
 function role(name) {
   const whole = grammar();
   const [label, none] = TEXTS[name];
   const others = name === "cancel" ? [whole.start, whole.end] : [whole.cancel];
-  const options = [
-    ["", none],
-    ...labels()
-      .filter((each) => !others.includes(each))
-      .map((each) => [each, each]),
-  ];
+  /** @type {[string, string][]} */
+  const options = [["", none], ...asOptions(labels().filter((each) => !others.includes(each)))];
   return choice({
     id: `frame-${name}`,
     label,

@@ -13,12 +13,23 @@ import { addButtons, partList } from "./phrase-parts.js";
 import { sequence } from "./phrase-sequence.js";
 import { found, showExample } from "./phrase-trial.js";
 
+/** @import { Phrase } from "../core/types.d.ts" */
+
+/**
+ * @param {Phrase} phrase
+ * @param {string} title
+ * @param {Partial<Phrase>} change
+ */
 const put = (phrase, title, change) =>
   save(
     title,
     inPhrase(phrase.name, (whole) => ({ ...whole, ...change })),
   );
 
+/**
+ * @param {Phrase} phrase
+ * @param {string} text
+ */
 async function rename(phrase, text) {
   const name = text.trim();
   const kept = await put(phrase, `Rename to ${name}`, { name });
@@ -29,6 +40,7 @@ async function rename(phrase, text) {
   return kept;
 }
 
+/** @param {Phrase} phrase */
 async function remove(phrase) {
   const title = `Deletion of ${phrase.name}`;
   if (
@@ -42,6 +54,10 @@ async function remove(phrase) {
   showDone("Phrase deleted", phrase.name);
 }
 
+/**
+ * @param {Phrase} phrase
+ * @param {string} text
+ */
 function command(phrase, text) {
   const { command: value, problem } = read(text);
   if (!problem) return put(phrase, "Command", { command: value });
@@ -49,6 +65,10 @@ function command(phrase, text) {
   return false;
 }
 
+/**
+ * @param {Phrase} phrase
+ * @param {number} place
+ */
 function form(phrase, place) {
   const slots = slotsOf(phrase).map((slot) => `{${slot.slot}}`);
   const hint = slots.length
@@ -92,7 +112,12 @@ function form(phrase, place) {
   );
 }
 
-/** Draw a phrase. */
+/**
+ * Draw a phrase.
+ *
+ * @param {Phrase} phrase
+ * @param {number} place
+ */
 export function phraseCard(phrase, place) {
   const open = state.phrase === phrase.name;
   const doubts = found()?.ambiguities.filter(({ phrases }) => phrases.includes(phrase.name)) ?? [];

@@ -1,7 +1,7 @@
 // The form of a phrase's parts: gestures, slots, and groups of both.
 
-import { h, icon } from "../core/dom.js";
-import { checkbox, choice, numberField, textField, tool } from "./form-fields.js";
+import { h, icon, WRITES } from "../core/dom.js";
+import { asOptions, checkbox, choice, numberField, textField, tool } from "./form-fields.js";
 import {
   gesturePart,
   inPart,
@@ -15,24 +15,44 @@ import {
 } from "./grammar-edits.js";
 import { grammar, labels, save } from "./grammar-store.js";
 
-/** @import { Phrase } from "../core/types.d.ts" */
+/** @import { GesturesPart, Grammar, GroupPart, Phrase, PhrasePart, SlotPart } from "../core/types.d.ts" */
 
+/** @type {[string, string]} */
+const TAKE_OUT = ["", "take out"];
+
+/** @param {number[]} path */
 const idOf = (path) => `part-${path.join("-")}`;
 
-/** Change one part of a phrase. */
+/**
+ * Change one part of a phrase.
+ *
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {string} title
+ * @param {Partial<GesturesPart> | Partial<SlotPart>} change
+ */
 const put = (phrase, path, title, change) =>
   save(
     title,
     inPhrase(
       phrase.name,
-      inPart(path, (part) => ({ ...part, ...change })),
+      inPart(path, (part) => Object.assign({ ...part }, change)),
     ),
   );
 
+/**
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {GesturesPart} part
+ */
 function gestures(phrase, path, part) {
   const { cancel } = grammar();
   const several = part.gestures.length > 1;
   const free = labels().filter((label) => label !== cancel && !part.gestures.includes(label));
+  /**
+   * @param {string[]} list
+   * @param {string} title
+   */
   const pick = (list, title) => put(phrase, path, title, { gestures: list });
   const chosen = part.gestures.flatMap((label, index) => [
     index ? h("span", { className: "dim" }, "or") : null,
@@ -41,11 +61,7 @@ function gestures(phrase, path, part) {
       label: index ? `Or gesture ${index + 1}` : "Gesture",
       hidden: true,
       value: label,
-      options: [
-        [label, label],
-        ...free.map((each) => [each, each]),
-        ...(several ? [["", "take out"]] : []),
-      ],
+      options: [...asOptions([label, ...free]), ...(several ? [TAKE_OUT] : [])],
       commit: (value) =>
         pick(
           value
@@ -61,7 +77,7 @@ function gestures(phrase, path, part) {
         label: "Or another gesture",
         hidden: true,
         value: "",
-        options: [["", "or\u2026"], ...free.map((each) => [each, each])],
+        options: [["", "or\u2026"], ...asOptions(free)],
         commit: (value) => pick([...part.gestures, value], `Or ${value}`),
       })
     : null;
@@ -74,6 +90,11 @@ function gestures(phrase, path, part) {
   );
 }
 
+/**
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {SlotPart} part
+ */
 function slot(phrase, path, part) {
   const types = grammar().slot_types;
   const readsAs = types.find(({ name }) => name === part.type)?.reads_as;
@@ -97,14 +118,14 @@ function slot(phrase, path, part) {
       id: `${id}-type`,
       label: "filled by",
       value: part.type,
-      options: types.map(({ name }) => [name, name]),
+      options: asOptions(types.map(({ name }) => name)),
       commit: (type) => put(phrase, path, `Filled by ${type}`, { type, default: null }),
     }),
     part.least === 0
       ? textField({
           id: `${id}-default`,
           label: "otherwise",
-          value: part.default === null ? "" : String(part.default),
+          value: String(part.default ?? ""),
           placeholder: "nothing",
           commit: (text) =>
             put(phrase, path, `Otherwise ${text || "nothing"}`, {
@@ -115,6 +136,11 @@ function slot(phrase, path, part) {
   );
 }
 
+/**
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {GroupPart} part
+ */
 function group(phrase, path, part) {
   return h(
     "div",
@@ -125,19 +151,39 @@ function group(phrase, path, part) {
   );
 }
 
-/** @type {[string, (phrase: Phrase, path: number[], part: any) => HTMLElement, string][]} */
-const KINDS = [
-  ["gestures", gestures, "gesture"],
-  ["slot", slot, "slot"],
-  ["parts", group, "group"],
-];
+/** @param {PhrasePart} part */
+const nounOf = (part) => ("parts" in part ? "group" : "slot" in part ? "slot" : "gesture");
 
+/**
+ * What is shown, of a part of any kind.
+ *
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {PhrasePart} part
+ * @returns {HTMLElement}
+ */
+function whatOf(phrase, path, part) {
+  if ("parts" in part) return group(phrase, path, part);
+  return "slot" in part ? slot(phrase, path, part) : gestures(phrase, path, part);
+}
+
+/**
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {PhrasePart} part
+ * @param {number} count
+ */
 function partRow(phrase, path, part, count) {
-  const [, draw, noun] = KINDS.find(([key]) => part[key]) ?? KINDS[0];
-  const [list, index] = [path.slice(0, -1), path.at(-1)];
+  const noun = nounOf(part);
+  const [list, index] = [path.slice(0, -1), path.at(-1) ?? 0];
   const id = idOf(path);
   const what = `${noun} ${path.map((place) => place + 1).join(".")}`;
+  /**
+   * @param {string} title
+   * @param {(parts: PhrasePart[]) => PhrasePart[]} change
+   */
   const rearrange = (title, change) => save(title, inPhrase(phrase.name, inParts(list, change)));
+  /** @param {string} text */
   const times = (text) => {
     const most = Number(text);
     return put(phrase, path, `Up to ${text} times`, { most, least: Math.min(part.least, most) });
@@ -145,7 +191,7 @@ function partRow(phrase, path, part, count) {
   return h(
     "li",
     { className: `part${part.least === 0 ? " optional" : ""}` },
-    draw(phrase, path, part),
+    whatOf(phrase, path, part),
     h(
       "div",
       { className: "part-often" },
@@ -156,7 +202,7 @@ function partRow(phrase, path, part, count) {
         commit: (on) =>
           put(phrase, path, on ? "May be left out" : "Must be shown", {
             least: on ? 0 : 1,
-            ...(part.slot ? { default: null } : {}),
+            ...("slot" in part ? { default: null } : {}),
           }),
       }),
       numberField({
@@ -201,7 +247,13 @@ function partRow(phrase, path, part, count) {
   );
 }
 
-/** Draw the parts that `path` leads to. */
+/**
+ * Draw the parts that `path` leads to.
+ *
+ * @param {Phrase} phrase
+ * @param {number[]} path
+ * @param {PhrasePart[]} parts
+ */
 export function partList(phrase, path, parts) {
   return h(
     "ol",
@@ -213,9 +265,18 @@ export function partList(phrase, path, parts) {
   );
 }
 
-/** Draw the buttons that add a part there; a group holds no groups. */
+/**
+ * Draw the buttons that add a part there; a group holds no groups.
+ *
+ * @param {Phrase} phrase
+ * @param {number[]} [path]
+ */
 export function addButtons(phrase, path = []) {
   const id = `add-${path.join("-")}`;
+  /**
+   * @param {string} title
+   * @param {(base: Grammar) => PhrasePart} make
+   */
   const add = (title, make) =>
     save(title, (base) =>
       inPhrase(
@@ -223,8 +284,18 @@ export function addButtons(phrase, path = []) {
         inParts(path, (parts) => [...parts, make(base)]),
       )(base),
     );
+  /**
+   * @param {string} kind
+   * @param {string} text
+   * @param {() => unknown} run
+   */
   const button = (kind, text, run) =>
-    h("button", { type: "button", id: `${id}-${kind}`, onclick: run }, icon("plus"), text);
+    h(
+      "button",
+      { type: "button", id: `${id}-${kind}`, ...WRITES, onclick: run },
+      icon("plus"),
+      text,
+    );
   return h(
     "div",
     { className: "part-add" },

@@ -3,16 +3,23 @@
 import { h } from "../core/dom.js";
 import { grammar } from "./grammar-store.js";
 
+/** @import { Phrase, PhrasePart } from "../core/types.d.ts" */
+
+/** @param {Pick<PhrasePart, "least" | "most">} part */
 const often = ({ least, most }) =>
   most === 1 ? "" : least === most ? ` \u00d7${most}` : ` \u00d7${Math.max(least, 1)}\u2013${most}`;
 
+/**
+ * @param {PhrasePart} part
+ * @returns {HTMLElement}
+ */
 function chip(part) {
   const optional = part.least === 0;
   const note = optional ? h("span", { className: "visually-hidden" }, " (may be left out)") : null;
   const look = optional ? " optional" : "";
-  if (part.parts)
+  if ("parts" in part)
     return h("span", { className: `chip-group${look}` }, part.parts.map(chip), often(part), note);
-  if (part.slot)
+  if ("slot" in part)
     return h(
       "span",
       { className: `chip slot${look}`, title: `a gesture of ${part.type}` },
@@ -23,9 +30,14 @@ function chip(part) {
   return h("span", { className: `chip${look}` }, part.gestures.join(" or "), often(part), note);
 }
 
+/** @param {string | null | undefined} label */
 const frame = (label) => (label ? h("span", { className: "chip frame" }, label) : null);
 
-/** Draw a phrase with what opens and closes it. */
+/**
+ * Draw a phrase with what opens and closes it.
+ *
+ * @param {Phrase} phrase
+ */
 export function sequence(phrase) {
   const { start, end } = grammar();
   return h(

@@ -7,18 +7,27 @@ import { attempt } from "../core/toasts.js";
 import { called, ROLES } from "./grammar-edits.js";
 import { grammar, saved } from "./grammar-store.js";
 
+/** @import { Gesture, PhraseEvent, PhrasesAnswer } from "../core/types.d.ts" */
+
 /** After these a message is over, and the next gesture begins another one. */
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
+/** @type {Record<string, string>} */
 const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
 
 // `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
+/** @type {{ key: string, view: PhrasesAnswer | null, settled: boolean } | null} */
 let answer = null;
+/** @type {(() => void)[]} */
 const listeners = [];
 
 /** What is known of the phrases on display, or null. */
 export const found = () => answer?.view ?? null;
 
-/** Call `react` whenever something new is known. */
+/**
+ * Call `react` whenever something new is known.
+ *
+ * @param {() => void} react
+ */
 export const followFound = (react) => listeners.push(react);
 
 /**
@@ -27,12 +36,17 @@ export const followFound = (react) => listeners.push(react);
  */
 const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
+/** @param {string[]} gestures */
 export const show = (gestures) =>
   update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
 
 let loading = Promise.resolve(); // what is asked of the server now
 
-/** Show a phrase with all its parts, as it is once what was pressed before is saved. */
+/**
+ * Show a phrase with all its parts, as it is once what was pressed before is saved.
+ *
+ * @param {string} name
+ */
 export async function showExample(name) {
   await saved();
   await loading;
@@ -41,8 +55,9 @@ export async function showExample(name) {
 
 const last = () => found()?.events.at(-1) ?? null;
 
+/** @param {string} gesture */
 function add(gesture) {
-  const over = state.paused || (answer.settled && OVER.has(last()?.kind));
+  const over = state.paused || (answer?.settled && OVER.has(last()?.kind ?? ""));
   show(over ? [gesture] : [...shown(), gesture]);
 }
 
@@ -56,18 +71,20 @@ async function load() {
   const loaded = await attempt("Trying the phrases", () =>
     api.languages.phrases(language, shown(), paused !== null),
   );
-  if (!loaded || answer.key !== key) return;
+  if (!loaded || answer?.key !== key) return;
   answer = { key, view: loaded, settled: true };
   for (const react of listeners) react();
 }
 
 const canSpeak = () => "speechSynthesis" in window;
 
+/** @param {string} text */
 function speak(text) {
   speechSynthesis.cancel();
   speechSynthesis.speak(Object.assign(new SpeechSynthesisUtterance(text), { lang: "en" }));
 }
 
+/** @param {PhraseEvent | null} event */
 function drawAnswer(event) {
   const over = event && OVER.has(event.kind);
   const kind = event?.kind ?? "nothing";
@@ -87,6 +104,7 @@ function drawAnswer(event) {
   );
 }
 
+/** @param {PhraseEvent | null} event */
 function commands(event) {
   if (!event?.mission) return null;
   return h(
@@ -112,10 +130,15 @@ function commands(event) {
 
 /**
  * A gesture to click; one that is drawn stays the same button, so that no click on it gets lost.
+ *
+ * @param {Gesture} gesture
+ * @param {boolean} next
+ * @param {HTMLElement | undefined} item
  */
 function gestureButton({ label, thumbnail }, next, item) {
-  if (!item) {
-    item = h(
+  const drawn =
+    item ??
+    h(
       "li",
       {},
       h(
@@ -126,17 +149,18 @@ function gestureButton({ label, thumbnail }, next, item) {
         h("small"),
       ),
     );
-  }
-  const [button, picture] = [item.firstChild, item.querySelector("img")];
+  const button = /** @type {HTMLElement} */ (drawn.querySelector("button"));
+  const picture = /** @type {HTMLImageElement} */ (drawn.querySelector("img"));
   button.classList.toggle("next", next);
   button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
   if (picture.getAttribute("src") !== thumbnail) picture.src = thumbnail;
-  item.querySelector("small").textContent = next
-    ? "next"
-    : ROLES.filter((role) => grammar()[role] === label).join(", ");
-  return item;
+  drawn
+    .querySelector("small")
+    ?.replaceChildren(next ? "next" : ROLES.filter((role) => grammar()[role] === label).join(", "));
+  return drawn;
 }
 
+/** @param {string} label */
 const chip = (label) =>
   h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
 

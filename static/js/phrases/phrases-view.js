@@ -1,6 +1,6 @@
 // The phrases view: a form for the phrases, their ambiguities, and a trial by clicked gestures.
 
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { showDone } from "../core/undo.js";
@@ -12,6 +12,8 @@ import { framePanel } from "./message-frame.js";
 import { phraseCard } from "./phrase-card.js";
 import { followFound, found, show, trialPanel } from "./phrase-trial.js";
 import { slotTypesPanel } from "./slot-types.js";
+
+/** @import { Grammar } from "../core/types.d.ts" */
 
 async function addPhrase() {
   const name = free(
@@ -86,7 +88,7 @@ function beginning() {
     ),
     h(
       "button",
-      { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+      { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
       icon("plus"),
       "Add the first phrase",
     ),
@@ -120,7 +122,7 @@ function list() {
       h("span", { className: "spacer" }),
       h(
         "button",
-        { type: "button", className: "primary", id: "add-phrase", onclick: addPhrase },
+        { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
         icon("plus"),
         "New phrase",
       ),
@@ -136,7 +138,11 @@ function shownKey() {
   return JSON.stringify([id, name, labels(), kept, phrase, found()?.ambiguities]);
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   const title = h("h1");
   const says = h("div", { className: "verdict-place" });
@@ -145,6 +151,7 @@ export function open(section) {
   const columns = h("div", { className: "phrase-columns" }, form, trial);
   const none = h("div");
   let drawn = "";
+  /** @param {Grammar | null | undefined} kept */
   const drawForm = (kept) => {
     trial.hidden = !grammar().phrases.length;
     columns.classList.toggle("alone", trial.hidden);
@@ -161,7 +168,7 @@ export function open(section) {
           {},
           h(
             "button",
-            { type: "button", className: "quiet", id: "take-out", onclick: takeOut },
+            { type: "button", className: "quiet", id: "take-out", ...WRITES, onclick: takeOut },
             "Take all phrases out",
           ),
         ),

@@ -1,7 +1,7 @@
 // The panel of slot types: gestures, each with the value it stands for.
 
-import { h, icon } from "../core/dom.js";
-import { choice, textField, tool } from "./form-fields.js";
+import { h, icon, WRITES } from "../core/dom.js";
+import { asOptions, choice, textField, tool } from "./form-fields.js";
 import {
   inSlotType,
   rememberName,
@@ -13,16 +13,28 @@ import {
 } from "./grammar-edits.js";
 import { grammar, labels, save } from "./grammar-store.js";
 
+/** @import { SlotType, SlotValue } from "../core/types.d.ts" */
+
+/** @type {[SlotType["reads_as"], string][]} */
 const READS = [
   ["number", "a number each"],
   ["text", "a word each"],
   ["digits", "digits of one number"],
 ];
 
+/**
+ * @param {string} name
+ * @param {(values: SlotValue[]) => SlotValue[]} change
+ */
 const inValues = (name, change) =>
   inSlotType(name, (each) => ({ ...each, values: change(each.values) }));
 
-/** What a value becomes where the slot type reads its gestures otherwise. */
+/**
+ * What a value becomes where the slot type reads its gestures otherwise.
+ *
+ * @param {SlotValue[]} values
+ * @param {SlotType["reads_as"]} readsAs
+ */
 const converted = (values, readsAs) =>
   values.map(({ gesture, value }, index) => {
     if (readsAs === "text") return { gesture, value: String(value) };
@@ -33,12 +45,19 @@ const converted = (values, readsAs) =>
     return { gesture, value: fits ? number : index % 10 };
   });
 
+/**
+ * @param {SlotType} type
+ * @param {number} place
+ * @param {SlotValue} value
+ * @param {number} index
+ */
 function valueRow(type, place, { gesture, value }, index) {
   const id = `slot-type-${place}-value-${index}`;
   const taken = type.values.map((each) => each.gesture);
-  const options = labels()
-    .filter((label) => label === gesture || !taken.includes(label))
-    .map((label) => [label, label]);
+  const options = asOptions(
+    labels().filter((label) => label === gesture || !taken.includes(label)),
+  );
+  /** @param {Partial<SlotValue>} change */
   const put = (change) =>
     inValues(type.name, (values) =>
       values.map((each, at) => (at === index ? { ...each, ...change } : each)),
@@ -77,10 +96,13 @@ function valueRow(type, place, { gesture, value }, index) {
   );
 }
 
+/** @param {SlotType} type */
 function addValue(type) {
   const left = labels().filter((label) => !type.values.some(({ gesture }) => gesture === label));
   const next =
-    type.reads_as === "text" ? null : Math.max(...type.values.map(({ value }) => value)) + 1;
+    type.reads_as === "text"
+      ? null
+      : Math.max(...type.values.map(({ value }) => Number(value))) + 1;
   return save(
     `${type.name}: ${left[0]}`,
     inValues(type.name, (values) => [
@@ -93,6 +115,10 @@ function addValue(type) {
   );
 }
 
+/**
+ * @param {SlotType} type
+ * @param {string} name
+ */
 async function rename(type, name) {
   const kept = await save(`Rename to ${name}`, (base) =>
     withSlotTypeRenamed(base, type.name, name),
@@ -101,6 +127,10 @@ async function rename(type, name) {
   return kept;
 }
 
+/**
+ * @param {SlotType} type
+ * @param {number} place
+ */
 function slotType(type, place) {
   const id = `slot-type-${place}`;
   const users = grammar()
@@ -158,6 +188,7 @@ function slotType(type, place) {
       {
         type: "button",
         className: "link",
+        ...WRITES,
         id: `${id}-add`,
         onclick: () => addValue(type),
         hidden: type.values.length === labels().length,
@@ -188,6 +219,7 @@ export function slotTypesPanel() {
         {
           type: "button",
           id: "add-slot-type",
+          ...WRITES,
           onclick: () => save("New values", (base) => withSlotType(base, labels())),
         },
         icon("plus"),

@@ -2,13 +2,17 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
-import { h, iconButton } from "../core/dom.js";
+import { h, iconButton, WRITES } from "../core/dom.js";
 import { moment, percent, plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { address, go, here } from "../core/views.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
+
+/** @import { PracticeAnswer, PracticeRecord, PracticeTake } from "../core/types.d.ts" */
+
+/** @typedef {(take: PracticeTake) => void} Remove */
 
 const KEY = "osg-studio.diver"; // sessionStorage: one diver practises in a tab.
 const LONGEST_NAME = 80;
@@ -23,7 +27,11 @@ function shownClips() {
   return state.clips.filter(({ id, status }) => status === "done" && !demonstrations.has(id));
 }
 
-/** What the evidence says, and what is missing, in words. */
+/**
+ * What the evidence says, and what is missing, in words.
+ *
+ * @param {Omit<PracticeRecord, "diver" | "older" | "shown">} record
+ */
 export function evidenceOf({ takes, errors, bound, limit: most, reached, more, confidence }) {
   const counted = `${plural(errors, "error")} in ${plural(takes, "take")}`;
   const sure = `${percent(confidence)} confidence`;
@@ -32,6 +40,7 @@ export function evidenceOf({ takes, errors, bound, limit: most, reached, more, c
     : `${counted}: ${plural(more, "more take")} without an error for under ${percent(most)} errors at ${sure}.`;
 }
 
+/** @param {PracticeTake} take */
 const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
   clip,
   recognition,
@@ -41,6 +50,10 @@ const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
   frame: null,
 });
 
+/**
+ * @param {PracticeTake} take
+ * @param {Remove} remove
+ */
 function takeRow(take, remove) {
   const clip = state.clips.find(({ id }) => id === take.clip_id);
   const place = placeOf(take);
@@ -62,10 +75,14 @@ function takeRow(take, remove) {
           clip.name,
         )
       : h("span", { className: "dim" }, "its clip was deleted"),
-    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take)),
+    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take), WRITES),
   );
 }
 
+/**
+ * @param {PracticeRecord} record
+ * @param {Remove} remove
+ */
 function recordCard(record, remove) {
   const needed = record.takes + record.more;
   return h(
@@ -98,7 +115,11 @@ function recordCard(record, remove) {
   );
 }
 
-/** What to tell the diver about the take that was just shown. */
+/**
+ * What to tell the diver about the take that was just shown.
+ *
+ * @param {PracticeAnswer} answer
+ */
 function feedback({ take, sentence, lesson, notes }) {
   return [
     h(
@@ -119,7 +140,11 @@ function feedback({ take, sentence, lesson, notes }) {
   ].filter((each) => each !== null);
 }
 
-/** Build the view. */
+/**
+ * Build the view.
+ *
+ * @param {HTMLElement} section
+ */
 export function open(section) {
   const diver = limit(
     h("input", {
@@ -137,12 +162,17 @@ export function open(section) {
   const gesture = h("select", { id: "practice-gesture" });
   const clip = h("select", { id: "practice-clip" });
   const picture = h("img", { className: "practice-picture", alt: "", width: 160, height: 160 });
-  const show = h("button", { type: "submit", className: "primary" }, "Show it by this clip");
+  const show = h(
+    "button",
+    { type: "submit", className: "primary", ...WRITES },
+    "Show it by this clip",
+  );
   const answer = h("div", { className: "practice-answer", role: "status" });
   const records = h("div", { className: "practice-records" });
   const note = h("p", { className: "dim" });
   let offered = "";
 
+  /** @param {PracticeRecord[] | null} all */
   const drawRecords = (all) =>
     records.replaceChildren(
       ...(all ?? []).map((each) => recordCard(each, remove)),
@@ -156,6 +186,7 @@ export function open(section) {
     if (all && language === state.language) drawRecords(all);
   }
 
+  /** @param {PracticeTake} take */
   async function remove(take) {
     drawRecords(
       await attempt("Removing the take", () => api.practice.remove(state.language ?? "", take.id)),
@@ -211,6 +242,10 @@ export function open(section) {
 
   gesture.onchange = drawPicture;
   clip.onchange = followName;
+  /**
+   * @param {string} label
+   * @param {HTMLElement} input
+   */
   const field = (label, input) =>
     h("div", { className: "field" }, h("label", { for: input.id }, label), input);
   const form = h(

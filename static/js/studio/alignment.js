@@ -7,22 +7,41 @@ import { state, update } from "../core/state.js";
 import { chooseJoint, partsOf, roleOf, sum } from "./alignment-parts.js";
 import { seek } from "./playback.js";
 
+/** @import { Alignment, Explanation, Place, State } from "../core/types.d.ts" */
+
+/** @typedef {{ left: number, top: number, width: number, height: number }} Box */
+
+/** @typedef {ReturnType<typeof partsOf>[number]} Part */
+
 const MARGIN = 0.12; // of the longer side, around all that moves
 const LETTERS = 0.075; // height of a number in the drawing, as a share of it
 
+/** @param {number} share */
 const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 
+/** @type {{ joint: string, draw: () => void, show: (seconds: number) => void } | null} */
 let follower = null; // Moves the cursor of the drawings on display.
+/** @type {string | null} */
 let shown = null; // The joint that was drawn last: another recognition of the take keeps it.
 
-/** The alignments of the paths, that with the expected gesture first. */
+/**
+ * The alignments of the paths, that with the expected gesture first.
+ *
+ * @param {Explanation} why
+ */
 const pathsOf = (why) => why.alignments.filter(({ voter, query }) => voter === "path" && query);
 
-/** The box around a joint's paths in all the drawings, so that all have one scale. */
+/**
+ * The box around a joint's paths in all the drawings, so that all have one scale.
+ *
+ * @param {Alignment[]} alignments
+ * @param {number} part
+ * @returns {Box | null}
+ */
 function boxOf(alignments, part) {
   const places = alignments
     .flatMap(({ query, gesture }) => [...query, ...gesture].map((step) => step[part]))
-    .filter(Boolean);
+    .filter((place) => place !== null);
   if (!places.length) return null;
   const [xs, ys] = [places.map(([x]) => x), places.map(([, y]) => y)];
   const [width, height] = [Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)];
@@ -35,22 +54,42 @@ function boxOf(alignments, part) {
   };
 }
 
+/** @param {NonNullable<Place>} place */
 const at = ([x, y]) => `${x.toFixed(3)} ${y.toFixed(3)}`;
+/**
+ * @param {Place[][]} steps
+ * @param {number} part
+ */
 const line = (steps, part) =>
   steps
     .map((step) => step[part])
-    .filter(Boolean)
+    .filter((place) => place !== null)
     .map((place, index) => `${index ? "L" : "M"}${at(place)}`)
     .join("");
+/**
+ * @param {Place} from
+ * @param {Place} to
+ */
 const between = (from, to) => (from && to ? `M${at(from)}L${at(to)}` : "");
 // A line without length has round ends: a dot.
+/** @param {Place} place */
 const dot = (place) => (place ? `M${at(place)}h0` : "");
 
-/** What each pair of moments costs at one joint, as a share of the whole distance. */
+/**
+ * What each pair of moments costs at one joint, as a share of the whole distance.
+ *
+ * @param {Alignment} alignment
+ * @param {number} part
+ */
 function sharesOf({ costs, distance }, part) {
   return costs.map((step) => step[part] / (distance || 1));
 }
 
+/**
+ * @param {Alignment} alignment
+ * @param {number} part
+ * @param {number[]} shares
+ */
 function drawnLinks({ pairs, query, gesture }, part, shares) {
   const most = Math.max(...shares) || 1;
   return pairs.map(([one, other], index) => {
@@ -64,7 +103,14 @@ function drawnLinks({ pairs, query, gesture }, part, shares) {
   });
 }
 
-/** The number at the pair that costs most. */
+/**
+ * The number at the pair that costs most.
+ *
+ * @param {Alignment} alignment
+ * @param {number} part
+ * @param {number[]} shares
+ * @param {Box} box
+ */
 function worst({ pairs, query, gesture }, part, shares, box) {
   const index = shares.indexOf(Math.max(...shares));
   const [one, other] = [query[pairs[index][0]][part], gesture[pairs[index][1]][part]];
@@ -86,11 +132,17 @@ function worst({ pairs, query, gesture }, part, shares, box) {
   ];
 }
 
-/** Go to the moment of the take that is nearest to where the drawing was pressed. */
+/**
+ * Go to the moment of the take that is nearest to where the drawing was pressed.
+ *
+ * @param {SVGSVGElement} drawing
+ * @param {Alignment} alignment
+ * @param {number} part
+ */
 function seekByPress(drawing, { query, time }, part) {
   drawing.onclick = (event) => {
     const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
-      drawing.getScreenCTM().inverse(),
+      drawing.getScreenCTM()?.inverse(),
     );
     const far = query.map((step) =>
       step[part] ? Math.hypot(step[part][0] - point.x, step[part][1] - point.y) : Infinity,
@@ -100,12 +152,20 @@ function seekByPress(drawing, { query, time }, part) {
   };
 }
 
+/** @param {Alignment} alignment */
 const asCompared = ({ mirrored, backward }) =>
   [mirrored ? "as its mirror image" : "", backward ? "from its end" : ""]
     .filter(Boolean)
     .join(", ");
 
-/** Draw one alignment at one joint; `show(seconds)` moves its cursor. */
+/**
+ * Draw one alignment at one joint; `show(seconds)` moves its cursor.
+ *
+ * @param {Alignment} alignment
+ * @param {number} part
+ * @param {Box} box
+ * @param {Explanation} why
+ */
 function figure(alignment, part, box, why) {
   const { label, pairs, time, gesture_time: theirs, query, gesture, parts } = alignment;
   const shares = sharesOf(alignment, part);
@@ -135,6 +195,7 @@ function figure(alignment, part, box, why) {
   );
   seekByPress(drawing, alignment, part);
   const words = h("p", { className: "at dim" });
+  /** @param {number} seconds */
   const show = (seconds) => {
     const step = nearestFrame(time, seconds);
     const here = pairs.flatMap(([one], index) => (one === step ? [index] : []));
@@ -155,6 +216,10 @@ function figure(alignment, part, box, why) {
   return { element: h("figure", {}, caption, drawing, words), show };
 }
 
+/**
+ * @param {Part[]} parts
+ * @param {Part} chosen
+ */
 function joints(parts, chosen) {
   const options = parts.map(({ name, share }) =>
     h("option", { value: name }, `${readable(name)}, ${percent(share)}`),
@@ -171,10 +236,15 @@ function joints(parts, chosen) {
   return select;
 }
 
-/** Draw which moments correspond; null where the take and the gestures have no paths to compare. */
+/**
+ * Draw which moments correspond; null where the take and the gestures have no paths to compare.
+ *
+ * @param {Explanation | null} why
+ */
 export function alignmentsOf(why) {
   follower = null;
-  const alignments = why ? pathsOf(why) : [];
+  if (!why) return null;
+  const alignments = pathsOf(why);
   if (!alignments.length) return null;
   const box = h("section", { className: "alignments", "aria-label": "Which moments correspond" });
   const draw = () => {
@@ -218,7 +288,11 @@ export function showMoment() {
   if (follower && state.position) follower.show(state.position.time);
 }
 
-/** Draw the joint that was chosen. */
+/**
+ * Draw the joint that was chosen.
+ *
+ * @param {State} state
+ */
 export function showJoint({ joint }) {
   if (follower && joint && joint !== follower.joint) follower.draw();
 }

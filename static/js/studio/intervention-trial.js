@@ -2,7 +2,7 @@
 // is edited only when the intervention is kept.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -10,42 +10,74 @@ import { keepTuning } from "../languages/language-tuning.js";
 import { edit } from "../languages/revision-edit.js";
 import { rangeOf, recogniseWith } from "./stage.js";
 
-/** @import { Recognition } from "../core/types.d.ts" */
+/** @import { Intervention, Recognition, Trial, Tuning } from "../core/types.d.ts" */
 
 const currentResult = () => /** @type {Recognition} */ (state.result);
 
-/** What differs from the profile in the recognition on display. */
-/** @returns {any} */
+/**
+ * What differs from the profile in the recognition on display.
+ *
+ * @returns {Tuning}
+ */
 const tuning = () => currentResult().tuning ?? currentLanguage().tuning ?? { weights: {} };
 
-/** The weight factors with another one for a voter; 1 is none. */
+/**
+ * The weight factors with another one for a voter; 1 is none.
+ *
+ * @param {string} voter
+ * @param {number} factor
+ */
 function withFactor(voter, factor) {
   const weights = { ...tuning().weights, [voter]: factor };
   if (factor === 1) delete weights[voter];
   return weights;
 }
 
+/** @param {Partial<Tuning>} part */
 const tuned = (part) => ({ tuning: { ...tuning(), ...part } });
 
-const APPLY = {
-  trim: (change) => {
-    update({ take: null, start: change.start, end: change.end });
-    return {};
-  },
-  voter_weight: ({ voter, factor }) => {
-    const { weights } = tuning();
-    return tuned({ weights: { ...weights, [voter]: (weights[voter] ?? 1) * factor } });
-  },
-  weight_factor: ({ voter, factor }) => tuned({ weights: withFactor(voter, factor) }),
-  simplification: (change) => tuned({ simplification: change.tolerance }),
-  keypoint_repair: (change) => tuned({ keypoints_repaired: change.on }),
-  // Weights are for the voters of a profile.
-  profile: (change) => ({ profile: change.profile, ...tuned({ weights: {} }) }),
-  salient: (change) => changed(change, { salient: change.salient }),
-  switch: (change) => changed(change, { [change.switch]: change.position }),
-  demonstration: (change) => changed(change, { demonstration: rangeOf() }),
-  further_demonstration: (change) => changed(change, { demonstration: rangeOf(), further: true }),
-};
+/**
+ * The request's part for a changed gesture.
+ *
+ * @param {string} label
+ * @param {object} change
+ */
+const changed = (label, change) => ({ trial: { label, change } });
+
+/**
+ * The request's part for an intervention; a trim changes the selection instead.
+ *
+ * @param {Intervention} change
+ */
+function requestOf(change) {
+  switch (change.kind) {
+    case "trim":
+      update({ take: null, start: change.start, end: change.end });
+      return {};
+    case "voter_weight": {
+      const { weights } = tuning();
+      const factor = (weights[change.voter] ?? 1) * change.factor;
+      return tuned({ weights: { ...weights, [change.voter]: factor } });
+    }
+    case "weight_factor":
+      return tuned({ weights: withFactor(change.voter, change.factor) });
+    case "simplification":
+      return tuned({ simplification: change.tolerance });
+    case "keypoint_repair":
+      return tuned({ keypoints_repaired: change.on });
+    case "profile":
+      // Weights are for the voters of a profile.
+      return { profile: change.profile, ...tuned({ weights: {} }) };
+    case "salient":
+      return changed(change.label, { salient: change.salient });
+    case "switch":
+      return changed(change.label, { [change.switch]: change.position });
+    case "demonstration":
+      return changed(change.label, { demonstration: rangeOf() });
+    case "further_demonstration":
+      return changed(change.label, { demonstration: rangeOf(), further: true });
+  }
+}
 
 /** Changes of how the whole language is recognised. */
 const TUNING = new Set([
@@ -56,10 +88,11 @@ const TUNING = new Set([
   "profile",
 ]);
 
-/** The request's part for a changed gesture. */
-const changed = ({ label }, change) => ({ trial: { label, change } });
-
-/** Apply an intervention and recognise again; it can be discarded until it is kept. */
+/**
+ * Apply an intervention and recognise again; it can be discarded until it is kept.
+ *
+ * @param {{ change: Intervention }} found
+ */
 export async function tryOut({ change }) {
   const { recognition, take, start, end, trial } = state;
   const { profile, tuning: before, trial: tried } = currentResult();
@@ -68,7 +101,7 @@ export async function tryOut({ change }) {
       profile,
       tuning: before,
       trial: tried,
-      ...APPLY[change.kind](change),
+      ...requestOf(change),
     });
     if (result)
       update({
@@ -79,14 +112,20 @@ export async function tryOut({ change }) {
   }
 }
 
+/** @param {Trial} trial */
 const discard = ({ base }) => update({ trial: null, ...base });
 
-/** Edit the gesture as the trial changed its copy. */
+/**
+ * Edit the gesture as the trial changed its copy.
+ *
+ * @param {NonNullable<Recognition["trial"]>} trial
+ */
 const keepGesture = ({ label, change }) =>
   edit("Keeping the change", `Change of ${label}`, (language) =>
     api.languages.changeGesture(language, label, change),
   );
 
+/** @param {Trial} trial */
 async function keep({ change }) {
   const result = currentResult();
   const { words } = change;
@@ -106,7 +145,12 @@ async function keep({ change }) {
   } else toast("Range kept", "It is selected now: save it as a gesture, or recognise it again.");
 }
 
-/** Show the trial and its result, with buttons to keep or discard it. */
+/**
+ * Show the trial and its result, with buttons to keep or discard it.
+ *
+ * @param {Trial} trial
+ * @param {Recognition} result
+ */
 export function trialBar(trial, result) {
   const read = result.label ?? `nothing; nearest is ${result.nearest}`;
   return h(
@@ -121,7 +165,11 @@ export function trialBar(trial, result) {
     h(
       "span",
       { className: "joined" },
-      h("button", { type: "button", className: "primary", onclick: () => keep(trial) }, "Keep"),
+      h(
+        "button",
+        { type: "button", className: "primary", ...WRITES, onclick: () => keep(trial) },
+        "Keep",
+      ),
       h("button", { type: "button", onclick: () => discard(trial) }, "Discard"),
     ),
   );

@@ -2,14 +2,26 @@
 
 import { state, update } from "../core/state.js";
 
+/** @import { Position } from "../core/types.d.ts" */
+
+/** @typedef {{ do: "seek", frame: number } | { do: "step", frames: number } | { do: "play", speed: number } | { do: "loop", on: boolean }} Wish */
+
 const RETRY = 1000; // ms
 
+/** @type {WebSocket | null} */
 let socket = null;
+/** @type {string | null} */
 let workspace = null;
+/** @type {Wish[]} */
 let unsent = []; // commands from before the connection opened
+/** @type {number | null} */
 let wantedFrame = null; // from the URL, until the clip is shown
 
-/** Follow the clock of a workspace, and of another one when that one is gone. */
+/**
+ * Follow the clock of a workspace, and of another one when that one is gone.
+ *
+ * @param {string} id
+ */
 export function followClock(id) {
   workspace = id;
   unsent = [];
@@ -17,6 +29,7 @@ export function followClock(id) {
   connect(id);
 }
 
+/** @param {string} id */
 function connect(id) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const opened = new WebSocket(
@@ -36,17 +49,23 @@ function connect(id) {
   };
 }
 
+/** @param {Position} position */
 function received(position) {
   const rests = !position.playing && wantedFrame === null && state.takes !== null;
   update(rests ? { position, frame: position.frame } : { position });
 }
 
+/** @param {Wish} wish */
 function ask(wish) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wish));
   else unsent.push(wish);
 }
 
-/** Keep the frame that a link names, for `frameShown`. */
+/**
+ * Keep the frame that a link names, for `frameShown`.
+ *
+ * @param {number | null} frame
+ */
 export function rememberFrame(frame) {
   wantedFrame = frame;
 }
@@ -57,14 +76,30 @@ export function frameShown() {
   wantedFrame = null;
 }
 
-/** Show a frame of the clip, counted from 0. */
+/**
+ * Show a frame of the clip, counted from 0.
+ *
+ * @param {number} frame
+ */
 export const seek = (frame) => ask({ do: "seek", frame: Math.max(0, Math.round(frame)) });
 
-/** Pause, and go some frames on or back. */
+/**
+ * Pause, and go some frames on or back.
+ *
+ * @param {number} frames
+ */
 export const step = (frames) => ask({ do: "step", frames });
 
-/** Play that many times as fast as the camera saw it; backwards if negative, 0 pauses. */
+/**
+ * Play that many times as fast as the camera saw it; backwards if negative, 0 pauses.
+ *
+ * @param {number} speed
+ */
 export const play = (speed) => ask({ do: "play", speed });
 
-/** Repeat the range on display, or play on. */
+/**
+ * Repeat the range on display, or play on.
+ *
+ * @param {boolean} on
+ */
 export const loop = (on) => ask({ do: "loop", on });

@@ -6,17 +6,27 @@ import { readable } from "../core/format.js";
 import { firstMoment, insideFrame } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 
+/** @import { Poses } from "../core/types.d.ts" */
+
+/** @typedef {{ poses: Poses, body: SVGSVGElement, trails: SVGGElement, circles: SVGCircleElement[] }} Content */
+
 const DOT = 1 / 75; // Radius of a landmark, in the picture's larger side; touchable at 390 px.
 
-/** Build the picture; `onPick(landmark)` is called when one is clicked. */
+/**
+ * Build the picture; `onPick(landmark)` is called when one is clicked.
+ *
+ * @param {(landmark: string) => void} onPick
+ */
 export function figure(onPick) {
   const video = h("video", { muted: true, playsInline: true, preload: "auto", tabIndex: -1 });
   video.setAttribute("aria-hidden", "true");
   const over = h("div", { className: "figure-over" });
   const element = h("div", { className: "figure" }, video, over);
-  let poses = null;
-  let parts = null;
+  /** @type {Content | null} */
+  let content = null;
+  /** @type {number | null} */
   let wanted = null; // the moment of the clip to seek to as soon as the last seek is done
+  /** @type {number | null} */
   let start = null; // of the clip by the video's clock, as soon as that is known
 
   const seek = () => {
@@ -26,6 +36,7 @@ export function figure(onPick) {
   };
   video.onseeked = seek;
 
+  /** @param {string} source */
   async function load(source) {
     start = null;
     video.src = source;
@@ -35,8 +46,11 @@ export function figure(onPick) {
     seek();
   }
 
-  function show(next, clip) {
-    poses = next;
+  /**
+   * @param {Poses} poses
+   * @param {string | null} clip
+   */
+  function show(poses, clip) {
     const [width, height] = poses.frame_size;
     const radius = Math.max(width, height) * DOT;
     const body = skeleton(width, height);
@@ -51,7 +65,7 @@ export function figure(onPick) {
     body.append(trails, dots);
     element.style.setProperty("aspect-ratio", `${width} / ${height}`);
     over.replaceChildren(body);
-    parts = { body, trails, circles };
+    content = { poses, body, trails, circles };
     video.hidden = !clip;
     if (clip) load(api.clips.video(clip));
     else video.removeAttribute("src");
@@ -59,32 +73,43 @@ export function figure(onPick) {
 
   /**
    * Every landmark where `drawPose` of the page's skeleton expects it, as shares of the picture.
+   *
+   * @param {Poses} poses
+   * @param {number} frame
    */
-  function poseAt(frame) {
+  function poseAt(poses, frame) {
     const [width, height] = poses.frame_size;
     const at = new Map(poses.landmarks.map((name, index) => [name, poses.xy[frame][index]]));
     return LANDMARKS.map((name) => {
       const [x, y] = at.get(name) ?? [null, null];
-      return x === null ? null : [x / width, y / height];
+      return x === null || y === null ? null : [x / width, y / height];
     });
   }
 
+  /**
+   * @param {number} frame
+   * @param {[number, number]} range
+   * @param {string[]} chosen
+   */
   function draw(frame, [first, last], chosen) {
-    if (!poses) return;
-    drawPose(parts.body, poseAt(frame));
-    parts.circles.forEach((circle, index) => {
+    if (!content) return;
+    const { poses, body, trails, circles } = content;
+    drawPose(body, poseAt(poses, frame));
+    circles.forEach((circle, index) => {
       const [x, y] = poses.xy[frame][index];
       const name = poses.landmarks[index];
       circle.toggleAttribute("hidden", x === null);
       if (x === null) return;
-      circle.setAttribute("cx", x);
-      circle.setAttribute("cy", y);
+      circle.setAttribute("cx", String(x));
+      circle.setAttribute("cy", String(y));
       circle.classList.toggle("on", chosen.includes(name));
-      circle.firstChild.textContent = `${readable(name)}: ${chosen.includes(name) ? "followed; click to leave it out" : "click to follow it"}`;
+      const title = circle.querySelector("title");
+      if (title)
+        title.textContent = `${readable(name)}: ${chosen.includes(name) ? "followed; click to leave it out" : "click to follow it"}`;
     });
-    parts.trails.replaceChildren(
+    trails.replaceChildren(
       ...chosen.map((name) =>
-        svg("path", { d: trail(poses.landmarks.indexOf(name), first, last) }),
+        svg("path", { d: trail(poses, poses.landmarks.indexOf(name), first, last) }),
       ),
     );
     if (!video.hidden) {
@@ -93,7 +118,13 @@ export function figure(onPick) {
     }
   }
 
-  function trail(index, first, last) {
+  /**
+   * @param {Poses} poses
+   * @param {number} index
+   * @param {number} first
+   * @param {number} last
+   */
+  function trail(poses, index, first, last) {
     if (index < 0) return "";
     let down = false;
     return poses.xy

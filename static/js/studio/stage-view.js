@@ -7,10 +7,11 @@ import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/keys.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { movingWrists } from "./wrist-motion.js";
+
+/** @import { Clip, Poses } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: the cube was shown last.
-const STILL = 0.5; // Share of the larger wrist's path below which a wrist is no part of the stroke.
-const WRISTS = ["left_wrist", "right_wrist"];
 
 let cube = localStorage.getItem(KEY) !== null;
 let own = false; // whether the page draws the picture itself
@@ -81,13 +82,18 @@ export function drawRatio() {
     byId("lab-area").style.setProperty("--ratio", String(clip.width / clip.height));
 }
 
-/** @type {{ clip: string, poses: any, picture: any } | null} */
+/** @type {{ clip: string, poses: Poses, picture: ReturnType<typeof figure> } | null} */
 let shown = null;
 /** @type {string | null} */
 let loading = null;
 
-/** Draw the flat picture by the page, and say why; `retry` tries viser again where it may help. */
-export function drawByPage(reason, /** @type {(() => unknown) | null} */ retry = null) {
+/**
+ * Draw the flat picture by the page, and say why; `retry` tries viser again where it may help.
+ *
+ * @param {string} reason
+ * @param {(() => unknown) | null} [retry]
+ */
+export function drawByPage(reason, retry = null) {
   own = true;
   byId("flat").replaceChildren(
     h("div", { className: "flat-picture" }),
@@ -109,7 +115,11 @@ export function drawByViser() {
   draw();
 }
 
-/** Load the poses of a clip and build its picture; null when another clip is wanted by now. */
+/**
+ * Load the poses of a clip and build its picture; null when another clip is wanted by now.
+ *
+ * @param {Clip} clip
+ */
 async function load(clip) {
   if (loading === clip.id) return null;
   loading = clip.id;
@@ -131,27 +141,9 @@ export async function drawFlat() {
     shown = loaded;
   }
   const { poses, picture } = shown;
-  const range = selectedRange()?.shown ?? [0, poses.time.at(-1)];
+  const range = selectedRange()?.shown ?? [0, poses.time.at(-1) ?? 0];
   /** @type {[number, number]} */
   const frames = [nearestFrame(poses.time, range[0]), nearestFrame(poses.time, range[1])];
   const frame = Math.min(state.position?.frame ?? frames[0], poses.time.length - 1);
   picture.draw(frame, frames, movingWrists(poses, frames));
-}
-
-/** The wrists that move in a range of frames. */
-function movingWrists({ landmarks, xy }, [first, last]) {
-  const extents = WRISTS.map((name) => {
-    const at = landmarks.indexOf(name);
-    const places = xy
-      .slice(first, last + 1)
-      .map((points) => points[at])
-      .filter((place) => place && place[0] !== null);
-    const spread = (axis) => {
-      const values = places.map((place) => place[axis]);
-      return values.length ? Math.max(...values) - Math.min(...values) : 0;
-    };
-    return Math.max(spread(0), spread(1));
-  });
-  const most = Math.max(...extents);
-  return WRISTS.filter((_, index) => extents[index] > 0 && extents[index] >= STILL * most);
 }

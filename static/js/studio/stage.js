@@ -13,7 +13,7 @@ import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
 
-/** @import { SelectedRange } from "../core/types.d.ts" */
+/** @import { Recognition, SelectedRange, State } from "../core/types.d.ts" */
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
 
@@ -105,7 +105,11 @@ async function saveGesture() {
 /** The range on which the buttons act, as the API takes it. */
 export const rangeOf = () => query();
 
-/** Recognise what is selected; `extra` overrides parts of the request. */
+/**
+ * Recognise what is selected; `extra` overrides parts of the request.
+ *
+ * @param {object} extra
+ */
 export async function recogniseWith(extra = {}) {
   const body = {
     ...query(),
@@ -135,7 +139,11 @@ async function recognise() {
   button.disabled = false;
 }
 
-/** Recognise a clip that was asked about, as soon as its takes are there. */
+/**
+ * Recognise a clip that was asked about, as soon as its takes are there.
+ *
+ * @param {State} state
+ */
 export async function answerQuestion({ question, takes, clip }) {
   if (!question || question.clip !== clip || !takes) return;
   update({ question: null });
@@ -157,17 +165,25 @@ export async function loadResult() {
   }
 }
 
-/** The confidence, the weight of the voters that chose the nearest gesture, and a trial. */
+/**
+ * The confidence, the weight of the voters that chose the nearest gesture, and a trial.
+ *
+ * @param {Recognition} result
+ */
 const supportWords = (result) =>
   [
     `confidence ${percent(result.confidence)}`,
-    `voters with ${percent(supportOf(result).get(result.nearest) ?? 0)} of the weight`,
+    `voters with ${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the weight`,
     result.trial ? "on trial, not saved" : "",
   ]
     .filter(Boolean)
     .join(", ");
 
-/** Show what was recognised. */
+/**
+ * Show what was recognised.
+ *
+ * @param {State} state
+ */
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();

@@ -3,6 +3,8 @@
 import { h, svg } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
 
+/** @import { Timeline } from "../core/types.d.ts" */
+
 const HEIGHT = 30; // of the drawing, in its own units
 
 const CURVES = [
@@ -10,7 +12,13 @@ const CURVES = [
   { name: "left_wrist", className: "left", text: "left wrist\u2019s speed" },
 ];
 
-/** The path of a line through `values`, interrupted where there is none. */
+/**
+ * The path of a line through `values`, interrupted where there is none.
+ *
+ * @param {(number | null)[]} values
+ * @param {number} top
+ * @param {(index: number) => string} share
+ */
 export function linePath(values, top, share) {
   let down = false;
   return values
@@ -27,7 +35,11 @@ export function linePath(values, top, share) {
     .join("");
 }
 
-/** The largest of what ordinary frames show: a landmark that jumps must not flatten the rest. */
+/**
+ * The largest of what ordinary frames show: a landmark that jumps must not flatten the rest.
+ *
+ * @param {Pick<Timeline, "speed">} timeline
+ */
 export function topSpeed(timeline) {
   const values = CURVES.flatMap(({ name }) => timeline.speed[name])
     .filter((value) => value !== null)
@@ -35,10 +47,15 @@ export function topSpeed(timeline) {
   return Math.max(0.5, values[Math.floor(0.98 * (values.length - 1))] ?? 0);
 }
 
-/** The curves, over the same width as the takes. */
+/**
+ * The curves, over the same width as the takes.
+ *
+ * @param {Timeline} timeline
+ */
 export function curves(timeline) {
   const { time, salute, speed, unit } = timeline;
   const last = time.at(-1) || 1;
+  /** @param {number} index */
   const share = (index) => ((1000 * time[index]) / last).toFixed(1);
   const top = topSpeed(timeline);
   const tops = salute.map(

@@ -8,15 +8,22 @@ import { salutesIn, saluteWarning } from "../clips/salutes.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
+import { tracksArea } from "./tracks.js";
 
-/** @import { SelectedRange, Timeline } from "../core/types.d.ts" */
+/** @import { SelectedRange, Take, Timeline } from "../core/types.d.ts" */
 
+/**
+ * @param {number} seconds
+ * @param {number} duration
+ */
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 
+/** @param {number} duration */
 function tickStep(duration) {
   return [0.5, 1, 2, 5, 10, 30, 60, 120].find((step) => duration / step <= 10) ?? 300;
 }
 
+/** @param {number} duration */
 function ruler(duration) {
   const step = tickStep(duration);
   const ticks = [];
@@ -28,6 +35,11 @@ function ruler(duration) {
   return h("div", { className: "ruler", "aria-hidden": "true" }, ticks);
 }
 
+/**
+ * @param {Take} take
+ * @param {number} index
+ * @param {number} duration
+ */
 function takeButton(take, index, duration) {
   const chosen = state.take === index;
   const length = take.end - take.start || 1;
@@ -58,7 +70,13 @@ function takeButton(take, index, duration) {
   );
 }
 
-/** Where a salute opens or closes a take. */
+/**
+ * Where a salute opens or closes a take.
+ *
+ * @param {number} seconds
+ * @param {"opens" | "closes"} kind
+ * @param {number} duration
+ */
 function saluteMark(seconds, kind, duration) {
   return h(
     "span",
@@ -71,20 +89,36 @@ function saluteMark(seconds, kind, duration) {
   );
 }
 
+/**
+ * @param {Take} take
+ * @param {number} duration
+ */
 const saluteMarks = (take, duration) =>
   [
     saluteMark(take.start, "opens", duration),
     take.closed ? saluteMark(take.end, "closes", duration) : null,
-  ].filter(Boolean);
+  ].filter((mark) => mark !== null);
 
 /** When the last frame is shown: the right edge of the timeline. */
 const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
 
 const lastMoment = () => timeOfFrames().at(-1) || 1;
 
-/** The frame that is nearest to a moment. */
+/**
+ * The frame that is nearest to a moment.
+ *
+ * @param {number} seconds
+ */
 const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 
+/**
+ * How many frames a key moves a handle on.
+ *
+ * @type {Record<string, number>}
+ */
+const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
+
+/** @param {"start" | "end"} which */
 function handle(which) {
   const label = which === "start" ? "Start of the range" : "End of the range";
   const input = h("input", {
@@ -96,6 +130,7 @@ function handle(which) {
     "aria-label": label,
     title: `${label}: drag, or use the arrow keys, frame by frame`,
   });
+  /** @param {number} frame */
   const to = (frame) => {
     move(which, frame);
     seek(frame);
@@ -103,7 +138,7 @@ function handle(which) {
   input.oninput = () => to(frameAt(Number(input.value)));
   // The browser's own step would be a share of the length, not a frame.
   input.onkeydown = (event) => {
-    const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+    const way = WAYS[event.key];
     if (!way) return;
     event.preventDefault();
     to(
@@ -116,16 +151,25 @@ function handle(which) {
   return input;
 }
 
+/**
+ * @param {HTMLElement} track
+ * @param {SelectedRange} range
+ */
 function placeHandles(track, range) {
-  for (const which of ["start", "end"]) {
-    const input = track.querySelector(`.handle.${which}`);
+  for (const which of /** @type {const} */ (["start", "end"])) {
+    const input = /** @type {HTMLInputElement} */ (track.querySelector(`.handle.${which}`));
     const frame = frameAt(range[which]);
-    input.value = timeOfFrames()[frame];
+    input.value = String(timeOfFrames()[frame]);
     input.setAttribute("aria-valuetext", `frame ${frame}, ${moment(range[which])}`);
   }
 }
 
-/** Move one end of the range to a frame; from then on it is a range chosen by hand. */
+/**
+ * Move one end of the range to a frame; from then on it is a range chosen by hand.
+ *
+ * @param {"start" | "end"} which
+ * @param {number} frame
+ */
 function move(which, frame) {
   const time = timeOfFrames();
   const range = /** @type {SelectedRange} */ (selectedRange());
@@ -152,6 +196,10 @@ export const setEnd = () => {
   if (state.timeline && state.position) move("end", state.position.frame);
 };
 
+/**
+ * @param {SelectedRange} range
+ * @param {Take[]} takes
+ */
 function summary(range, takes) {
   const where = `${moment(range.start)} \u2013 ${moment(range.end)}`;
   if (range.take) {
@@ -162,14 +210,20 @@ function summary(range, takes) {
   return `No Vulcan salute was found; choose the range by hand: ${where}`;
 }
 
-/** Follow the pointer along the thumbnails or curves with the clock. */
+/**
+ * Follow the pointer along the thumbnails or curves with the clock.
+ *
+ * @param {HTMLElement} area
+ */
 function scrub(area) {
+  /** @param {PointerEvent} event */
   const to = (event) => {
     const { left, width } = area.getBoundingClientRect();
     seek(frameAt((lastMoment() * (event.clientX - left)) / width));
   };
   area.onpointerdown = (event) => {
-    if (event.button !== 0 || event.target.closest("button, input")) return;
+    if (event.button !== 0 || /** @type {Element} */ (event.target).closest("button, input"))
+      return;
     area.setPointerCapture(event.pointerId);
     to(event);
     area.onpointermove = to;
@@ -179,9 +233,17 @@ function scrub(area) {
   };
 }
 
-/** Replace what lies on the track; the handle that is dragged must stay the same element. */
+/**
+ * Replace what lies on the track; the handle that is dragged must stay the same element.
+ *
+ * @param {HTMLElement} track
+ * @param {Node[]} content
+ * @param {HTMLElement[]} takes
+ */
 function redrawTrack(track, content, takes) {
-  const focused = [...track.querySelectorAll(".take")].indexOf(document.activeElement);
+  const focused = [...track.querySelectorAll(".take")].findIndex(
+    (each) => each === document.activeElement,
+  );
   track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
   const film = track.querySelector(".filmstrip");
   if (film) film.after(...content);
@@ -248,6 +310,7 @@ export function drawTimeline() {
     { className: "along" },
     lane,
     behind,
+    tracksArea(),
     h("i", { className: "now", id: "now" }),
   );
   box.replaceChildren(along, h("div", { className: "under" }, ruler(duration), legend()));

@@ -3,12 +3,15 @@
 import { byId, h } from "../core/dom.js";
 import { go } from "../core/views.js";
 
+/** @typedef {{ title: string, text: string, places: string[] }} Step */
+
 const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
 const GAP = 12; // px between the card and what it points at.
 
 /**
  * Each step points at the first of its places that is visible; without one, the card stands alone.
  */
+/** @type {Step[]} */
 const STEPS = [
   {
     title: "One demonstration makes a gesture",
@@ -37,8 +40,11 @@ const STEPS = [
   },
 ];
 
+/** @type {HTMLElement | null} */
 let card = null;
+/** @type {Element | null} */
 let pointed = null; // what the card points at
+/** @type {HTMLElement | null} */
 let came = null; // where the focus was
 
 const seen = () => {
@@ -57,16 +63,23 @@ function remember() {
   }
 }
 
+/** @param {Element} element */
 const visible = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
 
+/** @param {Step} step */
 const placeOf = (step) =>
   step.places.flatMap((place) => [...document.querySelectorAll(place)]).find(visible) ?? null;
 
 /** Put the card where it hides nothing of what it points at, as far as the window has room. */
 function position() {
+  if (!card) return;
   const [ring, place] = [byId("tour-ring"), pointed];
   const { width, height } = card.getBoundingClientRect();
   const { innerWidth: w, innerHeight: t } = window;
+  /**
+   * @param {number} value
+   * @param {number} most
+   */
   const clamp = (value, most) => Math.max(GAP, Math.min(value, most - GAP));
   if (!place) {
     Object.assign(card.style, {
@@ -99,6 +112,7 @@ function position() {
   });
 }
 
+/** @param {KeyboardEvent} event */
 function escape(event) {
   if (event.key === "Escape" && !document.querySelector("dialog[open]")) end();
 }
@@ -115,6 +129,10 @@ function end() {
   remember();
 }
 
+/**
+ * @param {number} number
+ * @param {boolean} focus
+ */
 function show(number, focus) {
   const step = STEPS[number];
   const last = number === STEPS.length - 1;
@@ -131,7 +149,7 @@ function show(number, focus) {
     },
     last ? "Done" : number ? "Next" : "Show me",
   );
-  card.replaceChildren(
+  card?.replaceChildren(
     h("h2", { id: "tour-title" }, step.title),
     h("p", { id: "tour-text" }, step.text),
     h(
@@ -151,8 +169,9 @@ function show(number, focus) {
   if (focus) onward.focus();
 }
 
+/** @param {boolean} focus */
 function begin(focus) {
-  came = document.activeElement;
+  came = /** @type {HTMLElement | null} */ (document.activeElement);
   card = h("section", {
     className: "tour",
     role: "dialog",

@@ -7,7 +7,10 @@ import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./stage-view.js";
 import { setEnd, setStart } from "./timeline.js";
+import { toggleTracks, tracksButton } from "./tracks.js";
 import { showFlat } from "./workspace.js";
+
+/** @import { Binding, State } from "../core/types.d.ts" */
 
 const SPEEDS = [0.25, 0.5, 1, 2];
 const FASTEST = 16;
@@ -17,14 +20,22 @@ const speed = () => Number(byId("speed").value);
 
 const toggle = () => play(state.position?.playing ? 0 : speed());
 
-/** J and L: the other way at normal speed, or twice as fast the same way. */
+/**
+ * J and L: the other way at normal speed, or twice as fast the same way.
+ *
+ * @param {1 | -1} direction
+ */
 function shuttle(direction) {
   const { playing, speed: now } = state.position ?? { playing: false, speed: 1 };
   const same = playing && Math.sign(now) === direction;
   play(direction * (same ? Math.min(FASTEST, 2 * Math.abs(now)) : 1));
 }
 
-/** Choose the take after the one on display, or before it. */
+/**
+ * Choose the take after the one on display, or before it.
+ *
+ * @param {1 | -1} by
+ */
 function neighbour(by) {
   const { takes, take } = state;
   if (!takes?.length) return;
@@ -32,6 +43,12 @@ function neighbour(by) {
   if (takes[next]) update({ take: next, start: null, end: null, recognition: null });
 }
 
+/**
+ * @param {string} name
+ * @param {string} label
+ * @param {string} keys
+ * @param {() => unknown} onclick
+ */
 const button = (name, label, keys, onclick) =>
   h(
     "button",
@@ -101,11 +118,17 @@ export function buildTransport() {
         "End here",
       ),
     ),
+    tracksButton(),
     cubeButton(),
   );
   followChoice({ changed: showFlat, play: toggle });
   const when = () =>
     selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
+  /**
+   * @param {string[]} names
+   * @param {string} text
+   * @param {Binding["run"]} run
+   */
   const keys = (names, text, run) => bind({ keys: names, text, group: GROUP, run, when });
   keys(["Space"], "Play or pause", toggle);
   keys([","], "One frame back", () => step(-1));
@@ -117,15 +140,20 @@ export function buildTransport() {
   keys(["L"], "Play; again: twice as fast", () => shuttle(1));
   keys(["T"], "Next take", () => neighbour(1));
   keys(["Shift+T"], "Take before", () => neighbour(-1));
+  keys(["G"], "Tracks of the wrists", toggleTracks);
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
 }
 
-/** Show where the clock stands. */
+/**
+ * Show where the clock stands.
+ *
+ * @param {State} state
+ */
 export function drawTransport({ position }) {
   const bar = byId("transport");
   bar.hidden = !position || selectedClip()?.status !== "done";
-  if (bar.hidden) return;
+  if (bar.hidden || !position) return;
   const { playing, frame, frames, time } = position;
   const toggles = byId("do-play");
   const label = playing ? "Pause" : "Play";

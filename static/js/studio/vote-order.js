@@ -36,7 +36,15 @@ export function orderOf(result) {
       0,
     ),
   );
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
   const byWeight = (one, other) => (weights[voters[other]] ?? 0) - (weights[voters[one]] ?? 0);
+  /**
+   * @param {number} one
+   * @param {number} other
+   */
   const bySupport = (one, other) =>
     (support.get(gestures[other]) ?? 0) - (support.get(gestures[one]) ?? 0) ||
     near[other] - near[one];
@@ -47,6 +55,21 @@ export function orderOf(result) {
       .sort(bySupport)
       .slice(0, MOST_COLUMNS),
   };
+}
+
+/**
+ * Split rows into voters that had a say, and voters without weight: their distances explain nothing
+ * of the decision. A voter whose weight a person changed is always among the first.
+ *
+ * @param {Pick<Recognition, "voters" | "weights">} result
+ * @param {number[]} rows
+ * @param {Record<string, number>} factors of the voters' weights
+ * @returns {{ heard: number[], silent: number[] }}
+ */
+export function splitByWeight({ voters, weights }, rows, factors) {
+  /** @param {number} row */
+  const isHeard = (row) => Boolean(weights[voters[row]]) || (factors[voters[row]] ?? 1) !== 1;
+  return { heard: rows.filter(isHeard), silent: rows.filter((row) => !isHeard(row)) };
 }
 
 /**

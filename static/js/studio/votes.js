@@ -3,14 +3,25 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { percent, readable } from "../core/format.js";
+import { percent, plural, readable } from "../core/format.js";
 import { selectedClip, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./support.js";
-import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber } from "./vote-order.js";
+import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from "./vote-order.js";
 
-/** @import { Recognition } from "../core/types.d.ts" */
+/** @import { Recognition, State } from "../core/types.d.ts" */
+
+/**
+ * What tells the two numbers of a decision apart.
+ *
+ * @type {Record<Recognition["profile"], string>}
+ */
+const CONFIDENCE_WORDS = {
+  full: "Confidence is the estimated probability that this gesture was meant; weight is how much of the vote its voters hold.",
+  paper:
+    "Confidence says how clearly the winner leads, by votes and by distance; weight is how much of the vote its voters hold.",
+};
 
 const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
@@ -18,18 +29,31 @@ const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 const factorText = (factor) =>
   factor === 0 ? "off" : `${{ 0.25: "\u00bc", 0.5: "\u00bd" }[factor] ?? factor} \u00d7`;
 
+/**
+ * @param {string} voter
+ * @param {number} factor
+ */
 const wordsOf = (voter, factor) =>
   factor === 0
     ? `without the voter ${readable(voter)}`
     : `with ${factor} times the weight on the voter ${readable(voter)}`;
 
-/** The weight factor of a voter in the recognition on display. */
-const factorOf = (result, voter) =>
-  (result.tuning ?? state.gestures?.tuning)?.weights?.[voter] ?? 1;
+/**
+ * The factors of the voters' weights in the recognition on display; 1 where there is none.
+ *
+ * @param {Recognition} result
+ * @returns {Record<string, number>}
+ */
+const factorsOf = (result) => (result.tuning ?? state.gestures?.tuning)?.weights ?? {};
 
-/** The weight of a voter, over which lies the choice of another weight factor. */
+/**
+ * The weight of a voter, over which lies the choice of another weight factor.
+ *
+ * @param {Recognition} result
+ * @param {string} voter
+ */
 function weightCell(result, voter) {
-  const factor = factorOf(result, voter);
+  const factor = factorsOf(result)[voter] ?? 1;
   const weight = result.weights[voter] ?? 0;
   const factors = FACTORS.includes(factor) ? FACTORS : [...FACTORS, factor].sort((a, b) => a - b);
   const select = h(
@@ -59,6 +83,11 @@ function weightCell(result, voter) {
   );
 }
 
+/**
+ * @param {Recognition} result
+ * @param {number} at
+ * @param {number[]} columns
+ */
 function row(result, at, columns) {
   const voter = result.voters[at];
   const nearness = nearnessOf(result.distances[at]);
@@ -83,6 +112,10 @@ function row(result, at, columns) {
   );
 }
 
+/**
+ * @param {Recognition} result
+ * @param {number} column
+ */
 function head({ gestures, label, expected }, column) {
   const name = gestures[column];
   const kind = name === label ? "chosen" : name === expected ? "expected" : "";
@@ -97,9 +130,12 @@ function head({ gestures, label, expected }, column) {
   );
 }
 
-/** @param {Recognition} result */
-function table(result) {
-  const { rows, columns } = orderOf(result);
+/**
+ * @param {Recognition} result
+ * @param {number[]} rows
+ * @param {number[]} columns
+ */
+function table(result, rows, columns) {
   const support = supportOf(result);
   return h(
     "div",
@@ -139,7 +175,43 @@ function table(result) {
   );
 }
 
-/** Load the images that were compared into a box. */
+let whole = false; // Whether voters without weight are shown, too.
+
+/**
+ * The table of the voters that had a say, and a line that shows those without weight.
+ *
+ * @param {Recognition} result
+ */
+function ballot(result) {
+  const { rows, columns } = orderOf(result);
+  const { heard, silent } = splitByWeight(result, rows, factorsOf(result));
+  const place = h("div");
+  const toggle = h("button", {
+    type: "button",
+    className: "link",
+    onclick: () => {
+      whole = !whole;
+      draw();
+    },
+  });
+  const draw = () => {
+    place.replaceChildren(table(result, whole ? rows : heard, columns));
+    toggle.textContent = whole ? "Hide" : "Show";
+    toggle.setAttribute("aria-expanded", String(whole));
+    toggle.setAttribute("aria-label", `${toggle.textContent} the voters without weight`);
+  };
+  draw();
+  const line = h("p", { className: "dim" }, `${plural(silent.length, "voter")} without weight `);
+  line.append(toggle);
+  return silent.length ? [place, line] : [place];
+}
+
+/**
+ * Load the images that were compared into a box.
+ *
+ * @param {HTMLElement} box
+ * @param {Recognition} result
+ */
 async function loadImages(box, result) {
   const images = await attempt("Loading the images", () => api.recognitions.images(result.id));
   box.replaceChildren(
@@ -169,7 +241,11 @@ const undecided = () =>
 /** @type {string | null} */
 let drawn = null;
 
-/** Draw the decision of the recognition on display. */
+/**
+ * Draw the decision of the recognition on display.
+ *
+ * @param {State} state
+ */
 export function drawVotes({ result }) {
   const box = byId("votes");
   const clip = selectedClip();
@@ -184,7 +260,8 @@ export function drawVotes({ result }) {
   box.style.setProperty("--columns", String(Math.min(columns, MOST_COLUMNS)));
   if (!result) return box.replaceChildren(undecided());
   const images = h("div", { className: "vote-images" });
-  box.replaceChildren(images, table(result));
+  const words = CONFIDENCE_WORDS[result.profile];
+  box.replaceChildren(images, ...ballot(result), h("p", { className: "dim" }, words));
   loadImages(images, result);
   return undefined;
 }

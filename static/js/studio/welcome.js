@@ -5,13 +5,17 @@ import { needsTopic, select, statusText } from "../clips/clip-store.js";
 import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
-import { byId, h, icon } from "../core/dom.js";
+import { byId, h, icon, WRITES } from "../core/dom.js";
 import { firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { choose } from "../languages/language-store.js";
+
+/** @import { Clip, Job, LanguageSummary, Sample, State } from "../core/types.d.ts" */
+
+/** @typedef {{ sample: Sample, language: LanguageSummary }} Example */
 
 const STEPS = [
   ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
@@ -29,10 +33,15 @@ const STEPS = [
 /**
  * A few clips to begin with, one of each kind; all of them are in the library. Those to recognise
  * come first, since the sample languages hold the demonstrations already.
+ *
+ * @param {Sample[]} samples
  */
 function offered(samples) {
+  /** @param {Sample} sample */
   const demonstrates = (sample) => sample.name.includes("demonstration");
-  const sorted = [...samples].sort((one, other) => demonstrates(one) - demonstrates(other));
+  const sorted = [...samples].sort(
+    (one, other) => Number(demonstrates(one)) - Number(demonstrates(other)),
+  );
   const kinds = new Map();
   for (const sample of sorted) {
     const kind = sample.name.split("-")[0];
@@ -60,6 +69,9 @@ const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "
 
 /**
  * A button that shows why the misread sample is misread; null where it, or its language, is gone.
+ *
+ * @param {Sample[]} samples
+ * @param {LanguageSummary[]} languages
  */
 function question(samples, languages) {
   const found = exampleOf(samples, languages);
@@ -78,15 +90,26 @@ function question(samples, languages) {
   return button;
 }
 
-/** The misread sample and a language that misreads it; null where one of them is gone. */
+/**
+ * The misread sample and a language that misreads it; null where one of them is gone.
+ *
+ * @param {Sample[]} samples
+ * @param {LanguageSummary[]} languages
+ * @returns {Example | null}
+ */
 function exampleOf(samples, languages) {
   const sample = samples.find(({ name }) => name === MISREAD.name);
+  /** @param {LanguageSummary} language */
   const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
   const language =
     languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
   return sample && language ? { sample, language } : null;
 }
 
+/**
+ * @param {Example} example
+ * @param {HTMLButtonElement} button
+ */
 async function ask({ sample, language }, button) {
   await choose(language.id);
   const known = state.clips.find(({ name, status }) => name === sample.name && status === "done");
@@ -106,6 +129,10 @@ export async function showExample() {
   await ask(found, h("button"));
 }
 
+/**
+ * @param {Sample[]} samples
+ * @param {LanguageSummary[]} languages
+ */
 function welcome(samples, languages) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
@@ -121,7 +148,7 @@ function welcome(samples, languages) {
       { className: "welcome-actions" },
       h(
         "button",
-        { type: "button", className: "primary", onclick: () => byId("file").click() },
+        { type: "button", className: "primary", ...WRITES, onclick: () => byId("file").click() },
         "Choose clips",
       ),
       samples.length ? h("span", { className: "dim" }, "or begin with a sample:") : null,
@@ -139,7 +166,11 @@ const noClip = () =>
     h("p", { className: "dim" }, "Choose one from the list, or drop another one."),
   );
 
-/** The clip's own picture under the skeleton; `showProgress` moves both on. */
+/**
+ * The clip's own picture under the skeleton; `showProgress` moves both on.
+ *
+ * @param {Clip} clip
+ */
 function progressPanel(clip) {
   // The video of a dive recording is made while its poses are found.
   const video = clip.topics.length
@@ -170,7 +201,13 @@ function progressPanel(clip) {
   );
 }
 
-/** Show the frame in which the newest pose was found, and the pose. */
+/**
+ * Show the frame in which the newest pose was found, and the pose.
+ *
+ * @param {HTMLElement} panel
+ * @param {Clip} clip
+ * @param {Job} job
+ */
 function showPose(panel, clip, { time, pose }) {
   const video = panel.querySelector("video");
   const playable =
@@ -178,8 +215,8 @@ function showPose(panel, clip, { time, pose }) {
     !video.error &&
     (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
-  const skeletonDrawing = panel.querySelector(".skeleton");
-  if (!playable) return drawPose(skeletonDrawing, pose);
+  const skeletonDrawing = /** @type {SVGSVGElement} */ (panel.querySelector(".skeleton"));
+  if (!playable || time === null) return drawPose(skeletonDrawing, pose);
   // A seek that is cut short by the next shows nothing, so the next waits; the pose is drawn with
   // its own frame.
   if (video.seeking || !video.dataset.start) return undefined;
@@ -188,18 +225,31 @@ function showPose(panel, clip, { time, pose }) {
   return undefined;
 }
 
-/** Change what moves in the panel, and keep the rest: the video would be loaded anew. */
+/**
+ * Change what moves in the panel, and keep the rest: the video would be loaded anew.
+ *
+ * @param {HTMLElement} panel
+ * @param {Clip} clip
+ * @param {Job | undefined} job
+ */
 function showProgress(panel, clip, job) {
   const bar = panel.querySelector("progress");
-  panel.querySelector("h1").textContent =
+  const [title, status] = ["h1", "[role=status]"].map((each) => panel.querySelector(each));
+  if (!bar || !title || !status) return;
+  title.textContent =
     clip.status === "queued" ? "Waiting in the queue" : "Finding the diver\u2019s poses";
-  panel.querySelector("[role=status]").textContent = statusText(clip, job);
+  status.textContent = statusText(clip, job);
   if (job?.total) Object.assign(bar, { max: job.total, value: job.done });
   else bar.removeAttribute("value");
-  if (Number.isFinite(job?.time)) showPose(panel, clip, job);
+  if (job && job.time !== null) showPose(panel, clip, job);
 }
 
-/** What there is to show: `{ key, panel }`, or null when the workspace has something to show. */
+/**
+ * What there is to show: `{ key, panel }`, or null when the workspace has something to show.
+ *
+ * @param {State} state
+ * @param {Clip | null} clip
+ */
 function contentOf({ clips, uploads, samples, languages, loaded }, clip) {
   if (clip && BUSY.has(clip.status)) return { key: clip.job_id, panel: () => progressPanel(clip) };
   if (clip && needsTopic(clip)) return { key: `topics ${clip.id}`, panel: () => topicsPanel(clip) };
@@ -212,7 +262,11 @@ function contentOf({ clips, uploads, samples, languages, loaded }, clip) {
   };
 }
 
-/** Draw it, or hide it when the workspace has something to show. */
+/**
+ * Draw it, or hide it when the workspace has something to show.
+ *
+ * @param {State} values
+ */
 export function drawWelcome(values) {
   const box = byId("welcome");
   const clip = selectedClip();

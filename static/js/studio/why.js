@@ -1,7 +1,7 @@
 // The explanation of a recognition: its sentence, the differences in time, and counterfactuals.
 
 import * as api from "../core/api.js";
-import { byId, h, svg } from "../core/dom.js";
+import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { selectedClip, state, update } from "../core/state.js";
@@ -13,10 +13,16 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./stage.js";
 
+/** @import { Counterfactual, Explanation, Recognition, SideEffect, State } from "../core/types.d.ts" */
+
 const MOST_PARTS = 3; // Joints shown over time: those that cost most.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
-/** Load the explanation, once there is an expected label. */
+/**
+ * Load the explanation, once there is an expected label.
+ *
+ * @param {Pick<State, "result">} state
+ */
 export async function loadWhy({ result }) {
   if (!result || result.expected === null) return update({ why: null });
   if (state.why?.id === result.id) return undefined;
@@ -25,7 +31,11 @@ export async function loadWhy({ result }) {
   return state.result?.id === result.id ? update({ why }) : undefined;
 }
 
-/** The DTW cost of each step of the take and joint, against the expected gesture. */
+/**
+ * The DTW cost of each step of the take and joint, against the expected gesture.
+ *
+ * @param {Explanation} why
+ */
 function costs({ alignments, expected }) {
   const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
   if (!alignment) return null;
@@ -49,8 +59,16 @@ function costs({ alignments, expected }) {
   };
 }
 
-/** Draw the costs along the clip's time, as height and shade. */
+/**
+ * Draw the costs along the clip's time, as height and shade.
+ *
+ * @param {NonNullable<ReturnType<typeof costs>>} costs
+ * @param {{ part: number, name: string }} lane
+ * @param {number} most
+ * @param {number} last
+ */
 function lane({ time, steps }, { part, name }, most, last) {
+  /** @param {number} seconds */
   const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
   const bars = steps.map((step, index) => {
     const from = index ? (time[index - 1] + time[index]) / 2 : time[index];
@@ -81,11 +99,15 @@ function lane({ time, steps }, { part, name }, most, last) {
   );
 }
 
-/** Under the curves: where along the take it differs from what was expected, and in which joint. */
+/**
+ * Under the curves: where along the take it differs from what was expected, and in which joint.
+ *
+ * @param {State} state
+ */
 export function drawCosts({ why, timeline }) {
   const box = byId("costs");
-  const found = why && timeline && !why.right ? costs(why) : null;
-  if (!found?.lanes.length) return box.replaceChildren();
+  const found = why && !why.right ? costs(why) : null;
+  if (!timeline || !found?.lanes.length) return box.replaceChildren();
   const most =
     Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
   return box.replaceChildren(
@@ -99,7 +121,11 @@ export function drawCosts({ why, timeline }) {
   );
 }
 
-/** The side effect of an intervention on the other gestures, in words. */
+/**
+ * The side effect of an intervention on the other gestures, in words.
+ *
+ * @param {SideEffect | null} effect
+ */
 const effectOf = (effect) =>
   effect
     ? h(
@@ -109,12 +135,17 @@ const effectOf = (effect) =>
       )
     : null;
 
-/** The result of an intervention; a take is recognised by its own demonstration by construction. */
+/**
+ * The result of an intervention; a take is recognised by its own demonstration by construction.
+ *
+ * @param {Counterfactual} found
+ */
 const resultOf = ({ change, label, confidence }) =>
   change.kind.endsWith("demonstration")
     ? null
     : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
 
+/** @param {Counterfactual} found */
 function remedy(found) {
   return h(
     "li",
@@ -129,6 +160,12 @@ function remedy(found) {
   );
 }
 
+/**
+ * @param {string} href
+ * @param {string} title
+ * @param {string} note
+ * @param {() => void} [onclick]
+ */
 const shared = (href, title, note, onclick = () => {}) =>
   h(
     "span",
@@ -137,7 +174,12 @@ const shared = (href, title, note, onclick = () => {}) =>
     h("small", { className: "dim" }, ` ${note}`),
   );
 
-/** The take for people without a studio, and the whole clip for the tools of a robot's team. */
+/**
+ * The take for people without a studio, and the whole clip for the tools of a robot's team.
+ *
+ * @param {Recognition} result
+ * @param {Explanation | null} why
+ */
 const shares = (result, why) =>
   h(
     "p",
@@ -156,7 +198,7 @@ const shares = (result, why) =>
           {},
           h(
             "button",
-            { type: "button", className: "link", onclick: () => keepAsTest(result) },
+            { type: "button", className: "link", ...WRITES, onclick: () => keepAsTest(result) },
             "Keep as a test",
           ),
           h("small", { className: "dim" }, " recognised again after every change"),
@@ -166,8 +208,13 @@ const shares = (result, why) =>
     }),
   );
 
-/** Keep the recognised range with its expected label as a test of the language. */
+/**
+ * Keep the recognised range with its expected label as a test of the language.
+ *
+ * @param {Recognition} result
+ */
 async function keepAsTest({ clip_id, start, end, expected }) {
+  if (expected === null) return;
   const kept = await attempt("Adding to the test set", async () => {
     await addToTestSet([{ clip_id, start, end, expected }]);
     return true;
@@ -178,9 +225,14 @@ async function keepAsTest({ clip_id, start, end, expected }) {
     });
 }
 
+/** @param {string} text */
 const note = (text) => h("p", { className: "dim" }, text);
 
-/** What to show differently the next time, with its moment. */
+/**
+ * What to show differently the next time, with its moment.
+ *
+ * @param {Explanation} why
+ */
 function lesson(why) {
   if (!why.lesson) return null;
   const { words, start } = why.lesson;
@@ -198,7 +250,11 @@ function lesson(why) {
   );
 }
 
-/** What would have helped, as buttons that try it out; what to show differently stands first. */
+/**
+ * What would have helped, as buttons that try it out; what to show differently stands first.
+ *
+ * @param {Explanation} why
+ */
 function remediesOf(why) {
   if (why.right) return null;
   const offered = why.counterfactuals;
@@ -215,6 +271,7 @@ function remediesOf(why) {
   );
 }
 
+/** @param {Explanation} why */
 const notesOf = ({ notes }) =>
   notes.length
     ? h(
@@ -224,6 +281,7 @@ const notesOf = ({ notes }) =>
       )
     : null;
 
+/** @param {Explanation} why */
 const reasons = (why) => [
   h("p", { className: "why-sentence" }, why.sentence),
   notesOf(why),
@@ -233,7 +291,11 @@ const reasons = (why) => [
 const ASK_RECOGNITION =
   "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
 
-/** The question what was meant; an answer shows the reasons at once. */
+/**
+ * The question what was meant; an answer shows the reasons at once.
+ *
+ * @param {string[]} labels
+ */
 const askExpected = (labels) => [
   note("Was another gesture meant? Choose it to see why, and which change would help."),
   h(
@@ -245,7 +307,11 @@ const askExpected = (labels) => [
   ),
 ];
 
-/** Draw the explanation under the take. */
+/**
+ * Draw the explanation under the take.
+ *
+ * @param {State} state
+ */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;

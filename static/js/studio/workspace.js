@@ -8,13 +8,17 @@ import { complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame } from "./playback.js";
 import { drawByPage, drawByViser, isFlat } from "./stage-view.js";
 
+/** @import { WorkspaceView } from "../core/types.d.ts" */
+
 const KEY = "osg-studio.workspace"; // sessionStorage: each tab has a workspace of its own.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.
 
 const hasWebgl = Boolean(document.createElement("canvas").getContext("webgl2"));
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const prefersDark = matchMedia("(prefers-color-scheme: dark)");
+/** @type {Promise<string> | null} */
 let opened = null; // promise of the workspace's id
+/** @type {WorkspaceView | null} */
 let wanted = null; // the view to show
 let shown = Promise.resolve();
 
@@ -49,6 +53,7 @@ async function open() {
   return workspace.id;
 }
 
+/** @param {string} url */
 function loadFrame(url) {
   const frame = byId("lab");
   drawByViser();
@@ -62,28 +67,39 @@ function loadFrame(url) {
   frame.src = `${url}?hideViserLogo`;
 }
 
-/** The frame loaded something: is it viser, and does it draw? */
+/**
+ * The frame loaded something: is it viser, and does it draw?
+ *
+ * @param {HTMLIFrameElement} frame
+ * @param {number} late
+ */
 function watch(frame, late) {
   const page = frame.contentDocument;
-  if (!page?.querySelector("#root")) {
+  const inner = frame.contentWindow;
+  const root = page?.querySelector("#root");
+  if (!root || !inner) {
     clearTimeout(late);
     instead("The 3D view did not load; this is the page\u2019s own picture.", restart);
     return;
   }
   const drawn = () => {
-    if (!page.querySelector("canvas")) return;
+    if (!root.querySelector("canvas")) return;
     observer.disconnect();
     clearTimeout(late);
     byId("lab-loading").hidden = true;
     drawByViser();
-    listenToKeys(frame.contentWindow); // They mean the same while the 3D view has the focus.
+    listenToKeys(inner); // They mean the same while the 3D view has the focus.
   };
   const observer = new MutationObserver(drawn);
-  observer.observe(page.querySelector("#root"), { childList: true, subtree: true });
+  observer.observe(root, { childList: true, subtree: true });
   drawn();
 }
 
-function explain(title, text) {
+/**
+ * @param {string | null} title
+ * @param {string} [text]
+ */
+function explain(title, text = "") {
   const box = byId("lab-problem");
   box.hidden = !title;
   if (!title) return;
@@ -94,8 +110,13 @@ function explain(title, text) {
   );
 }
 
-/** Draw the picture by the page, with the reason, and a button that tries viser again. */
-function instead(reason, /** @type {(() => unknown) | null} */ retry = null) {
+/**
+ * Draw the picture by the page, with the reason, and a button that tries viser again.
+ *
+ * @param {string} reason
+ * @param {(() => unknown) | null} [retry]
+ */
+function instead(reason, retry = null) {
   byId("lab-loading").hidden = true;
   explain(null);
   drawByPage(reason, retry);
@@ -113,6 +134,9 @@ export function openWorkspace() {
   return opened;
 }
 
+/** The id of the workspace of this tab. */
+const workspaceOf = () => opened ?? openWorkspace();
+
 /** Load the frame again: viser reconnects by itself only while its frame has the focus. */
 export async function restart() {
   rememberFrame(state.frame);
@@ -124,16 +148,24 @@ export async function restart() {
   }
 }
 
-/** Show a view; of several in a row only the newest is sent. */
+/**
+ * Show a view; of several in a row only the newest is sent.
+ *
+ * @param {WorkspaceView} view
+ */
 export function show(view) {
   wanted = view;
   shown = shown.then(() => send(view)).catch((error) => complain(error, "Showing the clip"));
   return shown;
 }
 
+/**
+ * @param {WorkspaceView} view
+ * @param {boolean} [again]
+ */
 async function send(view, again = true) {
   if (view !== wanted) return;
-  const id = await opened;
+  const id = await workspaceOf();
   try {
     await api.workspaces.show(id, view);
   } catch (error) {
@@ -151,7 +183,7 @@ async function send(view, again = true) {
  */
 export async function showFlat(flat) {
   try {
-    await api.workspaces.change(await opened, { flat, animate: !calm.matches });
+    await api.workspaces.change(await workspaceOf(), { flat, animate: !calm.matches });
   } catch (error) {
     complain(error, "Changing the view");
   }
@@ -161,7 +193,7 @@ export async function showFlat(flat) {
 export function followTheme() {
   prefersDark.addEventListener("change", async () => {
     try {
-      await api.workspaces.change(await opened, { dark: prefersDark.matches });
+      await api.workspaces.change(await workspaceOf(), { dark: prefersDark.matches });
     } catch (error) {
       complain(error, "Changing the colours");
     }

@@ -177,7 +177,7 @@ export function upload(file, fields, onProgress) {
   /** @type {string | null} */
   let place = null;
   let came = 0; // bytes, as far as is known
-  /** @type {(value?: any) => void} */
+  /** @type {() => void} */
   let wake = () => {};
   let gone = false;
 
@@ -199,10 +199,12 @@ export function upload(file, fields, onProgress) {
         if (!mayGoOn(error)) throw error;
         onProgress(came, true);
         at = null;
-        await new Promise((resolve) => {
+        /** @type {Promise<void>} */
+        const waited = new Promise((resolve) => {
           wake = resolve;
           setTimeout(resolve, pause);
         });
+        await waited;
         pause = Math.min(LONGEST_PAUSE, 2 * pause);
       }
     }

@@ -6,6 +6,7 @@ import * as api from "../core/api.js";
 import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
 import { bytes, timeLeft } from "../core/format.js";
 import { state, update } from "../core/state.js";
+import { mayWrite, READS_ONLY } from "../core/session.js";
 import { complain, toast } from "../core/toasts.js";
 import { importLanguage } from "../languages/language-store.js";
 import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
@@ -59,6 +60,10 @@ async function isClip(file) {
  * @param {Upload["uploaded"]} [uploaded]
  */
 export async function addFiles(files, uploaded = null) {
+  if (!mayWrite()) {
+    toast("Nothing was added", READS_ONLY, { kind: "error" });
+    return;
+  }
   const added = [];
   // A list of its own: the browser empties the one of a drop, or of the field, meanwhile.
   for (const file of [...files]) {
@@ -186,8 +191,8 @@ function draw(upload, element) {
   const failed = upload.status === "failed";
   const { key } = upload;
   if (!failed && element?.dataset.status === upload.status) {
-    /** @type {any} */ (element.querySelector(".stage-text")).textContent = stage(upload);
-    /** @type {any} */ (element.querySelector("progress")).value = upload.loaded;
+    /** @type {HTMLElement} */ (element.querySelector(".stage-text")).textContent = stage(upload);
+    /** @type {HTMLProgressElement} */ (element.querySelector("progress")).value = upload.loaded;
     return element;
   }
   const stop = () => (upload.status === "uploading" ? upload.cancel?.() : forget(key));

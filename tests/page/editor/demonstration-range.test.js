@@ -29,3 +29,8 @@ test("an end that is moved makes a range by hand of at least three frames", () =
   assert.deepEqual(framesOf(moved, TAKES, TIME), [78, 80]);
   assert.deepEqual(framesOf(movedTo(whole, TAKES, TIME, "end", 999), TAKES, TIME), [20, 100]);
 });
+
+test("of a demonstration as the language keeps it all is meant, beside any clip's takes", () => {
+  assert.equal(takeOf(null, TAKES), null);
+  assert.deepEqual(framesOf(null, TAKES, TIME), [0, 100]);
+});

@@ -7,6 +7,7 @@ import {
   rangeText,
   rangeWarning,
   rowsOf,
+  withoutGesture,
 } from "../../../static/js/gestures/gesture-rows.js";
 
 const clip = (id, name, status = "done") => ({ id, name, status, duration: 4 });
@@ -73,4 +74,11 @@ test("a row needs a name that neither the language nor another row has", () => {
   assert.match(note, /^2 rows without a name/);
   assert.equal(problemsOf([row("a", "up")], ["down"]).note, "");
   assert.equal(problemsOf([row("a", "down")], ["down"]).problems.size, 1);
+});
+
+test("a clip shows no gesture yet unless a demonstration of the language was taken of it", () => {
+  const language = { gestures: [{ demonstrations: [{ source: { clip_id: "a" } }, {}] }] };
+  const clips = [clip("a", "circle.mp4"), clip("b", "square.mp4", "running")];
+  assert.deepEqual(withoutGesture(clips, language), [clips[1]]);
+  assert.deepEqual(withoutGesture(clips, null), clips);
 });

@@ -1,7 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { nearnessOf, orderOf, shortNumber } from "../../../static/js/studio/vote-order.js";
+import {
+  nearnessOf,
+  orderOf,
+  shortNumber,
+  splitByWeight,
+} from "../../../static/js/studio/vote-order.js";
 
 const RESULT = {
   voters: ["hu", "path", "tempo"],
@@ -27,4 +32,9 @@ test("nearness is relative to the voter's own distances", () => {
 test("a distance takes four characters", () => {
   const texts = [0, 0.0531, 0.53, 5.3, 53, 530, null].map(shortNumber);
   assert.deepEqual(texts, ["0", ".053", ".53", "5.30", "53.0", "530", "\u221e"]);
+});
+
+test("voters without weight stand apart, unless a person took their weight", () => {
+  assert.deepEqual(splitByWeight(RESULT, [1, 0, 2], {}), { heard: [1, 0], silent: [2] });
+  assert.deepEqual(splitByWeight(RESULT, [1, 0, 2], { tempo: 0 }).silent, []);
 });

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 
 from app.api.http.connection import compute_while_connected
@@ -41,6 +41,8 @@ from app.recognition.preprocessing.salience import (
     measure_displacements,
 )
 from app.recognition.voters.registry import PAPER_VOTERS
+from app.ui.charts import png
+from app.ui.direction_marks import mark_gesture
 
 SWITCHES = ("direction", "tempo", "mirror")
 
@@ -123,11 +125,18 @@ class OutlookView(BaseModel):
 
 @router.post("/preview", responses=problem_responses(404, 409))
 async def preview_gesture(
-    language_id: str, request: PreviewRequest, connection: Request, studio: CurrentStudio
+    language_id: str,
+    request: PreviewRequest,
+    connection: Request,
+    studio: CurrentStudio,
+    *,
+    marks: Annotated[bool, Query(description="Image with start dot and arrow, for people")] = False,
 ) -> PreviewView:
     """Return what a gesture would be; nothing is written."""
     return await compute_while_connected(
-        connection, studio.computations, lambda _: _preview(language_id, request, studio)
+        connection,
+        studio.computations,
+        lambda _: _preview(language_id, request, studio, marks=marks),
     )
 
 
@@ -143,14 +152,16 @@ async def preview_health(
     )
 
 
-def _preview(language_id: str, request: PreviewRequest, studio: Studio) -> PreviewView:
+def _preview(
+    language_id: str, request: PreviewRequest, studio: Studio, *, marks: bool
+) -> PreviewView:
     language = studio.language(studio.languages.get(language_id))
     draft = _draft(language, request, studio)
     try:
         gesture = draft.gesture()
     except GestureError as error:
-        return _view(None, draft, str(error))
-    return _view(gesture, draft, None)
+        return _view(None, draft, str(error), marks=marks)
+    return _view(gesture, draft, None, marks=marks)
 
 
 def _outlook(
@@ -241,13 +252,14 @@ def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draf
     return _Draft(language, request, None if where is None else demonstration_at(studio, where))
 
 
-def _view(gesture: Gesture | None, draft: _Draft, problem: str | None) -> PreviewView:
+def _view(
+    gesture: Gesture | None, draft: _Draft, problem: str | None, *, marks: bool
+) -> PreviewView:
     trajectory, shown = draft.trajectory(), draft.demonstration
-    image = None if gesture is None else b64encode(encode_png(gesture.image)).decode("ascii")
     known = trajectory is not None and len(trajectory) > 0
     return PreviewView(
         problem=problem,
-        image=image and f"data:image/png;base64,{image}",
+        image=None if gesture is None else _image(gesture, marks=marks),
         salient=[] if gesture is None else list(gesture.salient),
         keypoints=_keypoints(trajectory) if known and trajectory else [],
         threshold=find_least_displacement(trajectory) if known and trajectory else None,
@@ -257,6 +269,12 @@ def _view(gesture: Gesture | None, draft: _Draft, problem: str | None) -> Previe
         end=None if shown is None else shown.end,
         seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
     )
+
+
+def _image(gesture: Gesture, *, marks: bool) -> str:
+    """Return a gesture's trajectory image as a data URI."""
+    image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
+    return f"data:image/png;base64,{b64encode(image).decode('ascii')}"
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:

@@ -1,5 +1,6 @@
 """Previews over HTTP: a gesture and its outlook before it is saved."""
 
+from base64 import b64decode
 from typing import Any
 
 import httpx
@@ -42,6 +43,21 @@ def test_a_preview_is_what_saving_gives_and_writes_nothing(
     assert shown["image"] == again["image"]
     assert shown["salient"] == saved["salient"] == ["right_wrist"]
     assert shown["descriptors"] == again["descriptors"]
+
+
+def test_for_people_the_previews_image_has_a_start_dot_and_an_arrow(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    (saved,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
+    marked = client.get(f"{saved['thumbnail']}&marks=true").content
+    shown = client.post(
+        f"{LANGUAGES}/{language_id}/preview",
+        params={"marks": True},
+        json={"label": "circle", "change": {}},
+    ).json()
+    assert b64decode(shown["image"].partition(",")[2]) == marked
+    plain = preview(client, language_id, "circle").json()
+    assert plain["image"] != shown["image"]
 
 
 def test_a_preview_proposes_what_moves_far_enough(

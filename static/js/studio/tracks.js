@@ -1,0 +1,101 @@
+// The tracks of the wrists under the timeline's curves, in the flat view as beside the cube.
+
+import { nearestFrame } from "../clips/frame-times.js";
+import * as api from "../core/api.js";
+import { h, svg } from "../core/dom.js";
+import { readable } from "../core/format.js";
+import { selectedClip, selectedRange, state } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { linePath } from "./timeline-curves.js";
+import { movingWrists, tracksOf } from "./wrist-motion.js";
+
+/** @import { Poses } from "../core/types.d.ts" */
+
+const KEY = "osg-studio.tracks"; // localStorage: the tracks were shown last.
+
+let open = localStorage.getItem(KEY) !== null;
+
+/** @type {{ clip: string, poses: Promise<Poses | null> } | null} */
+let loaded = null;
+
+/** Where the tracks are drawn, along the timeline. */
+export const tracksArea = () => h("div", { className: "tracks", id: "tracks", hidden: true });
+
+/** The button in the transport bar. */
+export const tracksButton = () =>
+  h(
+    "button",
+    {
+      type: "button",
+      id: "do-tracks",
+      title: "Show where the moving wrists are over time (G)",
+      "aria-pressed": String(open),
+      onclick: toggleTracks,
+    },
+    "Tracks",
+  );
+
+/** Show the tracks, or hide them; remembered. */
+export function toggleTracks() {
+  open = !open;
+  if (open) localStorage.setItem(KEY, "shown");
+  else localStorage.removeItem(KEY);
+  document.getElementById("do-tracks")?.setAttribute("aria-pressed", String(open));
+  drawTracks();
+}
+
+/** @param {string} clip */
+function posesOf(clip) {
+  if (loaded?.clip !== clip)
+    loaded = { clip, poses: attempt("Loading the poses", () => api.clips.poses(clip)) };
+  return loaded.poses;
+}
+
+/**
+ * Draw one wrist's track along the clip's time.
+ *
+ * @param {ReturnType<typeof tracksOf>[number]} track
+ * @param {number[]} time
+ */
+function lane({ name, x, y }, time) {
+  const last = time.at(-1) || 1;
+  /** @param {number} index */
+  const share = (index) => ((1000 * time[index]) / last).toFixed(1);
+  return h(
+    "div",
+    { className: "curves track-lane" },
+    svg(
+      "svg",
+      {
+        viewBox: "0 0 1000 30",
+        preserveAspectRatio: "none",
+        role: "img",
+        "aria-label": `Track of the ${readable(name)}`,
+      },
+      svg("path", { class: "right", d: linePath(x, 1, share) }),
+      svg("path", { class: "left", d: linePath(y, 1, share) }),
+    ),
+    h("span", {}, `${readable(name)}: x to the right, y upwards (dashed)`),
+  );
+}
+
+/** Draw the tracks of the clip on display, where they are shown. */
+export async function drawTracks() {
+  const box = document.getElementById("tracks");
+  const clip = selectedClip();
+  if (!box) return;
+  box.hidden = !open;
+  if (!open || clip?.status !== "done" || !state.timeline) return;
+  const range = selectedRange()?.shown ?? [0, 0];
+  const poses = await posesOf(clip.id);
+  if (!poses || !box.isConnected) return;
+  const wrists = movingWrists(poses, [
+    nearestFrame(poses.time, range[0]),
+    nearestFrame(poses.time, range[1]),
+  ]);
+  box.replaceChildren(
+    ...(wrists.length
+      ? tracksOf(poses, wrists).map((track) => lane(track, poses.time))
+      : [h("p", { className: "dim" }, "No wrist moves in this range.")]),
+  );
+}
