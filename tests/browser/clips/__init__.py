@@ -1,0 +1,1 @@
+"""Clips in the browser: files, recordings, ranges, waiting for poses."""

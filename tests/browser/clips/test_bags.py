@@ -25,10 +25,10 @@ from tests.bags.bag_files import (
     zipped,
 )
 from tests.bags.sessions import checked
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
-from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 

@@ -13,10 +13,10 @@ from playwright.sync_api import expect
 from app.recognition.poses.skeletons import BODY_25
 from tests.api.ingest.test_keypoint_clips import packed
 from tests.api.running import Running
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import library_of
-from tests.browser.test_accessibility import faults
 from tests.keypoint_files.files import renamed, write_named, write_openpose
 from tests.recognition.strategies import BODY, circle, recording
 

@@ -1,0 +1,1 @@
+"""Views of a language in the browser: library, gestures, phrases, health, practice."""

@@ -12,9 +12,9 @@ from playwright.sync_api import Locator, Page, expect
 
 from app.recognition.language.short_code import short_code
 from tests.api.running import Running
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip, library_of
-from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 

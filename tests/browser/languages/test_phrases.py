@@ -10,9 +10,9 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.api.running import Running
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
-from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 

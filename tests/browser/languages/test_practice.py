@@ -9,9 +9,9 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.api.running import Running
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
-from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.slow
 

@@ -1,0 +1,1 @@
+"""What every view of the page shares: links, keys, looks, sessions, restarts."""

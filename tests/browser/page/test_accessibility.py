@@ -6,16 +6,14 @@ from collections.abc import Iterator
 
 import httpx
 import pytest
-from axe_playwright_python.sync_playwright import Axe  # type: ignore[import-untyped]
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from tests.api.running import Running
+from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
 pytestmark = pytest.mark.slow
-
-SERIOUS = {"serious", "critical"}
 
 SHOWN = {
     "Studio": "role=button[name=/^Take 1/]",
@@ -32,17 +30,6 @@ SHOWN = {
 def library(server: Running) -> Iterator[Library]:
     with httpx.Client(base_url=server.address, timeout=60) as client:
         yield library_of(server, client, "accessible")
-
-
-def faults(page: Page) -> list[str]:
-    """Return what axe finds that is serious, with the elements."""
-    # viser's frame is another project's page.
-    found = Axe().run(page, context={"exclude": ["#lab"]}).response["violations"]
-    return [
-        f"{fault['id']}: {[node['html'][:120] for node in fault['nodes']]}"
-        for fault in found
-        if fault["impact"] in SERIOUS
-    ]
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])
