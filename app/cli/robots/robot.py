@@ -76,6 +76,18 @@ def robot(
         Network | None,
         typer.Option(help="Also publish to ROS 2 in the network, without ROS 2 on this machine."),
     ] = None,
+    mavlink: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Also give confirmed commands to a vehicle, at udpout:HOST:PORT, "
+            "udpin:HOST:PORT, tcp:HOST:PORT or mavlink2rest's http://HOST/PATH; needs --vehicle.",
+        ),
+    ] = None,
+    vehicle: Annotated[
+        Path | None,
+        typer.Option(help="Vehicle table for --mavlink: what gestures mean, in TOML or JSON."),
+    ] = None,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
@@ -88,6 +100,8 @@ def robot(
     """
     if context.obj and not ros2:
         raise typer.BadParameter(f"{BEGIN} needs --ros2: add that option", context)
+    if (mavlink is None) != (vehicle is None):
+        raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
         watched = opened.enter_context(WatchedLanguage(language, profile))
         listener = create_listener(watched.first, without_salutes=without_salutes)
@@ -112,6 +126,11 @@ def robot(
             observer = topics.publish_frame
         if publish:
             handlers.append(opened.enter_context(closing(open_publisher(publish))).publish)
+        if mavlink and vehicle:
+            from app.cli.robots.vehicle import open_bridge
+
+            bridge = open_bridge(mavlink, vehicle, listener, frames)
+            handlers.append(opened.enter_context(closing(bridge)).publish)
         runtime = Runtime(
             frames, finder, listener, water=water, changes=watched.next_change, observer=observer
         )
