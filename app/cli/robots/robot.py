@@ -52,7 +52,8 @@ def robot(
         str,
         typer.Option(
             help="Camera number or device; address of a stream "
-            f"({', '.join(f'{scheme}://' for scheme in SCHEMES)}); clip, BAG or BAG@/TOPIC."
+            f"({', '.join(f'{scheme}://' for scheme in SCHEMES)}); .sdp file; clip, BAG or "
+            "BAG@/TOPIC."
         ),
     ] = "0",
     profile: Annotated[
