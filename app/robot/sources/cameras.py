@@ -155,6 +155,7 @@ def _open(address: str, name: str) -> InputContainer:
     try:
         return av.open(
             address if described is None else io.BytesIO(described.encode()),
+            "r",
             format=None if described is None else "sdp",
             timeout=(OPEN_SECONDS, SILENT_SECONDS),
             container_options={

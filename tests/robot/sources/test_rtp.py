@@ -33,7 +33,7 @@ def describe(port: int, tmp_path: Path) -> str:
     return str(file)
 
 
-@pytest.mark.parametrize("form", ["udp://0.0.0.0:{}", "udp://@:{}", "rtp://192.168.2.2:{}", "sdp"])
+@pytest.mark.parametrize("form", ["udp://@:{}", "sdp"])
 def test_a_camera_that_sends_rtp_is_watched_until_it_is_gone(
     form: str, port: int, tmp_path: Path
 ) -> None:
@@ -55,12 +55,12 @@ def test_a_transport_stream_is_watched_too(port: int) -> None:
         assert source.frame_size == FRAME_SIZE
 
 
-@pytest.mark.parametrize("form", ["udp", "sdp"])
+@pytest.mark.parametrize("form", ["udp://0.0.0.0:{}", "rtp://192.168.2.2:{}", "sdp"])
 def test_a_port_on_which_nothing_arrives_is_told_in_time(
     form: str, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.1)
-    address = describe(port, tmp_path) if form == "sdp" else f"udp://0.0.0.0:{port}"
+    address = describe(port, tmp_path) if form == "sdp" else form.format(port)
     with pytest.raises(SourceError, match=rf"nothing arrived on UDP port {port} for 0.1 s; is the"):
         open_source(address)
 
@@ -79,7 +79,7 @@ def test_packets_that_are_no_video_are_told(port: int, monkeypatch: pytest.Monke
 
         thread = threading.Thread(target=send)
         thread.start()
-        with pytest.raises(SourceError, match="no picture could be decoded in 0.5 s"):
+        with pytest.raises(SourceError, match=r"no picture could be decoded in 0\.5 s"):
             open_source(f"udp://0.0.0.0:{port}")
         over.set()
         thread.join()
