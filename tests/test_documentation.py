@@ -69,6 +69,13 @@ def test_extras_modules_and_files_that_commands_name_exist() -> None:
     assert {file for file in files if not (ROOT / file).is_file()} == set()
 
 
+def test_whatever_is_installed_comes_from_a_release_folder_for_there_is_no_index() -> None:
+    text = "".join(page.read_text() for page in PAGES if page.name != "CHANGELOG.md")
+    commands = re.findall(r"pip install [^\n`]*osg-studio\[[^\n`]*", text)
+    assert len(commands) > 4
+    assert [command for command in commands if "--find-links dist" not in command] == []
+
+
 def test_every_voter_is_documented() -> None:
     from app.recognition.gestures.profile import PROFILES
 

@@ -44,6 +44,7 @@ from app.cli.phrase import phrase
 from app.cli.recognition_report import build_report
 from app.cli.robots.robot import robot
 from app.cli.robots.ros_arguments import split_ros_arguments
+from app.cli.samples import samples
 from app.cli.slate import slate
 from app.cli.terminal import (
     describe_error,
@@ -88,6 +89,7 @@ command_line.command()(backup)
 command_line.command()(restore)
 command_line.add_typer(tokens_command, name="tokens")
 command_line.command()(audit)
+command_line.command()(samples)
 
 
 @command_line.callback(invoke_without_command=True)

@@ -1,4 +1,4 @@
-"""Licences of what is pinned for running: ``python -m tests.licences`` lists them.
+"""Licences of what is pinned for running: ``python -m release.licences`` lists them.
 
 They are read from the packages as they are installed; nothing is fetched.
 """
