@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -19,6 +20,7 @@ import typer
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.robots.events import describe_event
 from app.cli.robots.ros_arguments import BEGIN
+from app.cli.robots.supervision import report_event
 from app.cli.terminal import people
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import create_estimator, finds_hands
@@ -40,6 +42,7 @@ from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES
 from app.robot.watched_language import WatchedLanguage
+from app.service_manager import ServiceManager
 
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""
@@ -117,7 +120,8 @@ def robot(
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)
             return
-        handlers = [print_event]
+        report = partial(report_event, ServiceManager())
+        handlers: list[Callable[[Event], None]] = [print_event, report]
         observer: Observer | None = None
         if ros2:
             from app.cli.robots.ros2_topics import open_ros2_topics
