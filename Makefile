@@ -110,6 +110,8 @@ lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer vers
 	  --constraints requirements-test.txt --output-file requirements-mediapipe.txt
 	cp requirements.txt requirements-robot.txt
 	$(LOCK) $(FOR_ROBOT) --extra robot --output-file requirements-robot.txt
+	cp requirements-robot.txt requirements-vehicle.txt
+	$(LOCK) $(FOR_ROBOT) --extra robot --extra mavlink --output-file requirements-vehicle.txt
 
 LOCK = $(UV) pip compile pyproject.toml --quiet --universal --generate-hashes \
   --custom-compile-command "make lock"

@@ -22,7 +22,7 @@ from app.cli.robots.events import describe_event
 from app.cli.robots.ros_arguments import BEGIN
 from app.cli.robots.supervision import report_event
 from app.cli.terminal import people
-from app.recognition.errors import EstimatorError
+from app.recognition.errors import EstimatorError, PublishError
 from app.recognition.estimation import create_estimator, finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
@@ -38,7 +38,7 @@ from app.robot import (
     open_source,
 )
 from app.robot.messages import format_line
-from app.robot.publishing.publisher import Network, open_publisher
+from app.robot.publishing.publisher import Network, Publisher, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES
 from app.robot.watched_language import WatchedLanguage
@@ -92,6 +92,13 @@ def robot(
         Path | None,
         typer.Option(help="Vehicle table for --mavlink: what gestures mean, in TOML or JSON."),
     ] = None,
+    page: Annotated[
+        str | None,
+        typer.Option(
+            metavar="[HOST:]PORT",
+            help="Also serve a page with the robot's state; on this machine alone without HOST.",
+        ),
+    ] = None,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
@@ -131,6 +138,8 @@ def robot(
             observer = topics.publish_frame
         if publish:
             handlers.append(opened.enter_context(closing(open_publisher(publish))).publish)
+        if page:
+            handlers.append(opened.enter_context(closing(open_page(page))).publish)
         if mavlink and vehicle:
             from app.cli.robots.vehicle import open_bridge
 
@@ -143,6 +152,23 @@ def robot(
             recognised = emit_all(runtime, handlers)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
+
+
+def open_page(address: str) -> Publisher:
+    """Serve the status page at ``[HOST:]PORT``.
+
+    Raises
+    ------
+    PublishError
+        When that is no address, or cannot be listened on.
+
+    """
+    from app.robot.publishing.status_page import StatusPage
+
+    host, _, port = address.rpartition(":")
+    if not port.isdecimal():
+        raise PublishError(f"{address!r} is no place for the page; give PORT or HOST:PORT")
+    return StatusPage(host.strip("[]") or "127.0.0.1", int(port), describe_event)
 
 
 def emit_all(events: Iterable[Event], handlers: Sequence[Callable[[Event], None]]) -> int:
