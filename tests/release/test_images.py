@@ -23,7 +23,8 @@ BASE = os.environ.get("OSG_BASE_IMAGE")
 TAG = "localhost/osg-robot:tested"
 RUN = """
 osg-studio samples /tmp/languages
-osg-studio robot --language /tmp/languages/osg-table-2.json --source /tmp/languages/clips/line-test-1.mp4
+cd /tmp/languages
+osg-studio robot --language osg-table-2.json --source clips/line-test-1.mp4
 """
 
 pytestmark = [
