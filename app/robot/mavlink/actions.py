@@ -26,6 +26,9 @@ from app.robot.mavlink.table import (
 Message = Any
 """A message of pymavlink, which has no types."""
 
+OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
+"""MAVLink component id of this computer, which is a part of the vehicle's system."""
+
 LEAST_PWM, MOST_PWM = 1100, 1900
 """Microseconds of the pulse at which the lights are off, and at their brightest."""
 

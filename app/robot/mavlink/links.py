@@ -15,9 +15,7 @@ from urllib.parse import urlsplit
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
-from app.robot.mavlink.actions import Message
-
-OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
+from app.robot.mavlink.actions import OUR_COMPONENT, Message
 
 LARGEST_DATAGRAM: Final = 65536
 

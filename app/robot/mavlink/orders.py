@@ -12,7 +12,7 @@ from typing import Final, Literal
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.actions import Message, Reported, Step
+from app.robot.mavlink.actions import OUR_COMPONENT, Message, Reported, Step
 from app.robot.mavlink.table import Vehicle
 
 EMERGENCY_SECONDS: Final = 60.0
@@ -147,11 +147,14 @@ class OrderDesk:
     def _is_from_vehicle(self, message: Message) -> bool:
         vehicle = self._vehicle
         sender = (message.get_srcSystem(), message.get_srcComponent())
-        answering = message.get_type() == "COMMAND_ACK" and sender == (
-            vehicle.system,
-            vehicle.camera_component,
+        if message.get_type() != "COMMAND_ACK":
+            return sender == (vehicle.system, vehicle.component)
+        # An answer to a ground station passes here too; older vehicles leave the address out.
+        ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
+        answering = (
+            (vehicle.system, part) for part in (vehicle.component, vehicle.camera_component)
         )
-        return answering or sender == (vehicle.system, vehicle.component)
+        return sender in answering and (message.target_system, message.target_component) in ours
 
     def _note_uptime(self, uptime: int, now: float) -> None:
         """Notice a vehicle that has started again: it forgot what it was told."""

@@ -12,9 +12,7 @@ from urllib.parse import urlsplit
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
-from app.robot.mavlink.actions import Message
-
-OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
+from app.robot.mavlink.actions import OUR_COMPONENT, Message
 
 ANSWER_SECONDS: Final = 2.0
 """Time for the server to answer; it is on the vehicle, and answers from memory."""

@@ -26,6 +26,7 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
+from app.robot.mavlink import bridge
 from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.table import VehicleTable
@@ -220,6 +221,23 @@ def test_a_refusal_and_silence_are_told_and_not_taken_for_obedience() -> None:
     assert diver.vehicle.obeyed == []
 
 
+def test_a_vehicle_that_starts_again_or_falls_silent_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(bridge, "SILENT_SECONDS", 0.2)
+    with diving() as diver:
+        diver.confirm("deep")
+        assert diver.wait_for("done")
+        diver.vehicle.restarts_at_next = True
+        diver.confirm("up")
+        assert diver.wait_for("vehicle has started again")
+        assert diver.wait_for("done") == "done: surface"
+        diver.vehicle.loss = 1.0
+        assert diver.wait_for("vehicle is silent")
+        diver.vehicle.loss = 0.0
+        assert diver.wait_for("vehicle is back")
+
+
 def test_what_is_asked_and_done_is_spoken_back_in_fifty_characters() -> None:
     with diving() as diver:
         diver.confirm("deep")
@@ -250,8 +268,8 @@ def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> N
     lines: list[str] = []
     with sailing() as vehicle:
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
-        with closing(MavlinkBridge(table, link, lambda: language, lines.append)) as bridge:
+        with closing(MavlinkBridge(table, link, lambda: language, lines.append)) as opened:
             for event in (build_language_changed(0.0, language), *events):
-                bridge.publish(event)
+                opened.publish(event)
     assert vehicle.obeyed == (["ALT_HOLD", "depth 2"] if metres == 2 else [])
     assert ("done: depth 2 m" if metres == 2 else "no depth: 50, of 0 to 30 m") in lines

@@ -127,8 +127,11 @@ class Ardusub:
             result = mavlink.MAV_RESULT_DENIED
         else:
             result = self._obey(message)
-        answer = mavlink.MAVLink_command_ack_message(message.command, result)
-        self._send(answer)
+        # Somebody else has asked for the same and is refused; and the asker is answered.
+        denied = mavlink.MAV_RESULT_DENIED
+        self._send(mavlink.MAVLink_command_ack_message(message.command, denied, 0, 0, 255, 190))
+        asker = (message.get_srcSystem(), message.get_srcComponent())
+        self._send(mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *asker))
 
     def _obey(self, message: Any) -> int:
         done = ""
