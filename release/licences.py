@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 
 from tests.conftest import ROOT
 
-LOCKS = ("requirements.txt", "requirements-robot.txt")
+LOCKS = ("requirements.txt", "requirements-robot.txt", "requirements-vehicle.txt")
 
 
 @dataclass(frozen=True)
