@@ -100,12 +100,14 @@ class OrderDesk:
         self._deadline = 0.0
         self._reported = Reported()
         self._uptime = 0
+        self._refused = False
 
     def give(self, order: Order, now: float) -> Outcome | None:
         """Begin an order; return the outcome of the one that it replaces."""
         replaced = None if self.order is None else Outcome(self.order, "replaced")
         seconds = EMERGENCY_SECONDS if order.emergency else self._vehicle.give_up_seconds
         self.order = order
+        self._refused = False
         self._deadline = now + seconds * len(order.steps)
         self._begin(0, now)
         return replaced
@@ -126,7 +128,13 @@ class OrderDesk:
         return self._end("unanswered")
 
     def hear(self, message: Message, now: float) -> Outcome | None:
-        """Process a message of the vehicle; return the outcome of the order that it ends."""
+        """Process a message of the vehicle.
+
+        Returns
+        -------
+        The outcome of the order that it ends; for an emergency also its first refusal.
+
+        """
         if not self._is_from_vehicle(message):
             return None
         if message.get_type() == "SYSTEM_TIME":
@@ -138,11 +146,20 @@ class OrderDesk:
         if step.is_done(self._reported):
             return self._advance(now)
         answered = message.get_type() == "COMMAND_ACK" and message.command == step.command
-        if not answered or message.result in GO_ON or self.order.emergency:
+        if not answered or message.result in GO_ON:
             return None
+        return self._refuse(message.result)
+
+    def _refuse(self, result: int) -> Outcome | None:
+        """End an order that was refused; an emergency goes on, and its refusal is told once."""
+        assert self.order is not None
         names = mavlink.enums["MAV_RESULT"]
-        known = names[message.result].name if message.result in names else str(message.result)
-        return self._end("refused", known.removeprefix("MAV_RESULT_"))
+        answer = names[result].name if result in names else str(result)
+        answer = answer.removeprefix("MAV_RESULT_")
+        if not self.order.emergency:
+            return self._end("refused", answer)
+        told, self._refused = self._refused, True
+        return None if told else Outcome(self.order, "refused", answer)
 
     def _is_from_vehicle(self, message: Message) -> bool:
         vehicle = self._vehicle

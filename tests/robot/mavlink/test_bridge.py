@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import random
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import replace
@@ -206,6 +207,18 @@ def test_an_emergency_replaces_what_is_on_its_way() -> None:
         assert diver.wait_for("replaced") == "replaced: lights 50 %"
         diver.vehicle.loss = 0.0
         assert diver.wait_for("done") == "done: surface"
+    assert diver.vehicle.obeyed == ["SURFACE"]
+
+
+def test_an_emergency_that_is_refused_is_told_once_and_sent_again() -> None:
+    with diving(refused=frozenset({int(mavlink.MAV_CMD_DO_SET_MODE)})) as diver:
+        diver.show("help")
+        assert diver.wait_for("refused") == "refused (DENIED): surface"
+        asked = diver.vehicle.asked
+        while diver.vehicle.asked < asked + 3:
+            time.sleep(0.01)
+        diver.vehicle.refused = frozenset()
+        assert diver.wait_for("refused", "done") == "done: surface"
     assert diver.vehicle.obeyed == ["SURFACE"]
 
 
