@@ -25,7 +25,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test check quick coverage pytest lint page format docs bench languages lock clean
+.PHONY: help run models test check quick coverage pytest lint page format docs bench release languages lock clean
 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -96,6 +96,9 @@ docs: $(VENV)/.development  ## Build the documentation's site into build/site; d
 bench: $(VENV)/.development models  ## Print the benchmarks' ratios
 	$(BIN)/python -m benchmarks
 
+release: $(VENV)/.development  ## Build wheel and sdist twice from the last commit, into dist
+	$(BIN)/python -m release
+
 languages: models  ## Rebuild the sample languages from their clips
 	$(BIN)/python -m languages.build
 
@@ -107,6 +110,8 @@ lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer vers
 	  --constraints requirements-test.txt --output-file requirements-mediapipe.txt
 	cp requirements.txt requirements-robot.txt
 	$(LOCK) $(FOR_ROBOT) --extra robot --output-file requirements-robot.txt
+	cp requirements-robot.txt requirements-vehicle.txt
+	$(LOCK) $(FOR_ROBOT) --extra robot --extra mavlink --output-file requirements-vehicle.txt
 
 LOCK = $(UV) pip compile pyproject.toml --quiet --universal --generate-hashes \
   --custom-compile-command "make lock"

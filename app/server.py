@@ -64,6 +64,7 @@ from app.api.routes.samples import sample_clips, sample_languages
 from app.api.services.studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
+from app.service_manager import ServiceManager
 from app.settings import Settings
 from app.store import StoreUnavailable
 from app.ui.workspace_registry import WorkspaceRegistry
@@ -206,7 +207,10 @@ def run(settings: Settings, *, open_browser: bool) -> None:
 
 
 class _AnnouncedServer(StudioServer):
-    """Server that prints its address once it listens, and opens a browser if requested."""
+    """Server that prints its address once it listens, and opens a browser if requested.
+
+    It tells the service manager the same, and at every tick of the event loop that it works.
+    """
 
     def __init__(
         self, config: uvicorn.Config, app: FastAPI, settings: Settings, *, open_browser: bool
@@ -214,6 +218,15 @@ class _AnnouncedServer(StudioServer):
         super().__init__(config, app)
         self._settings = settings
         self._open_browser = open_browser
+        self._manager = ServiceManager()
+
+    async def on_tick(self, counter: int) -> bool:
+        self._manager.tell_alive()
+        return await super().on_tick(counter)
+
+    async def shutdown(self, sockets: Any = None) -> None:
+        self._manager.tell_stopping()
+        await super().shutdown(sockets)
 
     async def startup(self, sockets: Any = None) -> None:
         await super().startup(sockets)
@@ -223,6 +236,8 @@ class _AnnouncedServer(StudioServer):
         host = "127.0.0.1" if self._settings.host in {"0.0.0.0", "::"} else self._settings.host
         address = f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
         print(f"OSG Studio is at {address} (Ctrl+C ends it)", flush=True)
+        self._manager.tell_ready()
+        self._manager.tell_status(f"at {address}")
         if self._open_browser:
             if token := self._settings.token:
                 address += f"?token={quote(token.get_secret_value(), safe='')}"

@@ -69,6 +69,30 @@ def test_extras_modules_and_files_that_commands_name_exist() -> None:
     assert {file for file in files if not (ROOT / file).is_file()} == set()
 
 
+def test_whatever_is_installed_comes_from_a_release_folder_for_there_is_no_index() -> None:
+    text = "".join(page.read_text() for page in PAGES if page.name != "CHANGELOG.md")
+    commands = re.findall(r"pip install [^\n`]*osg-studio\[[^\n`]*", text)
+    assert len(commands) > 4
+    assert [command for command in commands if "--find-links dist" not in command] == []
+
+
+@pytest.mark.parametrize("page", ["on-the-boat", "bluerov2", "jetson", "laptop"])
+def test_what_the_robot_is_said_to_say_is_in_its_source(page: str) -> None:
+    text = (ROOT / "docs" / "robots" / f"{page}.md").read_text(encoding="utf-8")
+    wrong = text.partition("## When something is wrong")[2]
+    lines = re.findall(r"^\| `([^`]+)`", wrong, re.MULTILINE)
+    assert len(lines) > 1
+    folders = (ROOT / "app", ROOT / "ros2")
+    source = " ".join(
+        file.read_text("utf-8") for folder in folders for file in folder.rglob("*.py")
+    )
+    # Python joins strings of several lines.
+    source = re.sub(r'"\s+f?"', "", source)
+    parts = [part for line in lines for part in re.split(r" ?\.\.\. ?|\d+|\(\w+\)", line)]
+    said = [part.strip(" :") for part in parts if len(part.strip(" :")) > 4]
+    assert [part for part in said if part not in source] == []
+
+
 def test_every_voter_is_documented() -> None:
     from app.recognition.gestures.profile import PROFILES
 

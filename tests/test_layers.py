@@ -12,7 +12,7 @@ from packaging.utils import canonicalize_name
 from tests.conftest import ROOT
 
 # Whatever else is installed, these must not be needed to recognise a gesture on a robot.
-OPTIONAL_EXTRAS = ("studio", "mediapipe", "test", "dds", "bench")
+OPTIONAL_EXTRAS = ("studio", "mediapipe", "test", "dds", "mavlink", "bench")
 
 IMPORT_EVERY_MODULE_OF_THE_CORE = """
 import importlib, pkgutil
@@ -27,8 +27,10 @@ WANTED_BY_OPTIONS = {
     "app.robot.stage_profile",
     "app.cli.robots.stages",
     "app.cli.robots.ros2_topics",
+    "app.cli.robots.vehicle",
+    "app.robot.mavlink",
 }
-"""Modules that `osg-studio robot` needs only where it is asked to publish or to profile."""
+"""Modules that `osg-studio robot` needs only where it is asked to publish, profile or command."""
 
 SHOW_THE_HELP = """
 import app.cli.application

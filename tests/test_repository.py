@@ -18,6 +18,7 @@ LOCKS = (
     "requirements-test.txt",
     "requirements-mediapipe.txt",
     "requirements-robot.txt",
+    "requirements-vehicle.txt",
 )
 
 # Where packages come from is the user's pip configuration, mirrors and all, never ours. The words
@@ -120,6 +121,7 @@ def test_every_pin_carries_hashes(lock: str) -> None:
         ("requirements-test.txt", ["studio", "test"]),
         ("requirements-mediapipe.txt", ["mediapipe"]),
         ("requirements-robot.txt", ["robot"]),
+        ("requirements-vehicle.txt", ["robot", "mavlink"]),
     ],
 )
 def test_a_lock_pins_what_the_project_declares(lock: str, extras: list[str]) -> None:

@@ -21,6 +21,8 @@ from pydantic import ValidationError
 from app import __version__
 from app.cli.audit import audit
 from app.cli.backup import backup, restore
+from app.cli.batches.folder import is_folder_of_clips
+from app.cli.batches.run import FolderBatch
 from app.cli.check import check
 from app.cli.clip_argument import (
     ClipReading,
@@ -32,8 +34,7 @@ from app.cli.clip_argument import (
     define_gesture,
     keypoint_options,
     parse_demonstrations,
-    read_clip,
-    spot_takes,
+    recognize_clip,
 )
 from app.cli.demonstrations import demonstrations_command
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
@@ -44,6 +45,7 @@ from app.cli.phrase import phrase
 from app.cli.recognition_report import build_report
 from app.cli.robots.robot import robot
 from app.cli.robots.ros_arguments import split_ros_arguments
+from app.cli.samples import samples
 from app.cli.slate import slate
 from app.cli.terminal import (
     describe_error,
@@ -53,7 +55,7 @@ from app.cli.terminal import (
     show_recognition,
 )
 from app.cli.tokens import tokens_command
-from app.recognition import Language, Recognizer
+from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import RecognitionContext
@@ -88,6 +90,7 @@ command_line.command()(backup)
 command_line.command()(restore)
 command_line.add_typer(tokens_command, name="tokens")
 command_line.command()(audit)
+command_line.command()(samples)
 
 
 @command_line.callback(invoke_without_command=True)
@@ -176,7 +179,8 @@ def recognize(
         str,
         typer.Argument(
             help="Clip or rosbag2 with gestures between salutes, or CLIP@START-END. Or a keypoint "
-            "file: OpenPose's folder, MediaPipe's CSV or JSON, DeepLabCut's CSV, SLEAP's .slp, .h5."
+            "file: OpenPose's folder, MediaPipe's CSV or JSON, DeepLabCut's CSV, SLEAP's .slp, "
+            ".h5. Or a folder of clips, for one table; run it again to go on after an interruption."
         ),
     ],
     language: Annotated[Path, typer.Option(help="Language file.")],
@@ -200,6 +204,9 @@ def recognize(
         Path | None,
         typer.Option(help="Write clip and recognitions to this MCAP file, for Foxglove."),
     ] = None,
+    table: Annotated[
+        Path, typer.Option(help="Table of a folder's takes to write, .csv or .parquet.")
+    ] = Path("recognitions.csv"),
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -215,15 +222,37 @@ def recognize(
     recognizer = Recognizer(loaded, profile)
     spotter = Spotter(recognizer) if without_salutes else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    read = read_clip(path, ClipReading(water, estimator, hands, topic, keypoints), loaded)
-    recording = read.recording
-    if spotter is not None:
-        results = spot_takes(spotter, recording, span)
+    reading = ClipReading(water, estimator, hands, topic, keypoints)
+    if is_folder_of_clips(path):
+        if as_json or mcap is not None or expected is not None:
+            raise OsgError(
+                f"{path} is a folder of clips: --json, --mcap and --expected are for one clip; "
+                "give --table for the folder's results"
+            )
+        batch = FolderBatch(path, table, recognizer, reading, spotter, excluded=(language,))
+        recognised = batch.run()
     else:
-        results = [(take, recognizer.recognize(take.poses)) for take in read.takes(span)]
-    if mcap is not None:
-        named = name_recognitions(loaded, expected, results)
-        save_session(mcap, path, topic, recording, named)
+        recording, results = recognize_clip(path, span, reading, recognizer, spotter)
+        if mcap is not None:
+            named = name_recognitions(loaded, expected, results)
+            save_session(mcap, path, topic, recording, named)
+        show_results(path, recognizer, results, expected, as_json=as_json)
+        if not results:
+            explain_absence(path, recording, recognizer, without_salutes=without_salutes)
+        recognised = sum(result.label is not None for _, result in results)
+    if not recognised:
+        raise typer.Exit(NOTHING_RECOGNISED)
+
+
+def show_results(
+    path: Path,
+    recognizer: Recognizer,
+    results: Sequence[tuple[Take, Recognition]],
+    expected: str | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Print the recognitions of one clip, with explanations where a gesture was expected."""
     takes = [take for take, _ in results]
     explanations = [
         explain(RecognitionContext.of_take(recognizer, take), expected)
@@ -231,25 +260,31 @@ def recognize(
         if expected is not None
     ]
     if as_json:
-        report = build_report(str(path), loaded.name, recognizer.profile, results, explanations)
+        name = recognizer.language.name
+        report = build_report(str(path), name, recognizer.profile, results, explanations)
         typer.echo(json.dumps(report, allow_nan=False))
-    else:
-        for (take, result), explanation in zip_longest(results, explanations):
-            show_recognition(take, result)
-            if explanation is not None:
-                show_explanation(explanation)
-    if not takes and without_salutes:
+        return
+    for (take, result), explanation in zip_longest(results, explanations):
+        show_recognition(take, result)
+        if explanation is not None:
+            show_explanation(explanation)
+
+
+def explain_absence(
+    path: Path, recording: Recording, recognizer: Recognizer, *, without_salutes: bool
+) -> None:
+    """Print why a clip has no take, and what to do."""
+    seconds = f"{recording.poses.duration:.1f} s"
+    if without_salutes:
         people.print(
-            f"{path}: no gesture of {loaded.name!r} found in {recording.poses.duration:.1f} s; "
+            f"{path}: no gesture of {recognizer.language.name!r} found in {seconds}; "
             f"pause before and after a gesture, or give the range: {path}@START-END"
         )
-    elif not takes:
+    else:
         people.print(
-            f"{path}: no salute found in {recording.poses.duration:.1f} s, so no take; hold the "
+            f"{path}: no salute found in {seconds}, so no take; hold the "
             f"salute for at least 0.3 s, or give the range: {path}@START-END"
         )
-    if not any(result.label for _, result in results):
-        raise typer.Exit(NOTHING_RECOGNISED)
 
 
 @command_line.command()

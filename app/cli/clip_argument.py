@@ -15,7 +15,16 @@ from app.bags import bag_and_topic
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import ClipSource, ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
-from app.recognition import Gesture, Language, PoseSequence, Recognition, Recording, Take, takes_in
+from app.recognition import (
+    Gesture,
+    Language,
+    PoseSequence,
+    Recognition,
+    Recognizer,
+    Recording,
+    Take,
+    takes_in,
+)
 from app.recognition.errors import GestureError, KeypointFileError
 from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
@@ -289,6 +298,28 @@ def spot_takes(
         (take_by_hand(recording, (found.start, found.end)), found.recognition)
         for found in spotter.listen(poses)
     ]
+
+
+def recognize_clip(
+    clip: Path,
+    span: tuple[float, float] | None,
+    reading: ClipReading,
+    recognizer: Recognizer,
+    spotter: Spotter | None,
+) -> tuple[Recording, list[tuple[Take, Recognition]]]:
+    """Read a clip and recognise its takes; with a spotter, gestures without salutes.
+
+    Raises
+    ------
+    OsgError
+        When the clip cannot be read; see `read_clip`.
+
+    """
+    read = read_clip(clip, reading, recognizer.language)
+    if spotter is not None:
+        return read.recording, spot_takes(spotter, read.recording, span)
+    takes = read.takes(span)
+    return read.recording, [(take, recognizer.recognize(take.poses)) for take in takes]
 
 
 def read_clip(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from contextvars import ContextVar
 
 import typer
 from rich import box
@@ -112,13 +113,53 @@ def progress_bar(title: str) -> Iterator[Callable[..., None]]:
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=people, transient=True, disable=not people.is_terminal) as bar:
-        task = bar.add_task(title, total=None)
+    bar = Progress(*columns, console=people, transient=True, disable=not people.is_terminal)
+    outer = _batch.get()
+    with bar if outer is None else nullcontext(outer) as shown:
+        task = shown.add_task(title, total=None)
 
         def advance(done: int, total: int | None, stage: str = "") -> None:
-            bar.update(task, completed=done, total=total, description=stage or title)
+            shown.update(task, completed=done, total=total, description=stage or title)
 
-        yield advance
+        try:
+            yield advance
+        finally:
+            shown.remove_task(task)
+
+
+_batch: ContextVar[Progress | None] = ContextVar("batch", default=None)
+"""Progress of the batch that goes on; a terminal shows only one at a time."""
+
+
+@contextmanager
+def batch_bar(clips: int, size: int) -> Iterator[Callable[[int, str], None]]:
+    """Show a batch on stderr: a line for each clip, and a bar with the time left in a terminal.
+
+    Parameters
+    ----------
+    clips
+        How many there are.
+    size
+        Their bytes together; the time left is estimated by them.
+
+    """
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
+    bar = Progress(*columns, console=people, transient=True, disable=not people.is_terminal)
+    number = 0
+    with bar:
+        task = bar.add_task(f"0 of {clips} clips", total=size)
+        token = _batch.set(bar)
+
+        def advance(done: int, line: str) -> None:
+            nonlocal number
+            number += 1
+            bar.update(task, advance=done, description=f"{number} of {clips} clips")
+            people.print(f"{number}/{clips} {line}", markup=False, highlight=False, soft_wrap=True)
+
+        try:
+            yield advance
+        finally:
+            _batch.reset(token)
 
 
 def describe_error(error: Exception) -> str:

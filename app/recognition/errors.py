@@ -93,3 +93,7 @@ class SourceError(OsgError):
 
 class PublishError(OsgError):
     """Raised when recognitions cannot be published as configured."""
+
+
+class VehicleError(OsgError):
+    """Raised when a vehicle table is invalid, or a vehicle's address cannot be used."""

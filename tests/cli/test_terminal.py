@@ -1,7 +1,11 @@
 """What a person reads on the terminal."""
 
-import pytest
+from io import StringIO
 
+import pytest
+from rich.console import Console
+
+from app.cli import terminal
 from app.cli.terminal import show_explanation
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.explanation.context import RecognitionContext
@@ -29,3 +33,20 @@ def test_an_explanation_is_a_sentence_and_what_would_help(
     assert explanation.sentence in read
     for found in explanation.counterfactuals.found:
         assert found.change.words.split()[-1] in read
+
+
+def test_a_batch_shows_its_clips_bar_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    written = StringIO()
+    console = Console(file=written, force_terminal=True, width=100)
+    monkeypatch.setattr(terminal, "people", console)
+    with terminal.batch_bar(2, 1000) as advance:
+        with terminal.progress_bar("dive.mp4") as frames:
+            frames(5, 10)
+        advance(400, "dive.mp4: circle")
+        with terminal.progress_bar("again.mp4"):
+            pass
+        advance(600, "again.mp4: line")
+    text = written.getvalue()
+    assert "1/2 dive.mp4: circle" in text
+    assert "2 of 2 clips" in text
+    assert "0:00:00" in text

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Language
-from osg_ros.commands.dialogue import (
+from app.robot.commands.dialogue import (
     CommandDialogue,
     Decision,
     RecognizedGesture,
@@ -20,7 +20,7 @@ from osg_ros.commands.dialogue import (
     Rules,
 )
 from osg_ros.commands.table import read_commands
-from tests.ros2.commands.test_dialogue import RULES, TABLE, gestures, shown
+from tests.robot.commands.test_dialogue import RULES, TABLE, gestures, shown
 from tests.ros2.workspace import ROOT
 
 PHRASES = replace(TABLE, phrase_labels=frozenset({"circle", "line"}))

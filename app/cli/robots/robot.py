@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -19,8 +20,9 @@ import typer
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.robots.events import describe_event
 from app.cli.robots.ros_arguments import BEGIN
+from app.cli.robots.supervision import report_event
 from app.cli.terminal import people
-from app.recognition.errors import EstimatorError
+from app.recognition.errors import EstimatorError, PublishError
 from app.recognition.estimation import create_estimator, finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
@@ -36,10 +38,11 @@ from app.robot import (
     open_source,
 )
 from app.robot.messages import format_line
-from app.robot.publishing.publisher import Network, open_publisher
+from app.robot.publishing.publisher import Network, Publisher, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES
 from app.robot.watched_language import WatchedLanguage
+from app.service_manager import ServiceManager
 
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""
@@ -52,7 +55,8 @@ def robot(
         str,
         typer.Option(
             help="Camera number or device; address of a stream "
-            f"({', '.join(f'{scheme}://' for scheme in SCHEMES)}); clip, BAG or BAG@/TOPIC."
+            f"({', '.join(f'{scheme}://' for scheme in SCHEMES)}); .sdp file; clip, BAG or "
+            "BAG@/TOPIC."
         ),
     ] = "0",
     profile: Annotated[
@@ -76,6 +80,25 @@ def robot(
         Network | None,
         typer.Option(help="Also publish to ROS 2 in the network, without ROS 2 on this machine."),
     ] = None,
+    mavlink: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Also give confirmed commands to a vehicle, at udpout:HOST:PORT, "
+            "udpin:HOST:PORT, tcp:HOST:PORT or mavlink2rest's http://HOST/PATH; needs --vehicle.",
+        ),
+    ] = None,
+    vehicle: Annotated[
+        Path | None,
+        typer.Option(help="Vehicle table for --mavlink: what gestures mean, in TOML or JSON."),
+    ] = None,
+    page: Annotated[
+        str | None,
+        typer.Option(
+            metavar="[HOST:]PORT",
+            help="Also serve a page with the robot's state; on this machine alone without HOST.",
+        ),
+    ] = None,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
@@ -88,6 +111,8 @@ def robot(
     """
     if context.obj and not ros2:
         raise typer.BadParameter(f"{BEGIN} needs --ros2: add that option", context)
+    if (mavlink is None) != (vehicle is None):
+        raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
         watched = opened.enter_context(WatchedLanguage(language, profile))
         listener = create_listener(watched.first, without_salutes=without_salutes)
@@ -102,7 +127,8 @@ def robot(
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)
             return
-        handlers = [print_event]
+        report = partial(report_event, ServiceManager())
+        handlers: list[Callable[[Event], None]] = [print_event, report]
         observer: Observer | None = None
         if ros2:
             from app.cli.robots.ros2_topics import open_ros2_topics
@@ -112,6 +138,13 @@ def robot(
             observer = topics.publish_frame
         if publish:
             handlers.append(opened.enter_context(closing(open_publisher(publish))).publish)
+        if page:
+            handlers.append(opened.enter_context(closing(open_page(page))).publish)
+        if mavlink and vehicle:
+            from app.cli.robots.vehicle import open_bridge
+
+            bridge = open_bridge(mavlink, vehicle, listener, frames)
+            handlers.append(opened.enter_context(closing(bridge)).publish)
         runtime = Runtime(
             frames, finder, listener, water=water, changes=watched.next_change, observer=observer
         )
@@ -119,6 +152,23 @@ def robot(
             recognised = emit_all(runtime, handlers)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
+
+
+def open_page(address: str) -> Publisher:
+    """Serve the status page at ``[HOST:]PORT``.
+
+    Raises
+    ------
+    PublishError
+        When that is no address, or cannot be listened on.
+
+    """
+    from app.robot.publishing.status_page import StatusPage
+
+    host, _, port = address.rpartition(":")
+    if not port.isdecimal():
+        raise PublishError(f"{address!r} is no place for the page; give PORT or HOST:PORT")
+    return StatusPage(host.strip("[]") or "127.0.0.1", int(port), describe_event)
 
 
 def emit_all(events: Iterable[Event], handlers: Sequence[Callable[[Event], None]]) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from typing import Final
 from urllib.parse import urlsplit
@@ -13,6 +14,12 @@ from av.container import InputContainer
 
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
+from app.robot.sources.rtp import (
+    describe_address,
+    is_datagram_address,
+    is_description_file,
+    read_description,
+)
 
 OPEN_SECONDS: Final = 10.0
 """For a stream to say what it holds: RTSP cameras send a picture that can be decoded alone every
@@ -27,6 +34,9 @@ MOST_PIXELS: Final = 16_000_000
 
 SCHEMES: Final = ("rtsp", "rtsps", "http", "https", "udp", "rtp", "tcp", "srt")
 """Of addresses that are opened as streams."""
+
+DATAGRAM_PROTOCOLS: Final = "rtp,srtp,udp"
+"""What a session description may make FFmpeg open."""
 
 PROTOCOLS: Final = "rtsp,rtsps,rtp,srtp,udp,tcp,tls,http,https,httpproxy,crypto,srt"
 """What FFmpeg may open for them; not files, which a playlist from the network could name."""
@@ -73,12 +83,12 @@ class CameraDevice:
 
 
 class NetworkStream:
-    """A stream from the network, such as a camera's RTSP or MJPEG; a `Camera`.
+    """A stream from the network, such as a camera's RTSP, MJPEG or RTP; a `Camera`.
 
     Parameters
     ----------
     address
-        With its scheme, one of `SCHEMES`.
+        With its scheme, one of `SCHEMES`; or the path of a session description.
 
     Raises
     ------
@@ -95,6 +105,12 @@ class NetworkStream:
         except IndexError as error:
             self.close()
             raise SourceError(f"{self._name} holds no video; check the address") from error
+        if not stream.codec_context.width:
+            self.close()
+            raise SourceError(
+                f"{self._name} sends something, but no picture could be decoded in "
+                f"{OPEN_SECONDS:g} s; for RTP it is taken for H.264 unless an .sdp file says more"
+            )
         stream.thread_type = "SLICE"  # threads over frames would hold several back
         self._frames = self._container.decode(stream)
 
@@ -135,12 +151,15 @@ def is_address(text: str) -> bool:
 
 
 def _open(address: str, name: str) -> InputContainer:
+    described = _describe(address)
     try:
         return av.open(
-            address,
+            address if described is None else io.BytesIO(described.encode()),
+            "r",
+            format=None if described is None else "sdp",
             timeout=(OPEN_SECONDS, SILENT_SECONDS),
             container_options={
-                "protocol_whitelist": PROTOCOLS,
+                "protocol_whitelist": PROTOCOLS if described is None else DATAGRAM_PROTOCOLS,
                 "fflags": "nobuffer",
                 "rtsp_transport": "tcp",  # over UDP a lost packet smears the picture for seconds
             },
@@ -152,3 +171,10 @@ def _open(address: str, name: str) -> InputContainer:
             f"{name} cannot be opened ({error.strerror or error}); check the address, and whether "
             "the camera is on"
         ) from error
+
+
+def _describe(address: str) -> str | None:
+    """Return the session description of RTP over UDP; None for any other stream."""
+    if is_description_file(address):
+        return read_description(address, OPEN_SECONDS)
+    return describe_address(address, OPEN_SECONDS) if is_datagram_address(address) else None

@@ -129,11 +129,12 @@ class LiveSource:
             if self._notices:
                 return self._notices.popleft()
             if self._newest is None:
-                return NoFrame(self._now())
+                return NoFrame(self.now())
             frame, self._newest, self._dropped = self._newest, None, 0
             return frame
 
-    def _now(self) -> float:
+    def now(self) -> float:
+        """Return the current time of its clock, in seconds."""
         return clock.monotonic() - self._began
 
     def _read(self, camera: Camera) -> None:
@@ -164,7 +165,7 @@ class LiveSource:
 
     def _reopen(self, reason: str) -> Camera | None:
         """Open the camera again, as often as it takes; None when the source is closed meanwhile."""
-        self._tell(SourceLost(self._now(), reason))
+        self._tell(SourceLost(self.now(), reason))
         attempts = 0
         while not self._closing.wait(self._wait):
             self._wait = min(2 * self._wait, LONGEST_WAIT)
@@ -173,7 +174,7 @@ class LiveSource:
                 camera, image = _first_frame(self._opened)
             except SourceError:
                 continue
-            now = self._now()
+            now = self.now()
             self._tell(SourceRestored(now, now - self._stamp, attempts))
             self._keep(image)
             return camera
@@ -183,7 +184,7 @@ class LiveSource:
         with self._news:
             if self._newest is not None:
                 self._dropped += 1
-            self._stamp = max(self._now(), self._stamp + SHORTEST_STEP)
+            self._stamp = max(self.now(), self._stamp + SHORTEST_STEP)
             self._newest = Frame(self._stamp, image, self._dropped)
             self._news.notify_all()
 

@@ -13,6 +13,7 @@ from app.clip_sources import VIDEO, ReadOptions, source_of
 from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
 from app.robot.sources.live import LiveSource
 from app.robot.sources.recorded import RecordedSource
+from app.robot.sources.rtp import is_description_file
 from app.robot.sources.source import Source
 
 
@@ -62,6 +63,7 @@ def open_clip(text: str) -> Source:
 KINDS: tuple[SourceKind, ...] = (
     SourceKind(is_device, open_camera),
     SourceKind(is_address, open_stream),
+    SourceKind(is_description_file, open_stream),
     SourceKind(lambda text: True, open_clip),
 )
 """Kinds in the order in which they are tried; any other text is the path of a clip."""
@@ -74,8 +76,8 @@ def open_source(text: str) -> Source:
     ----------
     text
         A camera's number (``0``) or device file (``/dev/video0``), a stream's address
-        (``rtsp://...``, ``http://...``), the path of a dive recording (``BAG`` or
-        ``BAG@/TOPIC``) or of a clip.
+        (``rtsp://...``, ``udp://...``) or session description (``.sdp``), the path of a dive
+        recording (``BAG`` or ``BAG@/TOPIC``) or of a clip.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Licences of what is pinned for running: ``python -m tests.licences`` lists them.
+"""Licences of what is pinned for running: ``python -m release.licences`` lists them.
 
 They are read from the packages as they are installed; nothing is fetched.
 """
@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 
 from tests.conftest import ROOT
 
-LOCKS = ("requirements.txt", "requirements-robot.txt")
+LOCKS = ("requirements.txt", "requirements-robot.txt", "requirements-vehicle.txt")
 
 
 @dataclass(frozen=True)

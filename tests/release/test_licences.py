@@ -2,7 +2,7 @@
 
 import re
 
-from tests.licences import list_licences
+from release.licences import list_licences
 
 WORDS = {
     *("0BSD", "Apache", "BSD", "CC0", "ISC", "MIT", "MPL", "PSF", "Zlib", "any-OSI"),

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from osg_ros.commands.dialogue import (
+from app.robot.commands.dialogue import (
     CommandDialogue,
     CommandTable,
     Decision,

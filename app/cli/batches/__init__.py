@@ -1,0 +1,1 @@
+"""Batches: recognises all clips of a folder, resumable, into one table."""

@@ -1,0 +1,23 @@
+"""Supervision: tells the service manager what a robot's events mean for it."""
+
+from __future__ import annotations
+
+from app.cli.robots.events import describe_event
+from app.robot import Event, SourceEnded, SourceOpened
+from app.service_manager import ServiceManager
+
+
+def report_event(manager: ServiceManager, event: Event) -> None:
+    """Tell that the robot is ready, works or ends, and in words what it does.
+
+    A live source gives a heartbeat at least every 5 seconds, so a watchdog of 30 seconds starts a
+    robot again that hangs.
+    """
+    match event:
+        case SourceOpened():
+            manager.tell_ready()
+        case SourceEnded():
+            manager.tell_stopping()
+    manager.tell_alive()
+    if sentence := describe_event(event):
+        manager.tell_status(sentence)

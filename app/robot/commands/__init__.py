@@ -1,0 +1,1 @@
+"""Commands: decides which recognised gestures and phrases become commands, without ROS."""

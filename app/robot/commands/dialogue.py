@@ -1,0 +1,456 @@
+"""Command dialogue: decides when a recognised gesture becomes a command, without ROS.
+
+A misrecognised gesture must not move a robot. So a command is given when the diver repeats its
+gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. A cancel
+and an emergency are never ignored, however old they are, because stopping is the safe direction.
+All else is taken in the order of arrival, while it is fresh. In a language with phrases the whole
+message is repeated and executed, not its single gestures.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+CONFIRM_SECONDS = 20.0
+"""Time for the diver to read the robot's display and repeat a gesture, salutes included. A gesture
+of the sample clips takes 4 to 6 s, so this leaves two attempts."""
+
+STALE_SECONDS = 3.0
+"""Longest delay from the picture that ended a gesture to its arrival. Pose estimation on a slow
+robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
+
+MOST_BODIES = 32
+"""Bodies of which the last gesture is kept: more than divers work near one robot."""
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Rules of a `CommandDialogue`.
+
+    Attributes
+    ----------
+    confirmed
+        Whether a gesture or a message must be repeated before its command is given.
+    confirm_seconds
+        Longest time from a gesture to the end of its repetition; for a message, to each next
+        gesture of its repetition and to the end of the repetition.
+    stale_seconds
+        Largest difference between a gesture's stamp and the current time, in either direction;
+        labels in `cancel` and `emergency` may be older.
+    least_confidence
+        A gesture below it counts as rejected, a message as not understood.
+    cancel
+        Labels that cancel a pending gesture or message. Their own commands are not given.
+    emergency
+        Labels whose commands are given at once.
+
+    Raises
+    ------
+    ValueError
+        When a number is out of its range, or a label is in both `cancel` and `emergency`.
+
+    """
+
+    confirmed: bool = True
+    confirm_seconds: float = CONFIRM_SECONDS
+    stale_seconds: float = STALE_SECONDS
+    least_confidence: float = 0.0
+    cancel: frozenset[str] = frozenset()
+    emergency: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        """Validate the values; a wrong one would give commands at the wrong moment."""
+        for name in ("confirm_seconds", "stale_seconds"):
+            seconds = getattr(self, name)
+            if not (math.isfinite(seconds) and seconds > 0):
+                raise ValueError(f"{name} is {seconds}; give seconds above 0")
+        if not 0 <= self.least_confidence <= 1:
+            raise ValueError(f"least_confidence is {self.least_confidence}; give 0 to 1")
+        if both := sorted(self.cancel & self.emergency):
+            raise ValueError(
+                f"{both} cancel and are emergencies as well; take them out of one of the two lists"
+            )
+
+
+@dataclass(frozen=True)
+class RecognizedGesture:
+    """Recognition of one take.
+
+    Attributes
+    ----------
+    label
+        The gesture; None when rejected.
+    confidence
+        In [0, 1].
+    stamp
+        Time of the picture that ended the take, in seconds.
+    language_id
+        Id of the language that recognised it.
+    start
+        Time at which the take began, in seconds; None: at `stamp`.
+    body_id
+        Whose gesture it is.
+
+    """
+
+    label: str | None
+    confidence: float
+    stamp: float
+    language_id: str
+    start: float | None = None
+    body_id: str = ""
+
+    @property
+    def began(self) -> float:
+        """Time at which the take began, in seconds."""
+        return self.stamp if self.start is None else min(self.start, self.stamp)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecognizedPhrase:
+    """Recognition of a message of several gestures.
+
+    Attributes
+    ----------
+    kind
+        As in ``osg_interfaces/Phrase``; only ``complete`` leads to a command.
+    mission
+        The mission as JSON; empty for none.
+    text
+        Description for the diver.
+    confidence
+        Lowest confidence of its gestures, in [0, 1].
+    start, stamp
+        Time of the first gesture, and of the picture after which the message was known, in seconds.
+    label
+        Label of the gesture that caused it; None for a rejected gesture and for a pause.
+    language_id
+        Id of its language.
+    body_id
+        Whose message it is.
+
+    """
+
+    kind: str
+    mission: str
+    text: str
+    confidence: float
+    start: float
+    stamp: float
+    label: str | None
+    language_id: str
+    body_id: str = ""
+
+    @property
+    def began(self) -> float:
+        """Time at which the message began, in seconds."""
+        return min(self.start, self.stamp)
+
+
+@dataclass(frozen=True)
+class CommandTable:
+    """Commands of a language's gestures.
+
+    Attributes
+    ----------
+    language_id
+        Id of the language.
+    commands
+        Command of each label; labels without a command are left out.
+    phrase_labels
+        Labels that the language's phrases use; they have no meaning alone. Empty: no phrases.
+
+    """
+
+    language_id: str = ""
+    commands: Mapping[str, str] = field(default_factory=dict)
+    phrase_labels: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Result of a gesture or of elapsed time.
+
+    Attributes
+    ----------
+    command
+        Command to give now; None for no command.
+    label
+        Label of the gesture; for a message, its text.
+    emergency
+        Whether the command needed no repetition because its label is an emergency.
+    reason
+        One line for the diver's display and the log.
+
+    """
+
+    reason: str
+    command: str | None = None
+    label: str | None = None
+    emergency: bool = False
+
+
+@dataclass(frozen=True)
+class Pending:
+    """A gesture or a message that waits for its repetition.
+
+    Attributes
+    ----------
+    label
+        Label of the gesture; for a message, its text.
+    deadline
+        Time by which the repetition must have ended, in seconds; for a message, ended or continued.
+    mission
+        Mission of the message; None for a gesture.
+    body_id
+        Who must repeat it.
+
+    """
+
+    label: str
+    deadline: float
+    mission: str | None = None
+    body_id: str = ""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The last that one body showed, to tell it from its repetition.
+
+    Attributes
+    ----------
+    stamp, started
+        Stamp and beginning of the last event, in seconds: later events are newer.
+    middle
+        Middle of the last gesture or message that was understood. What began before it is another
+        recognition of the same one, by another camera or recogniser.
+
+    """
+
+    stamp: float = -math.inf
+    started: float = -math.inf
+    middle: float = -math.inf
+
+
+class CommandDialogue:
+    """Dialogue that decides which recognised gestures and messages become commands.
+
+    Parameters
+    ----------
+    rules
+        Rules of the decisions.
+
+    Attributes
+    ----------
+    table
+        Commands of the active language; an empty table gives no commands.
+    pending
+        Gesture or message that waits for its repetition, or None.
+
+    """
+
+    def __init__(self, rules: Rules) -> None:
+        self.rules = rules
+        self.table = CommandTable()
+        self.pending: Pending | None = None
+        self._now = -math.inf
+        self._gestures: OrderedDict[str, Shown] = OrderedDict()
+        self._messages: OrderedDict[str, Shown] = OrderedDict()
+
+    def set_table(self, table: CommandTable) -> Decision | None:
+        """Set the commands of another language and clear a pending gesture or message.
+
+        Setting the same table again changes nothing.
+
+        Returns
+        -------
+        A decision that informs the diver; None where nothing was pending.
+
+        """
+        before, self.table = self.table, table
+        if self.pending is None or table == before:
+            return None
+        label, self.pending = self.pending.label, None
+        return Decision(f"{label!r} is forgotten: another language was loaded; show it again")
+
+    def decide(self, gesture: RecognizedGesture, now: float) -> Decision:
+        """Decide about a gesture.
+
+        Parameters
+        ----------
+        gesture
+            The recognised gesture.
+        now
+            Current time in seconds, in the clock of the stamps.
+
+        """
+        self._follow_clock(now)
+        # `>=` is False for NaN, so a confidence of NaN is too low.
+        sure = gesture.confidence >= self.rules.least_confidence
+        safe = sure and gesture.label in self.rules.cancel | self.rules.emergency
+        before = self._gestures.get(gesture.body_id, Shown())
+        is_newer = gesture.stamp > before.stamp
+        refused = None if safe else self._find_refusal(gesture, now, before, is_newer=is_newer)
+        if refused is not None:
+            return Decision(refused)
+        label = gesture.label if sure else None
+        self._remember(self._gestures, gesture, now, understood=label is not None)
+        if label is None:
+            return Decision("not understood; show the gesture again")
+        return self._decide_label(label, gesture)
+
+    def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
+        """Decide about a phrase event, which follows a gesture or a pause.
+
+        Parameters
+        ----------
+        phrase
+            Result of the language's grammar.
+        now
+            Current time in seconds, in the clock of the stamps.
+
+        """
+        self._follow_clock(now)
+        before = self._messages.get(phrase.body_id, Shown())
+        # One picture can end a message and begin another one: two events with the same stamp.
+        is_newer = (phrase.stamp, phrase.start) > (before.stamp, before.started)
+        whole = phrase.kind == "complete"
+        refused = None
+        if phrase.kind != "cancelled":
+            same = before if whole else replace(before, middle=-math.inf)
+            refused = self._find_refusal(phrase, now, same, is_newer=is_newer)
+        if refused is None and not self.table.phrase_labels:
+            refused = "ignored: the language of the commands has no phrases"
+        if refused is not None:
+            return Decision(refused)
+        self._remember(self._messages, phrase, now, understood=whole)
+        pending = self.pending if self.pending and self.pending.mission else None
+        in_time = self._is_repetition(pending, phrase)
+        if phrase.kind == "complete" and phrase.mission:
+            return self._complete(phrase, pending if in_time else None)
+        if phrase.kind == "continues" and pending and in_time:
+            self.pending = replace(pending, deadline=phrase.stamp + self.rules.confirm_seconds)
+        stays = phrase.kind in ("continues", "repeat")
+        stays |= phrase.kind == "outside" and phrase.label is None
+        if pending is None or stays:
+            return Decision(phrase.text)
+        self.pending = None
+        return Decision(f"{phrase.text}; {pending.label!r} is forgotten")
+
+    def check_deadline(self, now: float) -> Decision | None:
+        """Clear the pending gesture or message after its deadline.
+
+        Parameters
+        ----------
+        now
+            Current time in seconds, in the clock of the stamps.
+
+        Returns
+        -------
+        The decision, or None for no change. The deadline is extended by `stale_seconds`, because a
+        repetition that ended in time may arrive that late.
+
+        """
+        self._follow_clock(now)
+        pending = self.pending
+        if pending is None or now <= pending.deadline + self.rules.stale_seconds:
+            return None
+        self.pending = None
+        return Decision(f"{pending.label!r} was not repeated in time; show it twice")
+
+    def _follow_clock(self, now: float) -> None:
+        """Note the time; when the clock was set back, move what was noted back with it."""
+        step = now - self._now
+        if math.isfinite(step) and step < 0:
+            if self.pending is not None:
+                self.pending = replace(self.pending, deadline=self.pending.deadline + step)
+            for shown in (self._gestures, self._messages):
+                for body, last in shown.items():
+                    shown[body] = Shown(last.stamp + step, last.started + step, last.middle + step)
+        self._now = now if math.isfinite(now) else self._now
+
+    def _remember(
+        self,
+        shown: OrderedDict[str, Shown],
+        input_: RecognizedGesture | RecognizedPhrase,
+        now: float,
+        *,
+        understood: bool,
+    ) -> None:
+        """Note the last that a body showed."""
+        last = shown.pop(input_.body_id, Shown())
+        # A stamp from the future must not keep back what follows.
+        stamp = min(input_.stamp, now)
+        middle = (input_.began + stamp) / 2 if understood else last.middle
+        shown[input_.body_id] = Shown(
+            max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
+        )
+        if len(shown) > MOST_BODIES:
+            shown.popitem(last=False)
+
+    def _find_refusal(
+        self,
+        input_: RecognizedGesture | RecognizedPhrase,
+        now: float,
+        before: Shown,
+        *,
+        is_newer: bool,
+    ) -> str | None:
+        """Return why a gesture or message is ignored; None where it is not."""
+        what = "message" if isinstance(input_, RecognizedPhrase) else "gesture"
+        age = now - input_.stamp
+        if not abs(age) <= self.rules.stale_seconds:
+            return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"
+        if not is_newer:
+            return f"ignored: the {what} is not newer than the one before"
+        if input_.language_id != self.table.language_id:
+            return f"ignored: the {what} is of another language than the commands"
+        if input_.began < before.middle:
+            return f"ignored: the {what} is the one before, recognised once more"
+        return None
+
+    def _is_repetition(
+        self, pending: Pending | None, input_: RecognizedGesture | RecognizedPhrase
+    ) -> bool:
+        """Return whether an input may confirm the pending one: in time, and of the same body."""
+        return (
+            pending is not None
+            and input_.stamp <= pending.deadline
+            and input_.body_id == pending.body_id
+        )
+
+    def _decide_label(self, label: str, gesture: RecognizedGesture) -> Decision:
+        pending, self.pending = self.pending, None
+        command = self.table.commands.get(label)
+        if label in self.table.phrase_labels - self.rules.cancel - self.rules.emergency:
+            # Such gestures repeat the pending message.
+            self.pending = pending if pending and pending.mission else None
+            return Decision(f"{label!r} counts within a phrase only", label=label)
+        if label in self.rules.cancel:
+            what = f"{pending.label!r} is cancelled" if pending else "nothing to cancel"
+            return Decision(what, label=label)
+        if command is None:
+            return Decision(f"{label!r} has no command", label=label)
+        if label in self.rules.emergency:
+            return Decision(f"emergency {label!r}: {command}", command, label, emergency=True)
+        repeated = self._is_repetition(pending, gesture) and pending and pending.label == label
+        if not self.rules.confirmed or repeated:
+            return Decision(f"{label!r}: {command}", command, label)
+        deadline = gesture.stamp + self.rules.confirm_seconds
+        self.pending = Pending(label, deadline, body_id=gesture.body_id)
+        return Decision(f"repeat {label!r} to confirm: {command}", label=label)
+
+    def _complete(self, phrase: RecognizedPhrase, pending: Pending | None) -> Decision:
+        """Decide about a complete message, which may confirm `pending`."""
+        # `>=` is False for NaN, so a confidence of NaN is too low.
+        if not phrase.confidence >= self.rules.least_confidence:
+            return Decision("not understood; show the message again")
+        self.pending = None
+        if not self.rules.confirmed or (pending and pending.mission == phrase.mission):
+            return Decision(phrase.text, phrase.mission, phrase.text)
+        deadline = phrase.stamp + self.rules.confirm_seconds
+        self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
+        return Decision(f"repeat the message to confirm: {phrase.text}", label=phrase.text)

@@ -1,0 +1,1 @@
+"""MAVLink bridge: gives a vehicle the commands that a diver has confirmed."""

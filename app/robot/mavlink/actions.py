@@ -1,0 +1,224 @@
+"""Vehicle actions as MAVLink: the messages that ask for an action, and what proves it done.
+
+A mode counts as taken when it is acknowledged and the vehicle's heartbeat shows it: the one alone
+could be of an earlier command, the other of before a restart. ArduSub acknowledges no depth, which
+counts when its target shows it. Lights and camera are acknowledged only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Protocol
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.robot.mavlink.table import (
+    Action,
+    Camera,
+    Depth,
+    Hold,
+    Lights,
+    Mode,
+    Surface,
+    Vehicle,
+)
+
+Message = Any
+"""A message of pymavlink, which has no types."""
+
+OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
+"""MAVLink component id of this computer, which is a part of the vehicle's system."""
+
+LEAST_PWM, MOST_PWM = 1100, 1900
+"""Microseconds of the pulse at which the lights are off, and at their brightest."""
+
+TARGET_TOLERANCE: Final = 0.3
+"""Metres between the depth asked for and the target that the vehicle reports: pressure and waves
+move its own depth, from which the target is computed, by about as much."""
+
+IGNORE_ALL_BUT_DEPTH: Final = (
+    mavlink.POSITION_TARGET_TYPEMASK_X_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_Y_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
+    | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+)
+
+
+@dataclass
+class Reported:
+    """What the vehicle has last said of itself.
+
+    Attributes
+    ----------
+    accepted
+        Number of the command that it accepted.
+    mode
+        Number of its mode.
+    altitude
+        Metres, negative below the surface.
+    altitude_error
+        Metres from its altitude up to its target.
+
+    """
+
+    accepted: int | None = None
+    mode: int | None = None
+    altitude: float | None = None
+    altitude_error: float | None = None
+
+    def hear(self, message: Message) -> None:
+        """Note what a message of the vehicle says."""
+        match message.get_type():
+            case "COMMAND_ACK" if message.result == mavlink.MAV_RESULT_ACCEPTED:
+                self.accepted = message.command
+            case "HEARTBEAT":
+                self.mode = message.custom_mode
+            case "VFR_HUD":
+                self.altitude = message.alt
+            case "NAV_CONTROLLER_OUTPUT":
+                self.altitude_error = message.alt_error
+
+
+class Step(Protocol):
+    """Protocol of one thing to ask of a vehicle."""
+
+    @property
+    def command(self) -> int | None:
+        """Number of the command whose acknowledgement answers it; None: it has none."""
+        ...
+
+    def build(self, repetition: int) -> Message:
+        """Build the message; `repetition` counts from 0."""
+        ...
+
+    def is_done(self, reported: Reported) -> bool:
+        """Return whether what the vehicle reported since the message was first sent proves it."""
+        ...
+
+
+@dataclass(frozen=True)
+class CommandStep:
+    """A command that is acknowledged, of at most seven numbers.
+
+    Attributes
+    ----------
+    command
+        Number of the command.
+    parameters
+        Its numbers; those left out are 0.
+    system, component
+        Who should obey.
+
+    """
+
+    command: int
+    parameters: tuple[float, ...]
+    system: int
+    component: int
+
+    def build(self, repetition: int) -> Message:
+        """Build the message."""
+        padded = (*self.parameters, *(0.0,) * (7 - len(self.parameters)))
+        return mavlink.MAVLink_command_long_message(
+            self.system, self.component, self.command, min(repetition, 255), *padded
+        )
+
+    def is_done(self, reported: Reported) -> bool:
+        """Return whether the vehicle accepted it."""
+        return reported.accepted == self.command
+
+
+@dataclass(frozen=True)
+class ModeStep:
+    """A change of the mode, repeated until the vehicle accepts and shows it."""
+
+    mode: int
+    system: int
+    component: int
+
+    command = mavlink.MAV_CMD_DO_SET_MODE
+
+    def build(self, repetition: int) -> Message:
+        """Build the message."""
+        chosen = (mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, self.mode)
+        return CommandStep(self.command, chosen, self.system, self.component).build(repetition)
+
+    def is_done(self, reported: Reported) -> bool:
+        """Return whether the vehicle accepted it and is in the mode."""
+        return (reported.accepted, reported.mode) == (self.command, self.mode)
+
+
+@dataclass(frozen=True)
+class DepthStep:
+    """A target depth in metres, repeated until the vehicle's target is that depth."""
+
+    metres: float
+    system: int
+    component: int
+
+    command = None
+
+    def build(self, repetition: int) -> Message:
+        """Build the message."""
+        return mavlink.MAVLink_set_position_target_global_int_message(
+            0,
+            self.system,
+            self.component,
+            mavlink.MAV_FRAME_GLOBAL_INT,
+            IGNORE_ALL_BUT_DEPTH,
+            0,
+            0,
+            -self.metres,
+            *(0.0,) * 8,
+        )
+
+    def is_done(self, reported: Reported) -> bool:
+        """Return whether the vehicle's target is the depth."""
+        if reported.altitude is None or reported.altitude_error is None:
+            return False
+        target = reported.altitude + reported.altitude_error
+        return abs(target + self.metres) <= TARGET_TOLERANCE
+
+
+def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:
+    """Build the steps of an action, in order.
+
+    Parameters
+    ----------
+    action
+        The action, without an open slot.
+    vehicle
+        Who should obey.
+    picture
+        Number of the next picture: a camera takes none twice that is asked for repeatedly.
+
+    """
+    address = (vehicle.system, vehicle.component)
+    match action:
+        case Hold():
+            return (ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),)
+        case Surface():
+            return (ModeStep(mavlink.SUB_MODE_SURFACE, *address),)
+        case Mode(mode=mode):
+            return (ModeStep(getattr(mavlink, f"SUB_MODE_{mode}"), *address),)
+        case Lights(percent=percent):
+            pulse = round(LEAST_PWM + (MOST_PWM - LEAST_PWM) * percent / 100)
+            command = mavlink.MAV_CMD_DO_SET_SERVO
+            return (CommandStep(command, (vehicle.lights_servo, pulse), *address),)
+        case Camera():
+            command = mavlink.MAV_CMD_IMAGE_START_CAPTURE
+            camera = (vehicle.system, vehicle.camera_component)
+            return (CommandStep(command, (0.0, 0.0, 1.0, float(picture)), *camera),)
+        case Depth(metres=float() as metres):
+            # ArduSub takes a depth in ALT_HOLD alone.
+            return (
+                ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),
+                DepthStep(metres, *address),
+            )
+    raise ValueError(f"{action!r} has an open slot: resolve it first")

@@ -1,0 +1,294 @@
+"""MAVLink bridge: turns the robot's events into confirmed orders for a vehicle."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time as clock
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.recognition.errors import OsgError, VehicleError
+from app.robot.active_language import ActiveLanguage
+from app.robot.commands.dialogue import (
+    CommandDialogue,
+    CommandTable,
+    Decision,
+    RecognizedGesture,
+    RecognizedPhrase,
+)
+from app.robot.events import Event, LanguageChanged, PhraseHeard, TakeRecognized, TakeRejected
+from app.robot.mavlink.actions import Message, Step, build_steps
+from app.robot.mavlink.links import VehicleLink
+from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.table import Action, VehicleTable
+
+TEXT_BYTES: Final = 50
+"""Bytes of a STATUSTEXT, which many displays cut a longer message to."""
+
+TICK_SECONDS: Final = 0.05
+"""Longest wait for a message: shorter than what a diver or a vehicle notices."""
+
+HEARTBEAT_SECONDS: Final = 1.0
+"""Between two of our heartbeats, as MAVLink asks for."""
+
+SILENT_SECONDS: Final = 5.0
+"""Without a heartbeat of the vehicle for so long, it counts as lost."""
+
+SEVERITIES: Final = {
+    "done": mavlink.MAV_SEVERITY_NOTICE,
+    "replaced": mavlink.MAV_SEVERITY_NOTICE,
+    "refused": mavlink.MAV_SEVERITY_WARNING,
+    "unanswered": mavlink.MAV_SEVERITY_WARNING,
+}
+
+
+class MavlinkBridge:
+    """Bridge from a robot's events to a vehicle; a `Publisher`.
+
+    `publish` decides in the caller's thread, by the same dialogue as the ROS 2 command node; a
+    thread of its own talks to the vehicle, so that no picture waits for it.
+
+    Parameters
+    ----------
+    table
+        What gestures and phrases mean.
+    link
+        Connection to the vehicle; closed with the bridge.
+    language
+        Returns the active language.
+    tell
+        Called with every line for people, from either thread.
+    now
+        Returns the current time in seconds of the source's clock; None: that of the last event,
+        for recordings.
+
+    """
+
+    def __init__(
+        self,
+        table: VehicleTable,
+        link: VehicleLink,
+        language: Callable[[], ActiveLanguage],
+        tell: Callable[[str], None],
+        now: Callable[[], float] | None = None,
+    ) -> None:
+        self._table = table
+        self._link = link
+        self._language = language
+        self._tell_people = tell
+        self._now = now
+        self._time = 0.0
+        self._dialogue = CommandDialogue(table.rules)
+        self._desk = OrderDesk(table.vehicle)
+        self._texts: list[Message] = []
+        self._pictures = 0
+        self._beaten = self._heard = clock.monotonic()
+        self._silent = self._broken = False
+        self._reboots = 0
+        self._fault: Exception | None = None
+        self._lock = threading.Lock()
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="mavlink", daemon=True)
+        self._thread.start()
+
+    def publish(self, event: Event) -> None:
+        """Decide about one event.
+
+        Raises
+        ------
+        Exception
+            What ended the thread that talks to the vehicle: a robot that seems to obey must not go
+            on.
+
+        """
+        if self._fault is not None:
+            raise self._fault
+        with self._lock:
+            self._time = event.time
+            match event:
+                case LanguageChanged():
+                    self._set_language()
+                case TakeRecognized() | TakeRejected():
+                    self._decide_take(event)
+                case PhraseHeard():
+                    self._decide_phrase(event)
+
+    def close(self) -> None:
+        """Finish the order on its way, for at most as long as it may take, and disconnect."""
+        self._closing.set()
+        self._thread.join()
+        self._link.close()
+
+    def _set_language(self) -> None:
+        active = self._language()
+        language = active.recognizer.language
+        actions = {label: self._table.find_action(label) for label in language.labels}
+        words = {label: action.words for label, action in actions.items() if action is not None}
+        grammar = language.grammar
+        used = grammar.uses() if grammar is not None and grammar.phrases else ()
+        labels = frozenset(use.label for use in used)
+
+        decision = self._dialogue.set_table(CommandTable(active.sha256, words, labels))
+        if decision is not None:
+            self._say(decision.reason)
+        for name in self._table.list_unknown(language):
+            self._say(f"not in the language: {name}", mavlink.MAV_SEVERITY_WARNING)
+
+    def _decide_take(self, event: TakeRecognized | TakeRejected) -> None:
+        recognized = isinstance(event, TakeRecognized)
+        gesture = RecognizedGesture(
+            event.label if isinstance(event, TakeRecognized) else None,
+            event.confidence if recognized and event.confidence is not None else 0.0,
+            event.time,
+            event.sha256,
+            start=event.start,
+        )
+        decision = self._dialogue.decide(gesture, self._source_time())
+        action = None
+        if decision.command is not None and decision.label is not None:
+            action = self._table.find_action(decision.label)
+        self._act(decision, () if action is None else (action,))
+
+    def _decide_phrase(self, event: PhraseHeard) -> None:
+        phrase, mission, text = event.phrase, "", event.phrase.text
+        if phrase.mission is not None:
+            listed = phrase.mission.to_list()
+            try:
+                self._table.resolve_mission(listed)
+                mission = json.dumps(listed, allow_nan=False)
+            except VehicleError as error:
+                text = str(error)
+        heard = RecognizedPhrase(
+            kind=phrase.kind,
+            mission=mission,
+            text=text,
+            confidence=event.confidence,
+            start=phrase.start,
+            stamp=event.time,
+            label=phrase.label,
+            language_id=event.sha256,
+        )
+        decision = self._dialogue.decide_phrase(heard, self._source_time())
+        meant = [] if decision.command is None else json.loads(decision.command)
+        self._act(decision, self._table.resolve_mission(meant))
+
+    def _act(self, decision: Decision, actions: Sequence[Action]) -> None:
+        """Tell the decision and give its actions to the vehicle."""
+        if not actions:
+            self._say(decision.reason)
+            return
+        words = ", ".join(action.words for action in actions)
+        steps: list[Step] = []
+        for action in actions:
+            self._pictures += 1
+            steps += build_steps(action, self._table.vehicle, self._pictures)
+        order = Order(words, tuple(steps), decision.emergency)
+        severity = mavlink.MAV_SEVERITY_CRITICAL if order.emergency else mavlink.MAV_SEVERITY_NOTICE
+        self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
+        replaced = self._desk.give(order, clock.monotonic())
+        if replaced is not None:
+            self._report(replaced)
+
+    def _source_time(self) -> float:
+        return self._time if self._now is None else self._now()
+
+    def _work(self) -> None:
+        """Talk to the vehicle until the bridge is closed; the thread's work."""
+        try:
+            self._talk()
+        except Exception as error:  # passed on to the thread that publishes
+            self._fault = error
+
+    def _talk(self) -> None:
+        while not self._closing.is_set() or self._desk.order is not None:
+            try:
+                messages = self._link.receive(TICK_SECONDS)
+                with self._lock:
+                    due = self._step(messages)
+                for message in due:
+                    self._link.send(message)
+                self._broken = False
+            except (OSError, OsgError) as error:
+                self._tell_broken(str(error))
+                self._closing.wait(TICK_SECONDS)
+                with self._lock:
+                    self._step([])
+
+    def _step(self, messages: Sequence[Message]) -> list[Message]:
+        """Process what arrived and return what is to be sent."""
+        now = clock.monotonic()
+        outcomes = [self._desk.hear(message, now) for message in messages]
+        outcomes.append(self._desk.check_deadline(now))
+        for outcome in outcomes:
+            if outcome is not None:
+                self._report(outcome)
+        decision = self._dialogue.check_deadline(self._source_time())
+        if decision is not None:
+            self._say(decision.reason)
+        self._watch_vehicle(messages, now)
+        due = [*self._texts, *self._desk.list_due(now)]
+        self._texts.clear()
+        if now - self._beaten >= HEARTBEAT_SECONDS:
+            self._beaten = now
+            due.append(build_heartbeat())
+        return due
+
+    def _watch_vehicle(self, messages: Sequence[Message], now: float) -> None:
+        """Tell when the vehicle falls silent, is back, or has started again."""
+        vehicle = self._table.vehicle
+        if any(
+            message.get_type() == "HEARTBEAT"
+            and (message.get_srcSystem(), message.get_srcComponent())
+            == (vehicle.system, vehicle.component)
+            for message in messages
+        ):
+            self._heard = now
+        silent = now - self._heard > SILENT_SECONDS
+        if silent != self._silent:
+            self._silent = silent
+            self._say(
+                "vehicle is silent" if silent else "vehicle is back", mavlink.MAV_SEVERITY_ALERT
+            )
+        if self._desk.reboots != self._reboots:
+            self._reboots = self._desk.reboots
+            self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
+
+    def _report(self, outcome: Outcome) -> None:
+        words = outcome.order.words
+        text = {
+            "done": f"done: {words}",
+            "replaced": f"replaced: {words}",
+            "refused": f"refused ({outcome.answer}): {words}",
+            "unanswered": f"NOT DONE, no answer: {words}",
+        }[outcome.kind]
+        self._say(text, SEVERITIES[outcome.kind])
+
+    def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
+        """Tell people here, and on the displays of the vehicle's network."""
+        self._tell_people(text)
+        self._texts.append(mavlink.MAVLink_statustext_message(severity, fit_text(text)))
+
+    def _tell_broken(self, reason: str) -> None:
+        if not self._broken:
+            self._broken = True
+            self._tell_people(f"no connection to the vehicle: {reason}")
+
+
+def build_heartbeat() -> Message:
+    """Build our heartbeat: a computer on board that flies nothing."""
+    return mavlink.MAVLink_heartbeat_message(
+        mavlink.MAV_TYPE_ONBOARD_CONTROLLER,
+        mavlink.MAV_AUTOPILOT_INVALID,
+        0,
+        0,
+        mavlink.MAV_STATE_ACTIVE,
+        3,  # version of MAVLink's heartbeat
+    )
+
+
+def fit_text(text: str) -> bytes:
+    """Return a text in UTF-8, cut to what a STATUSTEXT holds and at the end of a character."""
+    return text.encode()[:TEXT_BYTES].decode("utf-8", "ignore").encode()

@@ -1,0 +1,160 @@
+"""mavlink2rest link: MAVLink messages as JSON over HTTP, as BlueOS offers them."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import time as clock
+from collections.abc import Mapping
+from typing import Any, Final
+from urllib.parse import urlsplit
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.recognition.errors import VehicleError
+from app.robot.mavlink.actions import OUR_COMPONENT, Message
+
+ANSWER_SECONDS: Final = 2.0
+"""Time for the server to answer; it is on the vehicle, and answers from memory."""
+
+POLL_SECONDS: Final = 0.1
+"""Between two questions for news: well below the vehicle's own rate of one heartbeat a second."""
+
+WANTED: Final = ("HEARTBEAT", "COMMAND_ACK", "SYSTEM_TIME", "VFR_HUD", "NAV_CONTROLLER_OUTPUT")
+"""Messages that prove what the vehicle does."""
+
+RENAMED: Final = {"type": "mavtype"}
+"""Fields that have another name there, because ``type`` names the message."""
+
+
+class RestLink:
+    """HTTP to mavlink2rest; a `VehicleLink`.
+
+    Its last message of each kind is asked for again and again, and is news when its counter is
+    another one.
+
+    Parameters
+    ----------
+    address
+        Of the server, such as ``http://192.168.2.2/mavlink2rest``.
+    system, component
+        MAVLink ids of the vehicle.
+
+    Raises
+    ------
+    OSError
+        When nothing answers.
+    VehicleError
+        When what answers is not mavlink2rest.
+
+    """
+
+    def __init__(self, address: str, system: int, component: int) -> None:
+        place = urlsplit(address)
+        kind = (
+            http.client.HTTPSConnection if place.scheme == "https" else http.client.HTTPConnection
+        )
+        if not place.hostname:
+            raise ValueError("no host")
+        self._connection = kind(place.hostname, place.port, timeout=ANSWER_SECONDS)
+        self._path = f"{place.path.rstrip('/')}/mavlink"
+        self._system = system
+        self._messages = f"{self._path}/vehicles/{system}/components/{component}/messages"
+        self._codec = mavlink.MAVLink(None, system, component)
+        # What was said before we came is no answer to us.
+        self._counters = {name: count for name, (count, _) in self._fetch_all().items()}
+
+    def send(self, message: Message) -> None:
+        """Send a message."""
+        header = {"system_id": self._system, "component_id": OUR_COMPONENT, "sequence": 0}
+        body = json.dumps({"header": header, "message": to_json(message)}, allow_nan=False)
+        self._request("POST", self._path, body)
+
+    def receive(self, seconds: float) -> list[Message]:
+        """Return the messages that are news."""
+        clock.sleep(min(seconds, POLL_SECONDS))
+        news = []
+        for name, (count, message) in self._fetch_all().items():
+            if count != self._counters.get(name):
+                self._counters[name] = count
+                news.append(message)
+        return news
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._connection.close()
+
+    def _fetch_all(self) -> dict[str, tuple[int, Message]]:
+        return {name: found for name in WANTED if (found := self._fetch(name)) is not None}
+
+    def _fetch(self, name: str) -> tuple[int, Message] | None:
+        """Return the last message of a kind with its counter; None where there was none."""
+        text = self._request("GET", f"{self._messages}/{name}")
+        if text is None:
+            return None
+        try:
+            content = json.loads(text)
+            message = from_json(content["message"])
+            counter = int(content["status"]["time"]["counter"])
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise VehicleError(
+                f"{self._messages} is not answered as mavlink2rest does; check the address"
+            ) from error
+        # The ids of the sender are in the path.
+        message.pack(self._codec)
+        return counter, message
+
+    def _request(self, method: str, path: str, body: str | None = None) -> str | None:
+        """Return the answer's text; None where there is nothing."""
+        heads = {"Content-Type": "application/json"} if body else {}
+        try:
+            self._connection.request(method, path, body, heads)
+            answer = self._connection.getresponse()
+            text = answer.read().decode("utf-8", "replace")
+        except (http.client.HTTPException, OSError) as error:
+            self._connection.close()  # the next request connects again
+            raise ConnectionError(str(error) or type(error).__name__) from error
+        if answer.status == http.client.NOT_FOUND and method == "GET":
+            return None
+        if answer.status != http.client.OK:
+            raise ConnectionError(f"mavlink2rest answered {answer.status}: {text[:100]}")
+        return text
+
+
+def to_json(message: Message) -> dict[str, Any]:
+    """Return a message as mavlink2rest writes it: enumerations by name, bit masks as ``bits``."""
+    content: dict[str, Any] = {"type": message.get_type()}
+    lengths = dict(zip(message.ordered_fieldnames, message.array_lengths, strict=True))
+    for name in message.fieldnames:
+        value = getattr(message, name)
+        if isinstance(value, str):
+            # One character is one byte there, and pymavlink gives others as replacements.
+            text = value.replace("\N{REPLACEMENT CHARACTER}", "?")
+            value = [*text.ljust(lengths[name], "\0")]
+        elif message.fielddisplays_by_name.get(name) == "bitmask":
+            value = {"bits": value}
+        elif enum := message.fieldenums_by_name.get(name):
+            value = {"type": mavlink.enums[enum][value].name}
+        content[RENAMED.get(name, name)] = value
+    return content
+
+
+def from_json(content: Mapping[str, Any]) -> Message:
+    """Return the message of a JSON object of mavlink2rest.
+
+    Raises
+    ------
+    KeyError, TypeError, AttributeError
+        When it is not one.
+
+    """
+    kind = getattr(mavlink, f"MAVLink_{content['type'].lower()}_message")
+    values = {}
+    for name in kind.fieldnames:
+        value = content.get(RENAMED.get(name, name), 0)
+        if isinstance(value, Mapping):
+            value = value["bits"] if "bits" in value else getattr(mavlink, value["type"])
+        elif isinstance(value, list):
+            value = "".join(value).rstrip("\0").encode()
+        values[name] = value
+    return kind(**values)

@@ -1,0 +1,301 @@
+"""Vehicle table: which gesture or phrase becomes which action of the vehicle; a closed list.
+
+Whatever the table does not name does nothing. The actions are those of this module, each with its
+limits, so that no file can make the bridge send anything else.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from typing_extensions import Self
+
+from app.recognition import Language
+from app.recognition.errors import VehicleError
+from app.robot.commands.dialogue import CONFIRM_SECONDS, STALE_SECONDS, Rules
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FORMAT: Final = "osg-studio/vehicle-table"
+
+GIVE_UP_SECONDS: Final = 10.0
+"""Time for the vehicle to do as it is told: with a fifth of all packets lost, ten heartbeats and
+twenty repetitions; longer, and the diver has given up too."""
+
+DEEPEST: Final = 30.0
+"""Metres that a table may ask for unless it sets its own limit: below the depths of sport divers a
+number is more likely misread than meant."""
+
+ModeName = Literal[
+    "STABILIZE",
+    "ALT_HOLD",
+    "AUTO",
+    "GUIDED",
+    "CIRCLE",
+    "SURFACE",
+    "POSHOLD",
+    "MANUAL",
+    "SURFTRAK",
+]
+"""ArduSub's modes that a gesture may choose; neither ACRO, in which nobody holds the vehicle level,
+nor the detection of motors."""
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Hold(_Entry):
+    """Keep depth and heading: mode ``ALT_HOLD``."""
+
+    do: Literal["hold"] = "hold"
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        return "hold"
+
+
+class Surface(_Entry):
+    """Go up to the surface: mode ``SURFACE``."""
+
+    do: Literal["surface"] = "surface"
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        return "surface"
+
+
+class Mode(_Entry):
+    """Change the mode."""
+
+    do: Literal["mode"]
+    mode: ModeName
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        return f"mode {self.mode}"
+
+
+class Lights(_Entry):
+    """Set the lights, in percent of their brightness."""
+
+    do: Literal["lights"]
+    percent: Annotated[float, Field(ge=0, le=100)]
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        return f"lights {self.percent:g} %"
+
+
+class Camera(_Entry):
+    """Take one picture."""
+
+    do: Literal["camera"]
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        return "camera"
+
+
+class SlotName(_Entry):
+    """A slot of the phrase, whose value is used."""
+
+    slot: str
+
+
+class Depth(_Entry):
+    """Go to a depth below the surface and hold it, in metres; in a phrase also a slot's value."""
+
+    do: Literal["depth"]
+    metres: Annotated[float, Field(gt=0)] | SlotName
+
+    @property
+    def words(self) -> str:
+        """The action in words."""
+        if isinstance(self.metres, SlotName):
+            return f"depth of {self.metres.slot!r}"
+        return f"depth {self.metres:g} m"
+
+
+Action = Annotated[Hold | Surface | Mode | Lights | Camera | Depth, Field(discriminator="do")]
+
+EMERGENCIES: Final[dict[str, Hold | Surface]] = {"hold": Hold(), "surface": Surface()}
+
+
+class Vehicle(_Entry):
+    """Address of the vehicle on its MAVLink network, and limits.
+
+    Attributes
+    ----------
+    system, component
+        MAVLink ids of the autopilot.
+    camera_component
+        MAVLink id of what takes pictures; by default the autopilot, which triggers a camera.
+    lights_servo
+        Output that dims the lights, 13 on a BlueROV2 with a Navigator.
+    deepest
+        Largest depth that an action may ask for, in metres.
+    repeat_seconds
+        Time between two repetitions of a command that was not acknowledged.
+    give_up_seconds
+        Time after which an action that the vehicle has not done counts as failed.
+
+    """
+
+    system: Annotated[int, Field(ge=1, le=255)] = 1
+    component: Annotated[int, Field(ge=1, le=255)] = 1
+    camera_component: Annotated[int, Field(ge=1, le=255)] = 1
+    lights_servo: Annotated[int, Field(ge=1, le=32)] = 13
+    deepest: Annotated[float, Field(gt=0, le=1000)] = DEEPEST
+    repeat_seconds: Annotated[float, Field(ge=0.01, le=5)] = 0.5
+    give_up_seconds: Annotated[float, Field(gt=0, le=120)] = GIVE_UP_SECONDS
+
+
+class VehicleTable(_Entry):
+    """Table of the actions that gestures and phrases have, read from a file.
+
+    Attributes
+    ----------
+    gestures
+        Action of each gesture, by label; done when the diver has repeated the gesture.
+    phrases
+        Action of each phrase, by its name; done when the diver has repeated the message.
+    emergency
+        Labels of gestures that are obeyed at once: ``surface`` or ``hold``, nothing else.
+    cancel
+        Labels of gestures that withdraw what waits for its repetition.
+    confirm_seconds, stale_seconds, least_confidence
+        As in `app.robot.commands.dialogue.Rules`.
+    vehicle
+        Where the vehicle is, and its limits.
+
+    """
+
+    format: Literal["osg-studio/vehicle-table"]
+    version: Literal[1]
+    gestures: dict[str, Action] = {}
+    phrases: dict[str, Action] = {}
+    emergency: dict[str, Literal["hold", "surface"]] = {}
+    cancel: tuple[str, ...] = ()
+    confirm_seconds: Annotated[float, Field(ge=1, le=300)] = CONFIRM_SECONDS
+    stale_seconds: Annotated[float, Field(ge=0.1, le=60)] = STALE_SECONDS
+    least_confidence: Annotated[float, Field(ge=0, le=1)] = 0.0
+    vehicle: Vehicle = Vehicle()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        """Refuse contradictions, which would move the vehicle at the wrong moment."""
+        if not (self.gestures or self.phrases or self.emergency):
+            raise ValueError("it has no action: add one under [gestures], [phrases] or [emergency]")
+        roles = [*self.gestures, *self.emergency, *self.cancel]
+        if twice := sorted({label for label in roles if roles.count(label) > 1}):
+            raise ValueError(f"{twice} have two meanings; keep one of them")
+        for name, action in (*self.gestures.items(), *self.phrases.items()):
+            if not isinstance(action, Depth):
+                continue
+            if isinstance(action.metres, SlotName):
+                if name in self.gestures:
+                    raise ValueError(f"{name!r} is a gesture and has no slots; give metres")
+            elif action.metres > self.vehicle.deepest:
+                raise ValueError(
+                    f"{name!r} goes to {action.metres:g} m, deeper than {self.vehicle.deepest:g}; "
+                    "correct it, or set vehicle.deepest"
+                )
+        return self
+
+    @property
+    def rules(self) -> Rules:
+        """Rules of the dialogue with the diver: every command but an emergency is confirmed."""
+        return Rules(
+            confirmed=True,
+            confirm_seconds=self.confirm_seconds,
+            stale_seconds=self.stale_seconds,
+            least_confidence=self.least_confidence,
+            cancel=frozenset(self.cancel),
+            emergency=frozenset(self.emergency),
+        )
+
+    def find_action(self, label: str) -> Action | None:
+        """Return the action of a gesture; None where it has none."""
+        if label in self.emergency:
+            return EMERGENCIES[self.emergency[label]]
+        return self.gestures.get(label)
+
+    def resolve_mission(self, mission: list[dict[str, Any]]) -> tuple[Action, ...]:
+        """Return the actions of a message's phrases, in order, with the values of its slots.
+
+        Parameters
+        ----------
+        mission
+            Phrases as in a ``phrase_heard`` line.
+
+        Raises
+        ------
+        VehicleError
+            When a phrase has no action, or a depth is not a number or out of range.
+
+        """
+        return tuple(self._resolve(meaning["phrase"], meaning["slots"]) for meaning in mission)
+
+    def _resolve(self, phrase: str, slots: dict[str, Any]) -> Action:
+        action = self.phrases.get(phrase)
+        if action is None:
+            raise VehicleError(f"{phrase!r} is not in the table")
+        if not (isinstance(action, Depth) and isinstance(action.metres, SlotName)):
+            return action
+        shown = slots.get(action.metres.slot)
+        try:
+            metres = float(shown) if isinstance(shown, int | float | str) else None
+        except ValueError:
+            metres = None
+        if metres is None or not 0 < metres <= self.vehicle.deepest:
+            raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
+        return Depth(do="depth", metres=metres)
+
+    def list_unknown(self, language: Language) -> Iterator[str]:
+        """Yield, in words, what the table names and the language does not have."""
+        for role, names in (("gestures", self.gestures), ("emergency", self.emergency)):
+            yield from (f"{role}.{label}" for label in names if label not in language.labels)
+        yield from (f"cancel {label}" for label in self.cancel if label not in language.labels)
+        grammar = language.grammar
+        known = () if grammar is None else tuple(phrase.name for phrase in grammar.phrases)
+        yield from (f"phrases.{name}" for name in self.phrases if name not in known)
+
+
+def read_vehicle_table(path: str | Path) -> VehicleTable:
+    """Read a vehicle table from a TOML file, or a JSON file by its ending.
+
+    Raises
+    ------
+    VehicleError
+        When the file is not valid; names the key.
+    OSError
+        When the file cannot be read.
+
+    """
+    text = Path(path).read_text(encoding="utf-8")
+    try:
+        content = json.loads(text) if Path(path).suffix == ".json" else tomllib.loads(text)
+    except ValueError as error:
+        raise VehicleError(f"{path} cannot be read: {error}") from error
+    try:
+        return VehicleTable.model_validate(content)
+    except ValidationError as error:
+        fault = error.errors()[0]
+        place = ".".join(str(part) for part in fault["loc"])
+        message = fault["msg"].removeprefix("Value error, ")
+        where = f"{place}: " if place else ""
+        raise VehicleError(f"{path}: {where}{message}; see docs/robots/mavlink.md") from error

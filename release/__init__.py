@@ -1,0 +1,1 @@
+"""Release: builds wheel and source distribution, and what goes with them."""

@@ -1,0 +1,16 @@
+"""Builds a release: ``python -m release [FOLDER]``, ``dist`` if left out."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from release.build import build_release
+from release.checkout import ROOT, ReleaseError
+
+if __name__ == "__main__":
+    try:
+        for file in build_release(Path(sys.argv[1]) if sys.argv[1:] else ROOT / "dist"):
+            print(f"{file.stat().st_size:>10,}  {file}")
+    except ReleaseError as error:
+        sys.exit(f"release: {error}")

@@ -1,0 +1,125 @@
+"""Container recipes keep what they claim: users, health checks, files, commands, labels."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any, Literal
+
+import pytest
+from pydantic import BaseModel, ConfigDict, TypeAdapter
+from typer.main import get_command
+
+from app import __version__
+from app.cli.application import command_line
+from app.robot.publishing.status_page import SERVICE
+from tests.conftest import ROOT
+from tests.release.containerfile import lineage, read_command, read_labels, read_stages
+
+RECIPE = ROOT / "release" / "containers" / "Containerfile"
+STAGES = read_stages(RECIPE)
+IMAGES = ["studio", "robot", "blueos"]
+
+
+@pytest.mark.parametrize("image", IMAGES)
+def test_an_image_runs_as_nobody_with_a_health_check_and_a_volume(image: str) -> None:
+    stages = lineage(STAGES, image)
+    users = [user for stage in stages for user in stage.values("USER")]
+    assert users == ["10001:10001"]
+    assert [volume for stage in stages for volume in stage.values("VOLUME")] == ["/data"]
+    (check,) = [each for stage in stages for each in stage.values("HEALTHCHECK")]
+    port = re.search(r"127\.0\.0\.1:(\d+)/healthz", check)
+    assert port is not None
+    assert f"{port[1]}/tcp" in " ".join(each for s in stages for each in s.values("EXPOSE"))
+    assert f"0.0.0.0:{port[1]}" in " ".join(read_command(stages)) or image == "studio"
+
+
+@pytest.mark.parametrize("image", IMAGES)
+def test_an_image_builds_nothing_itself_and_brings_the_models(image: str) -> None:
+    runtime = [stage for stage in lineage(STAGES, image) if stage.name != "runtime"]
+    assert not [run for stage in runtime for run in stage.values("RUN")]
+    (copied,) = [copy for stage in runtime for copy in stage.values("COPY")]
+    build, _, _ = copied.removeprefix("--from=").partition(" ")
+    commands = " ".join(STAGES[build].values("RUN"))
+    assert "--require-hashes" in commands
+    assert "osg-studio models install" in commands
+    models = "OSG_MODELS_DIR=/opt/osg/models"
+    assert models in " ".join(STAGES[build].values("ENV") + STAGES["runtime"].values("ENV"))
+
+
+def test_what_is_copied_is_there_and_let_through() -> None:
+    wanted = {
+        each.split()[0]
+        for stage in STAGES.values()
+        for each in stage.values("COPY")
+        if not each.startswith("--from=")
+    }
+    allowed = (ROOT / ".dockerignore").read_text(encoding="utf-8").splitlines()
+    assert {line.removeprefix("!") for line in allowed if line.startswith("!")} == wanted
+    assert [name for name in wanted - {"dist/*.whl"} if not (ROOT / name).is_file()] == []
+
+
+@pytest.mark.parametrize("image", IMAGES)
+def test_what_an_image_runs_is_a_command(image: str) -> None:
+    stages = lineage(STAGES, image)
+    assert stages[-1].values("ENTRYPOINT") == ['["osg-studio"]']
+    name, *arguments = read_command(stages)
+    group = get_command(command_line)
+    with group.make_context("osg-studio", [name], resilient_parsing=True) as context:
+        command = group.get_command(context, name)  # type: ignore[attr-defined]
+    command.make_context(name, arguments)
+
+
+class Author(BaseModel):
+    """As the store of BlueOS reads it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str
+    email: str
+
+
+class Company(BaseModel):
+    """As the store of BlueOS reads it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str
+    about: str | None = None
+    email: str | None = None
+
+
+class Extension(BaseModel):
+    """The labels of an extension, by the models of BlueOS' store."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    version: str
+    type: Literal["device-integration", "example", "theme", "other", "tool"]
+    requirements: str
+    readme: str
+    permissions: dict[str, Any]
+    authors: list[Author]
+    company: Company
+    tags: list[str]
+    links: dict[str, str]
+
+
+def test_the_labels_are_those_of_a_blueos_extension() -> None:
+    labels = read_labels(STAGES["blueos"])
+    parsed = {
+        key: json.loads(value) if value[:1] in ("{", "[") else value
+        for key, value in labels.items()
+    }
+    extension = TypeAdapter(Extension).validate_python(parsed)
+    assert extension.version == __version__ == SERVICE["version"]
+    assert all(re.fullmatch(r"[a-z0-9-]+", tag) for tag in extension.tags)
+    assert len(extension.tags) <= 10
+    host = extension.permissions["HostConfig"]
+    assert host["ReadonlyRootfs"] is True
+    assert "Privileged" not in host
+    assert [bind.partition(":")[2] for bind in host["Binds"]] == ["/data"]
+    ports = extension.permissions["ExposedPorts"]
+    assert [f"0.0.0.0:{port.removesuffix('/tcp')}" for port in ports] == [
+        word for word in read_command([STAGES["blueos"]]) if word.startswith("0.0.0.0:")
+    ]

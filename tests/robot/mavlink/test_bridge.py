@@ -1,0 +1,288 @@
+"""The vehicle obeys what a diver has confirmed, and nothing else; both sides speak by pymavlink."""
+
+from __future__ import annotations
+
+import queue
+import random
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.recognition import Gesture, Language, takes_in
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
+from app.robot import (
+    ActiveLanguage,
+    Listener,
+    PhraseHeard,
+    PhraseListener,
+    TakeRecognized,
+    TakeRejected,
+)
+from app.robot.mavlink import bridge
+from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
+from app.robot.mavlink.links import open_link
+from app.robot.mavlink.table import VehicleTable
+from app.robot.runtime import build_language_changed
+from tests.api.recordings import recording_of
+from tests.robot.languages import language_of, run_listener, spoken
+from tests.robot.mavlink.vehicle import Ardusub, sailing
+
+TABLE = {
+    "format": "osg-studio/vehicle-table",
+    "version": 1,
+    "gestures": {
+        "stop": {"do": "hold"},
+        "up": {"do": "surface"},
+        "free": {"do": "mode", "mode": "STABILIZE"},
+        "bright": {"do": "lights", "percent": 50},
+        "photo": {"do": "camera"},
+        "deep": {"do": "depth", "metres": 5},
+    },
+    "emergency": {"help": "surface"},
+    "cancel": ["no"],
+    "vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 5},
+}
+DONE = {
+    "stop": ["ALT_HOLD"],
+    "up": ["SURFACE"],
+    "free": ["STABILIZE"],
+    "bright": ["servo 13 1500"],
+    "photo": ["picture"],
+    "deep": ["ALT_HOLD", "depth 5"],
+}
+DOES: dict[str, Callable[[Ardusub], bool]] = {
+    "stop": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_ALT_HOLD,
+    "up": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_SURFACE,
+    "free": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_STABILIZE,
+    "bright": lambda vehicle: vehicle.pulse == 1500,
+    "photo": lambda vehicle: vehicle.obeyed == ["picture"],
+    "deep": lambda vehicle: (vehicle.mode, vehicle.target) == (mavlink.SUB_MODE_ALT_HOLD, -5),
+}
+WAIT = 20.0
+
+
+@cache
+def crew() -> ActiveLanguage:
+    """Return a language with the gestures of the table, and one that it does not name."""
+    demonstration = takes_in(recording_of("circle"))[0].poses
+    labels = [*DONE, "help", "no", "other"]
+    gestures = [Gesture.from_demonstration(label, demonstration) for label in labels]
+    return ActiveLanguage.from_json(Language("crew", gestures).to_json())
+
+
+@cache
+def a_take() -> TakeRecognized:
+    events = run_listener(Listener(spoken("circle")), recording_of("circle"))
+    return next(event for event in events if isinstance(event, TakeRecognized))
+
+
+@cache
+def a_rejected_take() -> TakeRejected:
+    events = run_listener(Listener(spoken("circle")), recording_of("line"))
+    return next(event for event in events if isinstance(event, TakeRejected))
+
+
+class Diver:
+    """Shows gestures to a bridge, one every five seconds of the source's clock."""
+
+    def __init__(self, vehicle: Ardusub, address: str, table: VehicleTable) -> None:
+        self.time = 0.0
+        self.delay = 0.0
+        self.lines: queue.Queue[str] = queue.Queue()
+        self.vehicle = vehicle
+        link = open_link(address, table.vehicle.system, table.vehicle.component)
+        clock: Callable[[], float] = lambda: self.time + self.delay  # noqa: E731
+        self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock)
+        self.bridge.publish(build_language_changed(0.0, crew()))
+
+    def show(self, label: str | None, language: ActiveLanguage | None = None) -> None:
+        """Show a gesture, recognised or rejected (None)."""
+        self.time += 5.0
+        take = a_rejected_take() if label is None else replace(a_take(), label=label)
+        sha256 = (language or crew()).sha256
+        self.bridge.publish(
+            replace(take, time=self.time, start=self.time - 3, end=self.time - 1, sha256=sha256)
+        )
+
+    def confirm(self, label: str) -> None:
+        """Show a gesture twice."""
+        self.show(label)
+        self.show(label)
+
+    def wait_for(self, *beginnings: str) -> str:
+        """Return the next line that begins in one of these ways."""
+        while True:
+            line = self.lines.get(timeout=WAIT)
+            if line.startswith(beginnings):
+                return line
+
+
+@contextmanager
+def diving(
+    kind: str = "udpin", changes: Mapping[str, object] = TABLE, **settings: object
+) -> Iterator[Diver]:
+    """Put a diver and a vehicle into the water, with a bridge between them."""
+    table = VehicleTable.model_validate({**TABLE, **changes})
+    with sailing(kind=kind, **settings) as vehicle:
+        scheme = {"udpin": "udpout", "tcpin": "tcp"}[kind]
+        diver = Diver(vehicle, f"{scheme}:127.0.0.1:{vehicle.port}", table)
+        with closing(diver.bridge):
+            yield diver
+
+
+@pytest.mark.parametrize(("kind", "missions"), [("udpin", 100), ("tcpin", 10)])
+def test_confirmed_missions_are_obeyed_though_a_fifth_is_lost_and_the_vehicle_restarts(
+    kind: str, missions: int
+) -> None:
+    chance = random.Random(0)
+    with diving(kind, loss=0.2, seed=1) as diver:
+        shown = ""
+        for number in range(missions):
+            shown = chance.choice([label for label in DONE if label != shown])
+            diver.vehicle.obeyed.clear()
+            diver.vehicle.restarts_at_next = number % 10 == 9
+            diver.confirm(shown)
+            assert diver.wait_for("done", "refused", "NOT DONE").startswith("done")
+            assert DOES[shown](diver.vehicle)
+            assert set(diver.vehicle.obeyed) <= set(DONE[shown])
+            assert diver.vehicle.obeyed.count("picture") == (shown == "photo")
+
+
+def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
+    chance = random.Random(0)
+    with diving() as diver:
+        for _ in range(100):
+            label = chance.choice([*DONE])
+            other = chance.choice([each for each in [*DONE, "other"] if each != label])
+            match chance.randrange(6):
+                case 0:  # once, and something else
+                    diver.show(label)
+                    diver.show(other)
+                case 1:  # taken back
+                    diver.show(label)
+                    diver.show("no")
+                    diver.show(other)
+                case 2:  # not recognised
+                    diver.show(label)
+                    diver.show(None)
+                case 3:  # too late
+                    diver.show(label)
+                    diver.time += 30.0
+                case 4:  # stale
+                    diver.delay = 4.0
+                    diver.confirm(label)
+                    diver.delay = 0.0
+                case 5:  # of another language
+                    diver.show(label, spoken("circle"))
+                    diver.show(label, spoken("circle"))
+            diver.show("no")
+        diver.wait_for("nothing to cancel")
+    assert diver.vehicle.asked == 0
+    assert diver.vehicle.obeyed == []
+
+
+def test_an_emergency_is_obeyed_at_once_and_however_late() -> None:
+    with diving() as diver:
+        diver.delay = 60.0
+        diver.show("help")
+        assert diver.wait_for("done") == "done: surface"
+    assert diver.vehicle.obeyed == ["SURFACE"]
+    assert "EMERGENCY: surface" in diver.vehicle.texts
+
+
+def test_an_emergency_replaces_what_is_on_its_way() -> None:
+    with diving() as diver:
+        diver.vehicle.loss = 1.0
+        diver.confirm("bright")
+        diver.show("help")
+        assert diver.wait_for("replaced") == "replaced: lights 50 %"
+        diver.vehicle.loss = 0.0
+        assert diver.wait_for("done") == "done: surface"
+    assert diver.vehicle.obeyed == ["SURFACE"]
+
+
+def test_an_emergency_that_is_refused_is_told_once_and_sent_again() -> None:
+    with diving(refused=frozenset({int(mavlink.MAV_CMD_DO_SET_MODE)})) as diver:
+        diver.show("help")
+        assert diver.wait_for("refused") == "refused (DENIED): surface"
+        asked = diver.vehicle.asked
+        while diver.vehicle.asked < asked + 3:
+            time.sleep(0.01)
+        diver.vehicle.refused = frozenset()
+        assert diver.wait_for("refused", "done") == "done: surface"
+    assert diver.vehicle.obeyed == ["SURFACE"]
+
+
+def test_a_refusal_and_silence_are_told_and_not_taken_for_obedience() -> None:
+    refused = frozenset({int(mavlink.MAV_CMD_DO_SET_SERVO)})
+    quick = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 0.2}}
+    with diving(changes=quick, refused=refused) as diver:
+        diver.confirm("bright")
+        assert diver.wait_for("refused") == "refused (DENIED): lights 50 %"
+        diver.vehicle.loss = 1.0
+        diver.confirm("stop")
+        assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+    assert diver.vehicle.obeyed == []
+
+
+def test_a_vehicle_that_starts_again_or_falls_silent_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(bridge, "SILENT_SECONDS", 0.2)
+    with diving() as diver:
+        diver.confirm("deep")
+        assert diver.wait_for("done")
+        diver.vehicle.restarts_at_next = True
+        diver.confirm("up")
+        assert diver.wait_for("vehicle has started again")
+        assert diver.wait_for("done") == "done: surface"
+        diver.vehicle.loss = 1.0
+        assert diver.wait_for("vehicle is silent")
+        diver.vehicle.loss = 0.0
+        assert diver.wait_for("vehicle is back")
+
+
+def test_what_is_asked_and_done_is_spoken_back_in_fifty_characters() -> None:
+    with diving() as diver:
+        diver.confirm("deep")
+        diver.wait_for("done")
+        diver.show("other")
+    texts = diver.vehicle.texts
+    assert "repeat 'deep' to confirm: depth 5 m" in texts
+    assert texts.index("confirmed: depth 5 m") < texts.index("done: depth 5 m")
+    assert all(len(text.encode()) <= TEXT_BYTES for text in texts)
+    assert fit_text("é" * 30).decode() == "é" * 25
+
+
+@pytest.mark.parametrize("metres", [2, 50])
+def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> None:
+    go = Phrase("go", (OneOf(("circle",)), Slot("metres", "number")), {}, "go to {metres}")
+    grammar = Grammar((go,), (SlotType("number", "number", {"line": metres}),), timeout=5)
+    made = replace(language_of("circle", "line"), grammar=grammar)
+    language = ActiveLanguage.from_json(made.to_json())
+    shown = recording_of("circle", "line", "circle", "line")
+    events = run_listener(PhraseListener(Listener(language)), shown)
+    assert [each.phrase.kind for each in events if isinstance(each, PhraseHeard)].count(
+        "complete"
+    ) == 2
+    go_to = {"phrases": {"go": {"do": "depth", "metres": {"slot": "metres"}}}}
+    table = VehicleTable.model_validate(
+        {key: TABLE[key] for key in ("format", "version", "vehicle")} | go_to
+    )
+    lines: list[str] = []
+    with sailing() as vehicle:
+        link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
+        with closing(MavlinkBridge(table, link, lambda: language, lines.append)) as opened:
+            for event in (build_language_changed(0.0, language), *events):
+                opened.publish(event)
+    assert vehicle.obeyed == (["ALT_HOLD", "depth 2"] if metres == 2 else [])
+    assert ("done: depth 2 m" if metres == 2 else "no depth: 50, of 0 to 30 m") in lines

@@ -1,0 +1,145 @@
+"""Orders: what proves one done, what does not, and when it is given up; without a network."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.robot.mavlink.actions import OUR_COMPONENT, build_steps
+from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.table import Action, Camera, Depth, Hold, Surface, Vehicle
+
+VEHICLE = Vehicle(repeat_seconds=0.5, give_up_seconds=10)
+HOLD, SURFACE = mavlink.SUB_MODE_ALT_HOLD, mavlink.SUB_MODE_SURFACE
+SET_MODE = mavlink.MAV_CMD_DO_SET_MODE
+
+
+def order(*actions: Action, emergency: bool = False) -> Order:
+    steps = [step for action in actions for step in build_steps(action, VEHICLE, 1)]
+    return Order("words", tuple(steps), emergency)
+
+
+def from_vehicle(message: Any, system: int = 1, component: int = 1) -> Any:
+    """Return a message with the head that its sender gives it."""
+    message.pack(mavlink.MAVLink(None, system, component))
+    return message
+
+
+def heartbeat(mode: int, system: int = 1) -> Any:
+    return from_vehicle(mavlink.MAVLink_heartbeat_message(12, 3, 1, mode, 4, 3), system)
+
+
+def answer(
+    command: int = SET_MODE,
+    result: int = mavlink.MAV_RESULT_ACCEPTED,
+    to: tuple[int, int] = (1, OUR_COMPONENT),
+) -> Any:
+    return from_vehicle(mavlink.MAVLink_command_ack_message(command, result, 0, 0, *to))
+
+
+def begun(*actions: Action, emergency: bool = False) -> OrderDesk:
+    """Return a desk whose order was sent once."""
+    desk = OrderDesk(VEHICLE)
+    desk.give(order(*actions, emergency=emergency), 0.0)
+    assert len(desk.list_due(0.0)) == 1
+    return desk
+
+
+def kinds(desk: OrderDesk, *messages: Any) -> list[str]:
+    outcomes = [desk.hear(message, 1.0) for message in messages]
+    return [outcome.kind for outcome in outcomes if outcome is not None]
+
+
+def test_a_mode_is_proven_by_answer_and_heartbeat_together() -> None:
+    assert kinds(begun(Hold()), answer()) == []
+    assert kinds(begun(Hold()), heartbeat(HOLD)) == []
+    assert kinds(begun(Hold()), answer(), heartbeat(SURFACE)) == []
+    assert kinds(begun(Hold()), answer(), heartbeat(HOLD)) == ["done"]
+    assert kinds(begun(Hold()), heartbeat(HOLD), answer()) == ["done"]
+
+
+def test_what_was_said_before_or_by_others_proves_nothing() -> None:
+    desk = OrderDesk(VEHICLE)
+    assert kinds(desk, answer(), heartbeat(HOLD)) == []
+    desk.give(order(Hold()), 0.0)
+    assert kinds(desk, answer(), heartbeat(HOLD)) == []  # it was not sent yet
+    desk = begun(Hold())
+    ground_station = (255, 190)
+    denied = mavlink.MAV_RESULT_DENIED
+    assert kinds(desk, answer(to=ground_station), heartbeat(HOLD)) == []
+    assert kinds(desk, answer(result=denied, to=ground_station)) == []
+    assert kinds(desk, heartbeat(SURFACE), answer(), heartbeat(HOLD, system=2)) == []
+
+
+def test_an_answer_of_an_older_vehicle_has_no_address() -> None:
+    assert kinds(begun(Hold()), answer(to=(0, 0)), heartbeat(HOLD)) == ["done"]
+
+
+def test_a_camera_is_proven_by_its_own_answer_alone() -> None:
+    desk = begun(Camera(do="camera"))
+    assert kinds(desk, answer(), answer(mavlink.MAV_CMD_IMAGE_START_CAPTURE)) == ["done"]
+
+
+def test_a_depth_is_proven_by_the_vehicles_target() -> None:
+    desk = begun(Depth(do="depth", metres=5.0))
+    assert kinds(desk, answer(), heartbeat(HOLD)) == []
+    (sent,) = desk.list_due(1.0)
+    assert (sent.get_type(), sent.alt) == ("SET_POSITION_TARGET_GLOBAL_INT", -5.0)
+    shown = from_vehicle(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -2.0, 0))
+    away = from_vehicle(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, -1, 0, 0))
+    there = from_vehicle(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, -3, 0, 0))
+    assert kinds(desk, shown, away) == []
+    assert kinds(desk, there) == ["done"]
+
+
+def test_it_is_repeated_until_it_is_given_up() -> None:
+    desk = begun(Hold())
+    assert desk.list_due(0.4) == ()
+    assert [message.confirmation for message in desk.list_due(0.5)] == [1]
+    assert desk.check_deadline(10.0) is None
+    ended = desk.check_deadline(10.1)
+    assert isinstance(ended, Outcome)
+    assert ended.kind == "unanswered"
+    assert desk.list_due(10.2) == ()
+
+
+@pytest.mark.parametrize(
+    ("result", "expected"),
+    [
+        (mavlink.MAV_RESULT_IN_PROGRESS, []),
+        (mavlink.MAV_RESULT_TEMPORARILY_REJECTED, []),
+        (mavlink.MAV_RESULT_FAILED, ["refused"]),
+        (99, ["refused"]),
+    ],
+)
+def test_what_is_no_refusal_is_waited_for(result: int, expected: list[str]) -> None:
+    assert kinds(begun(Hold()), answer(result=result)) == expected
+
+
+def test_a_vehicle_that_starts_again_is_told_from_the_beginning() -> None:
+    desk = begun(Hold(), Camera(do="camera"))
+    up = from_vehicle(mavlink.MAVLink_system_time_message(0, 60_000))
+    assert kinds(desk, up, answer(), heartbeat(HOLD)) == []
+    assert desk.list_due(1.0)[0].command == mavlink.MAV_CMD_IMAGE_START_CAPTURE
+    late = from_vehicle(mavlink.MAVLink_system_time_message(0, 59_500))
+    again = from_vehicle(mavlink.MAVLink_system_time_message(0, 200))
+    assert kinds(desk, late) == []
+    assert desk.reboots == 0
+    assert kinds(desk, again) == []
+    assert desk.reboots == 1
+    assert desk.list_due(1.0)[0].command == SET_MODE
+
+
+def test_a_newer_order_replaces_the_one_on_its_way() -> None:
+    desk = begun(Hold())
+    replaced = desk.give(order(Surface(), emergency=True), 1.0)
+    assert replaced is not None
+    assert replaced.kind == "replaced"
+    assert desk.list_due(1.0)[0].param2 == SURFACE
+    assert desk.check_deadline(60.9) is None
+    assert desk.check_deadline(61.1) is not None

@@ -1,0 +1,97 @@
+"""mavlink2rest: the same messages as JSON, and the vehicle obeys over HTTP."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import closing
+from http.server import BaseHTTPRequestHandler, HTTPServer
+
+import pytest
+
+pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.recognition.errors import VehicleError
+from app.robot.mavlink import rest_link
+from app.robot.mavlink.actions import DepthStep, ModeStep, build_steps
+from app.robot.mavlink.bridge import build_heartbeat
+from app.robot.mavlink.links import open_link
+from app.robot.mavlink.rest_link import from_json, to_json
+from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
+from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
+from tests.robot.mavlink.test_bridge import DOES, DONE, TABLE, Diver
+from tests.robot.mavlink.vehicle import sailing
+
+SENT = [
+    build_heartbeat(),
+    ModeStep(mavlink.SUB_MODE_SURFACE, 1, 1).build(2),
+    DepthStep(5, 1, 1).build(0),
+    mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, b"hold"),
+    *(
+        step.build(0)
+        for action in (Lights(do="lights", percent=10), Camera(do="camera"))
+        for step in build_steps(action, Vehicle(), 1)
+    ),
+]
+HEARD = [
+    mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_RESULT_DENIED),
+    mavlink.MAVLink_vfr_hud_message(0, 0, 10, 0, -3.5, 0),
+]
+
+
+@pytest.mark.parametrize("message", SENT, ids=lambda message: message.get_type())
+def test_what_is_posted_is_the_message(message: mavlink.MAVLink_message) -> None:
+    posted, codec = as_message(to_json(message)), mavlink.MAVLink(None)
+    assert posted.pack(codec) == message.pack(codec)
+
+
+def test_a_text_is_one_character_a_byte() -> None:
+    text = mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, "né".encode())
+    assert to_json(text)["text"] == [*"n??", *("\0",) * 47]
+
+
+@pytest.mark.parametrize("message", HEARD, ids=lambda message: message.get_type())
+def test_what_is_fetched_is_the_message(message: mavlink.MAVLink_message) -> None:
+    assert from_json(as_json(message)).to_dict() == message.to_dict()
+
+
+def test_a_vehicle_obeys_over_http(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rest_link, "POLL_SECONDS", 0.005)
+    table = VehicleTable.model_validate(TABLE)
+    with sailing(loss=0.2, seed=2) as vehicle, serving(vehicle.port) as address:
+        diver = Diver(vehicle, address, table)
+        with closing(diver.bridge):
+            for label in DONE:
+                vehicle.obeyed.clear()
+                diver.confirm(label)
+                assert diver.wait_for("done", "refused", "NOT DONE").startswith("done")
+                assert DOES[label](vehicle)
+    assert [text for text in vehicle.texts if text.startswith("confirmed: ")]
+
+
+def test_the_robot_goes_on_when_the_server_falls_silent_and_says_so() -> None:
+    with sailing() as vehicle:
+        with serving(vehicle.port) as address:
+            diver = Diver(vehicle, address, VehicleTable.model_validate(TABLE))
+        with closing(diver.bridge):
+            assert diver.wait_for("no connection to the vehicle")
+            diver.show("stop")
+            assert diver.wait_for("repeat 'stop'")
+    assert diver.lines.empty()
+
+
+def test_a_server_of_another_kind_is_refused() -> None:
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(b"<html>")
+
+        def log_message(self, format: str, *args: object) -> None:
+            """Print nothing."""
+
+    with HTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.handle_request).start()
+        with pytest.raises(VehicleError, match="not answered as mavlink2rest does"):
+            open_link(f"http://127.0.0.1:{server.server_port}", 1, 1)

@@ -1,0 +1,99 @@
+"""Vehicle table: closed, and what is wrong with one is said by its key."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from app.recognition.errors import VehicleError
+from app.robot.mavlink.table import (
+    Camera,
+    Depth,
+    Hold,
+    Lights,
+    Mode,
+    Surface,
+    VehicleTable,
+    read_vehicle_table,
+)
+from tests.conftest import ROOT
+
+KINDS = (Hold, Surface, Mode, Lights, Camera, Depth)
+
+HEAD = 'format = "osg-studio/vehicle-table"\nversion = 1\n'
+
+
+def read(tmp_path: Path, text: str) -> VehicleTable:
+    file = tmp_path / "vehicle.toml"
+    file.write_text(HEAD + text)
+    return read_vehicle_table(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("", "it has no action"),
+        ("[gestures", "cannot be read"),
+        ('[gestures]\na = { do = "arm" }', "gestures.a"),
+        ('[gestures]\na = { do = "mode", mode = "ACRO" }', "gestures.a.mode.mode"),
+        ('[gestures]\na = { do = "hold", fast = true }', "gestures.a.hold.fast: Extra inputs"),
+        ('[gestures]\na = { do = "lights", percent = 101 }', "less than or equal to 100"),
+        ('[gestures]\na = { do = "depth", metres = -1 }', "gestures.a.depth.metres"),
+        ('[gestures]\na = { do = "depth", metres = 31 }', "deeper than 30"),
+        ('[gestures]\na = { do = "depth", metres = { slot = "m" } }', "has no slots; give metres"),
+        ('[emergency]\na = "camera"', "emergency.a: Input should be 'hold' or 'surface'"),
+        ('[gestures]\na = { do = "hold" }\n[emergency]\na = "hold"', "['a'] have two meanings"),
+        ('cancel = ["a"]\n[gestures]\na = { do = "hold" }', "['a'] have two meanings"),
+        ('[gestures]\na = { do = "hold" }\n[vehicle]\nsystem = 256', "vehicle.system"),
+        ('confirmed = false\n[gestures]\na = { do = "hold" }', "confirmed: Extra inputs"),
+    ],
+)
+def test_a_wrong_table_is_refused_by_its_key(tmp_path: Path, text: str, what: str) -> None:
+    with pytest.raises(VehicleError) as refused:
+        read(tmp_path, text)
+    assert what in str(refused.value)
+    assert "vehicle.toml" in str(refused.value)
+    assert "\n" not in str(refused.value).partition("cannot be read")[0]
+
+
+def test_the_documented_table_is_one(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "robots" / "mavlink.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    file = tmp_path / "vehicle.toml"
+    file.write_text(block)
+    assert len(read_vehicle_table(file).gestures) == 5
+    actions = set(re.findall(r"^\| `(\w+)` \| (?:`MAV|the same|`ALT)", page, re.MULTILINE))
+    assert actions == {get_args(kind.model_fields["do"].annotation)[0] for kind in KINDS}
+
+
+def test_toml_and_json_say_the_same(tmp_path: Path) -> None:
+    table = read(tmp_path, 'cancel = ["no"]\n[gestures]\ndown = { do = "depth", metres = 5 }')
+    file = tmp_path / "vehicle.json"
+    down = {"do": "depth", "metres": 5}
+    content = {"format": "osg-studio/vehicle-table", "version": 1, "gestures": {"down": down}}
+    file.write_text(json.dumps(content | {"cancel": ["no"]}))
+    assert read_vehicle_table(file) == table
+    assert table.find_action("down") == Depth(do="depth", metres=5)
+    assert table.find_action("no") is None
+
+
+def test_emergencies_are_actions_that_need_no_repetition(tmp_path: Path) -> None:
+    table = read(tmp_path, '[emergency]\nhelp = "hold"')
+    assert table.find_action("help") == Hold()
+    assert table.rules.emergency == {"help"}
+    assert table.rules.confirmed
+
+
+@pytest.mark.parametrize("shown", [None, "deep", 0, -1, 31, [5], "nan"])
+def test_a_depth_that_is_none_is_not_gone_to(tmp_path: Path, shown: object) -> None:
+    table = read(tmp_path, '[phrases]\ngo = { do = "depth", metres = { slot = "m" } }')
+    with pytest.raises(VehicleError, match="no depth"):
+        table.resolve_mission([{"phrase": "go", "slots": {"m": shown}}])
+    with pytest.raises(VehicleError, match="'stay' is not in the table"):
+        table.resolve_mission([{"phrase": "stay", "slots": {}}])
+    (action,) = table.resolve_mission([{"phrase": "go", "slots": {"m": "7.5"}}])
+    assert action == Depth(do="depth", metres=7.5)

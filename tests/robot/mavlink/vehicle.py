@@ -1,0 +1,163 @@
+"""A vehicle like ArduSub, by pymavlink's connections: obeys, refuses, loses packets, restarts."""
+
+from __future__ import annotations
+
+import os
+import random
+import threading
+import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+os.environ.setdefault("MAVLINK20", "1")  # read when mavutil is imported
+
+from pymavlink import mavutil
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+SYSTEM, COMPONENT = 1, 1
+BEAT_SECONDS = 0.01
+DEPTH = 1.0
+MODES: dict[int, str] = mavutil.mode_mapping_sub
+
+
+@dataclass
+class Ardusub:
+    """Simulated vehicle.
+
+    Attributes
+    ----------
+    loss
+        Share of messages that are lost, in each direction.
+    refused
+        Commands that it denies.
+    obeyed
+        What it did, in order: one entry for each change.
+    asked
+        Number of messages that asked it for anything.
+    texts
+        Texts that it was shown.
+    restarts_at_next
+        Whether the next command makes it restart instead of being answered.
+
+    """
+
+    kind: str = "udpin"
+    loss: float = 0.0
+    seed: int = 0
+    refused: frozenset[int] = frozenset()
+    obeyed: list[str] = field(default_factory=list)
+    asked: int = 0
+    texts: list[str] = field(default_factory=list)
+    restarts_at_next: bool = False
+
+    def __post_init__(self) -> None:
+        self._chance = random.Random(self.seed)
+        self._connection: Any = mavutil.mavlink_connection(
+            f"{self.kind}:127.0.0.1:0", source_system=SYSTEM, source_component=COMPONENT
+        )
+        listening = self._connection.listen if self.kind == "tcpin" else self._connection.port
+        self.port: int = listening.getsockname()[1]
+        self._closing = threading.Event()
+        self._boot()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Switch it off."""
+        self._closing.set()
+        self._thread.join()
+        self._connection.close()
+
+    def _boot(self) -> None:
+        self.mode: int = mavlink.SUB_MODE_MANUAL
+        self.target = -DEPTH
+        self.pulse = 0.0
+        self._picture = 0.0
+        self._began = clock.monotonic() - 10
+
+    def _run(self) -> None:
+        beat = 0.0
+        while not self._closing.is_set():
+            message = self._connection.recv_msg()
+            if message is None:
+                self._connection.select(BEAT_SECONDS / 2)
+            elif self._chance.random() >= self.loss:
+                self._hear(message)
+            if clock.monotonic() - beat > BEAT_SECONDS:
+                beat = clock.monotonic()
+                self._report()
+
+    def _send(self, message: Any) -> None:
+        if self._chance.random() >= self.loss:
+            self._connection.mav.send(message)
+
+    def _report(self) -> None:
+        armed = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+        uptime = round((clock.monotonic() - self._began) * 1000)
+        heartbeat = (mavlink.MAV_TYPE_SUBMARINE, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, armed)
+        active = mavlink.MAV_STATE_ACTIVE
+        self._send(mavlink.MAVLink_heartbeat_message(*heartbeat, self.mode, active, 3))
+        self._send(mavlink.MAVLink_system_time_message(0, uptime))
+        self._send(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -DEPTH, 0))
+        error = self.target + DEPTH
+        self._send(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, error, 0, 0))
+
+    def _hear(self, message: Any) -> None:
+        match message.get_type():
+            case "STATUSTEXT":
+                self.texts.append(message.text)
+            case "COMMAND_LONG":
+                self.asked += 1
+                self._hear_command(message)
+            case "SET_POSITION_TARGET_GLOBAL_INT":
+                self.asked += 1
+                if self.mode == mavlink.SUB_MODE_ALT_HOLD and self.target != message.alt:
+                    self.target = message.alt
+                    self.obeyed.append(f"depth {-message.alt:g}")
+
+    def _hear_command(self, message: Any) -> None:
+        if self.restarts_at_next:
+            self.restarts_at_next = False
+            self._boot()
+            self._began = clock.monotonic()
+            return
+        if message.command in self.refused:
+            result = mavlink.MAV_RESULT_DENIED
+        else:
+            result = self._obey(message)
+        # Somebody else has asked for the same and is refused; and the asker is answered.
+        denied = mavlink.MAV_RESULT_DENIED
+        self._send(mavlink.MAVLink_command_ack_message(message.command, denied, 0, 0, 255, 190))
+        asker = (message.get_srcSystem(), message.get_srcComponent())
+        self._send(mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *asker))
+
+    def _obey(self, message: Any) -> int:
+        done = ""
+        if message.command == mavlink.MAV_CMD_DO_SET_MODE:
+            if int(message.param2) not in MODES:
+                return int(mavlink.MAV_RESULT_FAILED)
+            done = MODES[int(message.param2)] if self.mode != message.param2 else ""
+            self.mode = int(message.param2)
+        elif message.command == mavlink.MAV_CMD_DO_SET_SERVO:
+            done = f"servo {message.param1:g} {message.param2:g}"
+            done, self.pulse = "" if self.pulse == message.param2 else done, message.param2
+        elif message.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
+            done = "" if self._picture == message.param4 else "picture"
+            self._picture = message.param4
+        else:
+            return int(mavlink.MAV_RESULT_UNSUPPORTED)
+        if done:
+            self.obeyed.append(done)
+        return int(mavlink.MAV_RESULT_ACCEPTED)
+
+
+@contextmanager
+def sailing(**settings: Any) -> Iterator[Ardusub]:
+    """Switch a vehicle on, and off at the end."""
+    vehicle = Ardusub(**settings)
+    try:
+        yield vehicle
+    finally:
+        vehicle.close()

@@ -1,0 +1,112 @@
+"""RTP: a vehicle's camera is watched by its port or its description, and silence is one line."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from app.recognition.errors import SourceError
+from app.robot import Frame, SourceLost
+from app.robot.sources import cameras
+from app.robot.sources.registry import open_source
+from app.robot.sources.rtp import DESCRIPTION
+from tests.robot.mjpeg_server import FRAME_SIZE
+from tests.robot.rtp_camera import RtpCamera, free_port
+
+
+@pytest.fixture
+def port(monkeypatch: pytest.MonkeyPatch) -> int:
+    monkeypatch.setattr(cameras, "SILENT_SECONDS", 0.5)
+    return free_port()
+
+
+def describe(port: int, tmp_path: Path) -> str:
+    file = tmp_path / "camera.sdp"
+    file.write_text(
+        DESCRIPTION.format(group="127.0.0.1", port=port, kind=96, encoding="H264/90000")
+    )
+    return str(file)
+
+
+@pytest.mark.parametrize("form", ["udp://@:{}", "sdp"])
+def test_a_camera_that_sends_rtp_is_watched_until_it_is_gone(
+    form: str, port: int, tmp_path: Path
+) -> None:
+    address = describe(port, tmp_path) if form == "sdp" else form.format(port)
+    with RtpCamera(port, brightness=100):
+        source = open_source(address)
+        given = iter(source)
+        seen = list(islice((each for each in given if isinstance(each, Frame)), 3))
+    with closing(source):
+        lost = next(each for each in given if isinstance(each, SourceLost))
+    assert source.live
+    assert source.frame_size == FRAME_SIZE
+    assert [frame.image.mean() for frame in seen] == pytest.approx([100] * 3, abs=2)
+    assert str(port) in lost.reason or "camera.sdp" in lost.reason
+
+
+def test_a_transport_stream_is_watched_too(port: int) -> None:
+    with RtpCamera(port, form="mpegts"), closing(open_source(f"udp://0.0.0.0:{port}")) as source:
+        assert source.frame_size == FRAME_SIZE
+
+
+@pytest.mark.parametrize("form", ["udp://0.0.0.0:{}", "rtp://192.168.2.2:{}", "sdp"])
+def test_a_port_on_which_nothing_arrives_is_told_in_time(
+    form: str, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.1)
+    address = describe(port, tmp_path) if form == "sdp" else form.format(port)
+    with pytest.raises(SourceError, match=rf"nothing arrived on UDP port {port} for 0.1 s; is the"):
+        open_source(address)
+
+
+def test_packets_that_are_no_video_are_told(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.5)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        over = threading.Event()
+
+        def send() -> None:
+            number = 0
+            while not over.wait(0.01):
+                number += 1
+                head = bytes([0x80, 96, *number.to_bytes(2, "big"), *bytes(8)])
+                sender.sendto(head + bytes(20), ("127.0.0.1", port))
+
+        thread = threading.Thread(target=send)
+        thread.start()
+        with pytest.raises(SourceError, match=r"no picture could be decoded in 0\.5 s"):
+            open_source(f"udp://0.0.0.0:{port}")
+        over.set()
+        thread.join()
+
+
+def test_a_port_that_another_program_has_is_told(port: int) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", port))
+        with pytest.raises(SourceError, match=f"UDP port {port} cannot be listened on"):
+            open_source(f"udp://0.0.0.0:{port}")
+
+
+@pytest.mark.parametrize(
+    ("content", "what"),
+    [(None, "cannot be read"), ("hello", "no video over RTP"), ("m=audio 5004 RTP/AVP 0", "RTP")],
+)
+def test_a_file_that_describes_no_video_is_refused(
+    tmp_path: Path, content: str | None, what: str
+) -> None:
+    file = tmp_path / "camera.sdp"
+    if content is not None:
+        file.write_text(content)
+    with pytest.raises(SourceError, match=what):
+        open_source(str(file))
+
+
+@pytest.mark.parametrize("address", ["udp://0.0.0.0", "udp://0.0.0.0:99999"])
+def test_an_address_without_a_port_is_refused(address: str) -> None:
+    with pytest.raises(SourceError, match="names no port"):
+        open_source(address)
