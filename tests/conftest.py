@@ -27,10 +27,22 @@ SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "d
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take long, so that no worker is left alone with one in the end.
 
-    Those with a limit of their own take minutes; after them come the folders with most slow tests.
+    Those with a limit of their own take minutes; after them come the parts, and in them the
+    folders, with most slow tests.
     """
-    slow = Counter(item.path.parent for item in items if item.get_closest_marker("slow"))
-    items.sort(key=lambda item: (not item.get_closest_marker("timeout"), -slow[item.path.parent]))
+    tests = ROOT / "tests"
+    # All of one part of the suite together, so that a browser is started once.
+    parts = {item: item.path.relative_to(tests).parts[0] for item in items}
+    slow = Counter(parts[item] for item in items if item.get_closest_marker("slow"))
+    in_folder = Counter(item.path.parent for item in items if item.get_closest_marker("slow"))
+    items.sort(
+        key=lambda item: (
+            not item.get_closest_marker("timeout"),
+            -slow[parts[item]],
+            parts[item],
+            -in_folder[item.path.parent],
+        )
+    )
 
 
 @pytest.fixture(scope="session")
