@@ -92,6 +92,20 @@ class Workers:
             async for step in steps:
                 yield step
 
+    async def find_landmarks(
+        self, source: ClipSource, file: Path, options: ReadOptions, recording: Path, threads: int
+    ) -> AsyncGenerator[Step, None]:
+        """Write a clip's recording alone; the last message says how it ended.
+
+        `threads` bounds those of the models, where several processes share a machine.
+        """
+        command = ["landmarks", source.name, str(file), str(recording), f"--threads={threads}"]
+        silence = self._settings.worker_silence_seconds
+        messages = self._run(command, recording.parent, silence, options)
+        async with aclosing(_steps(messages)) as steps:
+            async for step in steps:
+                yield step
+
     async def write_session(
         self, request: bytes, session: Path, files: ClipFiles
     ) -> AsyncGenerator[Step, None]:
