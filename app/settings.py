@@ -51,7 +51,12 @@ class Settings(BaseSettings):
     """Folder of the database and the clips; created when missing."""
 
     database_url: str | None = None
-    """SQLAlchemy URL of another database; ``None`` is SQLite inside `data_dir`."""
+    """SQLAlchemy URL of the database: ``None`` is SQLite inside `data_dir`, for one server;
+    ``postgresql+psycopg://USER@HOST/NAME`` is for several."""
+
+    storage: Place | None = None
+    """Folder of the clips' files; ``None`` is ``clips`` in `data_dir`. Several servers on one
+    database share it."""
 
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
@@ -147,6 +152,11 @@ class Settings(BaseSettings):
     def tokens(self) -> Path:
         """The file of the named tokens, which need not exist."""
         return self.tokens_file or self.data_dir / TOKENS_FILE
+
+    @property
+    def clips(self) -> Path:
+        """Folder of the clips' files."""
+        return self.storage or self.data_dir / "clips"
 
     @property
     def database(self) -> str:

@@ -194,8 +194,11 @@ class ClipStore:
             shutil.rmtree(self._home(clip.id), ignore_errors=True)
         return len(gone)
 
-    def sweep(self) -> int:
-        """Remove files that no row refers to, left by a crash; return how many went."""
+    def sweep(self, before: datetime) -> int:
+        """Remove files that no row refers to, left by a crash; return how many went.
+
+        Only those last changed `before` that moment.
+        """
         with self._database.reading() as session:
             sources = dict(session.exec(select(Clip.id, Clip.source)).all())
         orphans = [path for path in self.folder.iterdir() if path.name not in sources]
@@ -204,13 +207,17 @@ class ClipStore:
             for path in self.folder.glob("*/*")
             if path.name not in (sources.get(path.parent.name), VIDEO, RECORDING, POSTER, FILMSTRIP)
         ]
+        removed = 0
         for path in orphans:
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                with suppress(OSError):
+            with suppress(OSError):
+                if path.stat().st_mtime > before.timestamp():
+                    continue
+                if path.is_dir():
+                    shutil.rmtree(path)
+                else:
                     path.unlink()
-        return len(orphans)
+                removed += 1
+        return removed
 
     def received(self, clip: Clip) -> Path:
         """Return where the file is that a clip came as."""

@@ -69,7 +69,7 @@ def test_a_dive_recording_waits_for_its_topic(clips: ClipStore, jobs: JobStore) 
     assert (chosen.topic, chosen.needs_topic) == ("/right", False)
     assert (chosen.width, chosen.height, chosen.frames, chosen.duration) == (128, 96, 20, 3.0)
     assert jobs.retry(added.clip.id, "diver") is not None
-    assert clips.sweep() == 0
+    assert clips.sweep(now()) == 0
 
 
 def test_a_dive_recording_whose_topic_is_known_is_queued(clips: ClipStore) -> None:
@@ -82,7 +82,7 @@ def test_a_file_whose_row_cannot_be_written_is_where_it_was(clips: ClipStore) ->
     partial.write_bytes(b"other")
     taken = Clip(**first.clip.model_dump(exclude={"id"}), id="b" * 32)
     taken.name = None  # type: ignore[assignment]
-    with pytest.raises(Exception, match="NOT NULL"):
+    with pytest.raises(Exception, match=r"(?i)not.null"):
         clips.add(taken, partial, "diver")
     assert {path.name for path in clips.folder.iterdir()} == {first.clip.id, partial.name}
     assert partial.read_bytes() == b"other"  # It can be added again.
@@ -136,10 +136,11 @@ def test_sweeping_removes_what_crashes_left_and_nothing_else(
     nameless = clips.folder / ("f" * 32)
     nameless.mkdir()
     (nameless / "video").write_bytes(b"renamed, but its row was never written")
-    assert clips.sweep() == 3
+    assert clips.sweep(now() - timedelta(days=1)) == 0  # Another server may be writing them.
+    assert clips.sweep(now()) == 3
     left = sorted(path.name for path in clips.folder.rglob("*"))
     assert left == sorted([clip_id, "video", "recording.npz", "poster.jpg"])
-    assert clips.sweep() == 0
+    assert clips.sweep(now()) == 0
 
 
 def test_purging_a_clip_takes_its_jobs_along(

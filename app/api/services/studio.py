@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import lru_cache
@@ -52,6 +52,13 @@ CACHED_RECORDINGS = 4
 MOST_COMPUTATIONS = 2
 """Previews and pair differences computed at the same time: of a large language one takes seconds,
 and the threads of all other requests must not be taken."""
+
+ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
+"""What to do when a second server is started on the file of a first one."""
+
+ABANDONED = timedelta(days=1)
+"""Age of a file without a row in a folder that several servers share, before it is removed: longer
+than an upload or an export takes."""
 
 logger = logging.getLogger(__name__)
 
@@ -176,25 +183,34 @@ async def open_studio(settings: Settings, metrics: Metrics | None = None) -> Asy
         When the data folder is another server's or cannot be used, or the database is damaged.
 
     """
-    with FolderLock(settings.data_dir):
-        async with _studio(settings, metrics or Metrics()) as studio:
+    with _opened(settings) as database:
+        async with _studio(settings, database, metrics or Metrics()) as studio:
             yield studio
 
 
 def check_store(settings: Settings) -> None:
     """Raise StoreUnavailable with one line for a person when the store cannot be opened."""
-    with FolderLock(settings.data_dir):
+    with _opened(settings) as database:
+        database.migrate()
+
+
+@contextmanager
+def _opened(settings: Settings) -> Iterator[Database]:
+    """Open the database; keep other servers out of the data folder, and out of SQLite's file."""
+    with ExitStack() as locks:
+        locks.enter_context(FolderLock(settings.data_dir))
         database = Database(settings.database)
-        try:
-            database.migrate()
-        finally:
-            database.close()
+        locks.callback(database.close)
+        if (file := database.file) is not None and file.parent != settings.data_dir:
+            locks.enter_context(FolderLock(file.parent, remedy=ONE_SERVER))
+        yield database
 
 
 @asynccontextmanager
-async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]:
-    database = Database(settings.database)
-    clips = ClipStore(database, settings.data_dir / "clips")
+async def _studio(
+    settings: Settings, database: Database, metrics: Metrics
+) -> AsyncIterator[Studio]:
+    clips = ClipStore(database, settings.clips)
     jobs, languages = JobStore(database), LanguageStore(database)
     broadcast = Broadcast()
     workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
@@ -228,7 +244,6 @@ async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
-        database.close()
 
 
 def _prepare(studio: Studio, database: Database) -> None:
@@ -237,7 +252,9 @@ def _prepare(studio: Studio, database: Database) -> None:
     before = now() - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(before) + studio.languages.purge(before)
     purged += studio.uploads.purge(before)
-    if (swept := studio.clips.sweep()) or purged:
+    # What another server is just writing to the same folder is no orphan.
+    abandoned = now() - ABANDONED if database.shared else now()
+    if (swept := studio.clips.sweep(abandoned)) or purged:
         logger.info("removed %d orphaned files and %d deleted or abandoned objects", swept, purged)
     studio.samples.seed(studio.languages)
 
