@@ -40,6 +40,7 @@ from app.store import (
     RecognitionStore,
     SourceStore,
     UploadStore,
+    identity_of,
 )
 from app.store.models import now
 
@@ -211,7 +212,8 @@ async def _studio(
     settings: Settings, database: Database, metrics: Metrics
 ) -> AsyncIterator[Studio]:
     clips = ClipStore(database, settings.clips)
-    jobs, languages = JobStore(database), LanguageStore(database)
+    jobs = JobStore(database, identity_of(settings.data_dir))
+    languages = LanguageStore(database)
     broadcast = Broadcast()
     workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
     watching = asyncio.create_task(metrics.watch_loop())
