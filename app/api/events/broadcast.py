@@ -1,12 +1,16 @@
-"""In-process publish/subscribe: fans an event out to every open event stream."""
+"""Publish/subscribe: fans an event out to every open event stream, of all servers."""
 
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
+from uuid import uuid4
+
+from app.store.messages import Messages
 
 Result = TypeVar("Result")
 
@@ -25,7 +29,7 @@ class Event:
         ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks`` or
         ``exports``: how far one is.
     data
-        JSON types; at least ``id``.
+        JSON types; at least ``id``. Of ``jobs`` that run: ``progress``, the fields of `Progress`.
 
     """
 
@@ -71,13 +75,31 @@ class Subscription:
             yield event
 
 
-class Broadcast:
-    """Publishes events from any thread to the streams on the event loop it was made on."""
+Join = Callable[[Callable[[str], None], Callable[[], None]], Messages]
+"""Opens the messages of all servers, see `app.store.messages.open_messages`."""
 
-    def __init__(self) -> None:
+
+class Broadcast:
+    """Publishes events from any thread to the streams on the event loop it was made on.
+
+    Parameters
+    ----------
+    join
+        Opens the messages of other servers, which get the same events; None: there are none.
+    heard
+        Called on the loop with every event of another server, before the streams get it.
+
+    """
+
+    def __init__(
+        self, join: Join | None = None, heard: Callable[[Event], None] | None = None
+    ) -> None:
         self._loop = asyncio.get_running_loop()
         self._subscriptions: set[Subscription] = set()
         self._closed = False
+        self._heard = heard
+        self._origin = uuid4().hex
+        self._messages = None if join is None else join(self._hear, self._miss)
 
     def publish(self, kind: str, **data: Any) -> None:
         """Send an event of this kind; see `send`."""
@@ -87,6 +109,9 @@ class Broadcast:
         """Put an event into all streams, from any thread; do nothing once the loop is closed."""
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._deliver, event)
+            if self._messages is not None:
+                told = {"origin": self._origin, "kind": event.kind, "data": event.data}
+                self._messages.send(json.dumps(told))
 
     @contextmanager
     def subscribe(self) -> Iterator[Subscription]:
@@ -103,6 +128,30 @@ class Broadcast:
     def close(self) -> None:
         """End all streams."""
         self._closed = True
+        self._end_streams()
+
+    def leave(self) -> None:
+        """Send nothing to other servers any more, and hear nothing of them."""
+        if self._messages is not None:
+            self._messages.close()
+
+    def _hear(self, text: str) -> None:
+        told = json.loads(text)
+        if told["origin"] != self._origin and not self._loop.is_closed():
+            event = Event(told["kind"], told["data"])
+            self._loop.call_soon_threadsafe(self._take, event)
+
+    def _take(self, event: Event) -> None:
+        if self._heard is not None:
+            self._heard(event)
+        self._deliver(event)
+
+    def _miss(self) -> None:
+        """End the streams: the pages then connect again, and load what they may have missed."""
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._end_streams)
+
+    def _end_streams(self) -> None:
         for subscription in self._subscriptions:
             subscription.put(None)
 

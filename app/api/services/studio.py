@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
-from functools import lru_cache
+from functools import lru_cache, partial
 from threading import Event
 from typing import Annotated
 
@@ -17,9 +17,11 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from app.api.events.broadcast import Broadcast
+from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.extraction.worker_processes import Workers
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
+from app.api.jobs.job import progress_of
 from app.api.jobs.runner import JobRunner
 from app.api.observation.metrics import Metrics
 from app.api.services.sample_library import Samples
@@ -42,6 +44,7 @@ from app.store import (
     UploadStore,
     identity_of,
 )
+from app.store.messages import open_messages
 from app.store.models import now
 
 CACHED_LANGUAGES = 16
@@ -214,8 +217,18 @@ async def _studio(
     clips = ClipStore(database, settings.clips)
     jobs = JobStore(database, identity_of(settings.data_dir))
     languages = LanguageStore(database)
-    broadcast = Broadcast()
+
+    def hear(event: BroadcastEvent) -> None:
+        """Note what another server does with a job."""
+        if event.kind == "jobs":
+            progress = progress_of(event)
+            runner.note(event.data["id"], progress)
+            if progress is None:
+                extractions.look()
+
+    broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
+    extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
     watching = asyncio.create_task(metrics.watch_loop())
     studio = Studio(
         settings=settings,
@@ -230,9 +243,7 @@ async def _studio(
         practice=PracticeStore(database),
         workers=workers,
         runner=runner,
-        extractions=ExtractionQueue(
-            runner, clips, jobs, workers, broadcast, count=settings.workers
-        ),
+        extractions=extractions,
         broadcast=broadcast,
         samples=Samples(settings.samples_dir),
         metrics=metrics,
@@ -246,6 +257,7 @@ async def _studio(
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
+        await run_in_threadpool(broadcast.leave)
 
 
 def _prepare(studio: Studio, database: Database) -> None:
