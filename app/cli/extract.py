@@ -19,7 +19,8 @@ from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
 from app.recognition.errors import OsgError
 
 if TYPE_CHECKING:
-    from app.api.extraction.footage import Extracted, FootageProgress
+    from app.api.extraction.footage import Extracted, Footage, FootageProgress
+    from app.api.extraction.worker_processes import Workers
 
 SOME_FAILED = 1
 """Exit code when a clip could not be read; the others are done."""
@@ -61,9 +62,17 @@ def extract(
             stage = f"{progress.clips} of {len(clips)} clips, kB"
             advance(progress.done_bytes // _KILOBYTE, footage.total_bytes // _KILOBYTE, stage)
 
-        footage = Footage(clips, recordings_dir(), Workers(settings), show)
-        ended = asyncio.run(footage.extract(workers or _cores()))
+        processes = Workers(settings)
+        footage = Footage(clips, recordings_dir(), processes, show)
+        ended = asyncio.run(_work(footage, processes, workers or _cores()))
     _tell(folder.absolute(), ended, output)
+
+
+async def _work(footage: Footage, processes: Workers, count: int) -> list[Extracted]:
+    try:
+        return await footage.extract(count)
+    finally:
+        await processes.close()
 
 
 def _clips(folder: Path) -> Iterator[Path]:

@@ -38,7 +38,7 @@ def test_a_folder_is_extracted_for_evaluate_and_copied_by_name(
     (season / "circle" / "2.mp4").write_bytes(b"\0\0\0\x18ftypmp42")
     ended = osg_studio("extract", season)
     assert ended.code == 1
-    assert "2.mp4" in ended.error
+    assert "2.mp4: the clip" in "".join(ended.error.splitlines())
     assert "0 clips extracted, 1 known from before, 1 failed" in ended.error
 
 

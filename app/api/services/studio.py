@@ -257,6 +257,7 @@ async def _studio(
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
+        await workers.close()
         await run_in_threadpool(broadcast.leave)
 
 
