@@ -14,10 +14,16 @@ from alembic.config import Config
 from alembic.util import CommandError
 from sqlalchemy import URL, Connection, Engine, create_engine, event, text, update
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError, OperationalError
+from sqlalchemy.exc import (
+    ArgumentError,
+    DataError,
+    DBAPIError,
+    NoSuchModuleError,
+    OperationalError,
+)
 from sqlmodel import Session, func, select
 
-from app.store.errors import StoreUnavailable
+from app.store.errors import NotFound, StoreUnavailable
 from app.store.models import ChangeCount
 
 BUSY_TIMEOUT_SECONDS = 5
@@ -175,13 +181,16 @@ class Database:
 
 @contextmanager
 def _convert_errors() -> Iterator[None]:
-    """Turn what the database refuses to do for now into `StoreUnavailable`."""
+    """Turn what the database refuses for now into `StoreUnavailable`, else into `NotFound`."""
     try:
         yield
     except OperationalError as error:
         raise StoreUnavailable(
             f"the database cannot answer now: {error.orig}; nothing was changed, try again"
         ) from error
+    except DataError as error:
+        # PostgreSQL has no text with NUL and no integer beyond its type; SQLite finds none either.
+        raise NotFound("there is nothing of that name or number") from error
 
 
 def _open_sqlite(url: URL) -> Engine:

@@ -9,7 +9,7 @@ import pytest
 from sqlalchemy import text
 from sqlmodel import col, func, select
 
-from app.store import Database, StoreUnavailable
+from app.store import ClipStore, Database, LanguageStore, NotFound, StoreUnavailable
 from app.store.models import SeededSample
 from tests.postgres import Cluster
 
@@ -157,6 +157,14 @@ def test_a_database_that_was_restarted_is_used_again(postgres: Cluster) -> None:
     add(database, "after")
     assert count(database) == 2
     database.close()
+
+
+@pytest.mark.withstands(row="H18")
+def test_an_id_that_no_text_can_be_names_nothing(clips: ClipStore, database: Database) -> None:
+    with pytest.raises(NotFound):
+        clips.get("a\x00b")
+    with pytest.raises(NotFound):
+        LanguageStore(database).get("language", 2**40)
 
 
 def test_many_servers_that_start_at_once_migrate_once(postgres: Cluster) -> None:
