@@ -1,10 +1,12 @@
 """Clips: file and row appear and disappear together, whatever breaks in between."""
 
 import json
+import sqlite3
 from datetime import timedelta
 from pathlib import Path
 
 import pytest
+from sqlalchemy import event
 
 from app.store import Clip, ClipStore, ClipWithJob, Database, JobStatus, JobStore, NotFound
 from app.store.clips import TOPIC_NEEDED
@@ -86,6 +88,16 @@ def test_a_file_whose_row_cannot_be_written_is_where_it_was(clips: ClipStore) ->
         clips.add(taken, partial, "diver")
     assert {path.name for path in clips.folder.iterdir()} == {first.clip.id, partial.name}
     assert partial.read_bytes() == b"other"  # It can be added again.
+
+
+def test_a_list_needs_no_value_for_each_clip(sqlite: Database, tmp_path: Path) -> None:
+    @event.listens_for(sqlite.engine, "checkout")
+    def limit(connection: sqlite3.Connection, *_: object) -> None:
+        connection.setlimit(sqlite3.SQLITE_LIMIT_VARIABLE_NUMBER, 25)
+
+    clips = ClipStore(sqlite, tmp_path / "clips")
+    added = {add_clip(clips).clip.id for _ in range(30)}
+    assert {each.clip.id for each in clips.all()} == added
 
 
 def test_the_second_of_two_racing_uploads_gets_the_first_ones_clip(clips: ClipStore) -> None:
