@@ -23,6 +23,7 @@ from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.job import progress_of
 from app.api.jobs.runner import JobRunner
+from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.sample_library import Samples
 from app.recognition import Language, Recognizer
@@ -229,7 +230,7 @@ async def _studio(
     broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
     extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
-    watching = asyncio.create_task(metrics.watch_loop())
+    watching = [asyncio.create_task(each) for each in (metrics.watch_loop(), keep_trimmed())]
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -253,7 +254,8 @@ async def _studio(
         await studio.extractions.start()
         yield studio
     finally:
-        watching.cancel()
+        for each in watching:
+            each.cancel()
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
