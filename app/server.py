@@ -34,6 +34,7 @@ from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
 from app.api.middleware.strict_bodies import StrictBodies
+from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics
 from app.api.routes import events, health
@@ -170,6 +171,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
         Whether to open the page in this machine's browser once the server is up.
 
     """
+    share_arenas()
     set_up(settings.log_format, settings.log_level)
     app = create_app(settings)
     server = _AnnouncedServer(

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from platformdirs import user_data_path
-from pydantic import AfterValidator, Field, SecretStr, model_validator
+from pydantic import AfterValidator, Field, SecretStr, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app import resources
 from app.recognition.estimation.water import WaterCorrection
 
 MEBIBYTE = 1024 * 1024
+
+DASK = "dask://"
+"""Beginning of the address of a Dask scheduler."""
 
 TOKENS_FILE = "tokens.json"
 """Name of the file of the named tokens in the data folder."""
@@ -51,7 +55,12 @@ class Settings(BaseSettings):
     """Folder of the database and the clips; created when missing."""
 
     database_url: str | None = None
-    """SQLAlchemy URL of another database; ``None`` is SQLite inside `data_dir`."""
+    """SQLAlchemy URL of the database: ``None`` is SQLite inside `data_dir`, for one server;
+    ``postgresql+psycopg://USER@HOST/NAME`` is for several."""
+
+    storage: Place | None = None
+    """Folder of the clips' files; ``None`` is ``clips`` in `data_dir`. Several servers on one
+    database share it."""
 
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
@@ -116,7 +125,12 @@ class Settings(BaseSettings):
     """Correction of colour and contrast: auto for murky frames, on for all, off for none."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
-    """Clips extracted at the same time, each in its own process (the models use all cores)."""
+    """Clips extracted at the same time, each in its own process (the models use all cores); with
+    `executor`, those of this server on all machines."""
+
+    executor: Annotated[str, Field(pattern=r"^dask://[^/\s]+:\d+$")] | None = None
+    """Where extractions, checks and exports run: ``None`` is this machine; ``dask://HOST:PORT`` is
+    the Dask cluster of that scheduler, whose machines share `storage`."""
 
     max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
     """Waiting jobs allowed for one address: enough for the clips of a language."""
@@ -149,6 +163,11 @@ class Settings(BaseSettings):
         return self.tokens_file or self.data_dir / TOKENS_FILE
 
     @property
+    def clips(self) -> Path:
+        """Folder of the clips' files."""
+        return self.storage or self.data_dir / "clips"
+
+    @property
     def database(self) -> str:
         """SQLAlchemy URL of the database in use."""
         return self.database_url or f"sqlite:///{self.data_dir / 'studio.db'}"
@@ -160,6 +179,16 @@ class Settings(BaseSettings):
             names = tuple(name.strip() for name in hosts.split(",") if name.strip())
             return {**values, "allowed_hosts": names}
         return values
+
+    @field_validator("executor")
+    @classmethod
+    def _executor_is_installed(cls, value: str | None) -> str | None:
+        if value is not None and find_spec("distributed") is None:
+            raise ValueError(
+                "OSG_EXECUTOR names a Dask cluster, and Dask is not installed here; "
+                'install it with: pip install "osg-studio[dask]"'
+            )
+        return value
 
     @model_validator(mode="after")
     def _public_needs_token(self) -> Self:

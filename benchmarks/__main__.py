@@ -7,6 +7,7 @@ import argparse
 from benchmarks.cost import (
     explanation,
     extraction,
+    footage,
     library,
     memory,
     recognition,
@@ -16,6 +17,7 @@ from benchmarks.cost import (
 
 PARTS = {
     "extraction": extraction.main,
+    "footage": footage.main,
     "recognition": recognition.main,
     "speed": speed.main,
     "memory": memory.main,

@@ -2,7 +2,7 @@
 
 import os
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import get_args
 
@@ -13,6 +13,7 @@ from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
 from tests.short_clips import thinned
+from tests.postgres import Cluster, postgres_cluster
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDINGS = ROOT / "tests" / "recordings"
@@ -100,3 +101,10 @@ def sample_recording(request: pytest.FixtureRequest) -> Callable[[str], Recordin
 def osg_studio(capsys: pytest.CaptureFixture[str]) -> OsgStudio:
     """Return what runs a command line and tells how it ended."""
     return OsgStudio(capsys)
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[Cluster]:
+    """Return a PostgreSQL server; skip where none is installed."""
+    with postgres_cluster() as cluster:
+        yield cluster

@@ -86,3 +86,11 @@ def test_another_database_can_be_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_token_is_never_printed() -> None:
     assert "hunter2" not in repr(Settings(token=SecretStr("hunter2 hunter2 hunter2")))
+
+
+def test_an_executor_needs_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.settings.find_spec", lambda name: None)
+    with pytest.raises(ValidationError, match=r'pip install "osg-studio\[dask\]"'):
+        Settings(executor="dask://scheduler:8786")
+    with pytest.raises(ValidationError, match="executor"):
+        Settings(executor="tcp://scheduler")

@@ -39,6 +39,7 @@ from app.cli.clip_argument import (
 from app.cli.demonstrations import demonstrations_command
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
+from app.cli.extract import extract
 from app.cli.language_code import code
 from app.cli.mcap_file import name_recognitions, save_session
 from app.cli.phrase import phrase
@@ -81,6 +82,7 @@ models_command = typer.Typer(
 command_line.add_typer(models_command, name="models")
 command_line.add_typer(demonstrations_command, name="demonstrations")
 command_line.command()(evaluate)
+command_line.command()(extract)
 command_line.command()(check)
 command_line.command()(code)
 command_line.command()(slate)

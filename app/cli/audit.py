@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import closing
 from typing import Annotated
 
 import typer
@@ -21,15 +22,15 @@ def audit(
 ) -> None:
     """List the changes in a studio by time, name, address and path, the newest first."""
     settings = settings_of(data_dir)
-    from app.store import AuditStore, Database
+    from app.store import AuditStore, Database, StoreError
 
     if settings.database_url is None and not (settings.data_dir / "studio.db").is_file():
         raise OsgError(f"{settings.data_dir} holds no studio; give its folder with --data-dir")
-    database = Database(settings.database)
     try:
-        entries = AuditStore(database).newest(limit, name=name)
-    finally:
-        database.close()
+        with closing(Database(settings.database)) as database:
+            entries = AuditStore(database).newest(limit, name=name)
+    except StoreError as error:
+        raise OsgError(str(error)) from error
     for entry in entries:
         content = entry.model_dump(mode="json")
         if as_json:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from app.clip_sources import is_take
+from app.evaluation.kept_recordings import RECORDING_ENDING
 from app.recognition.errors import OsgError
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
@@ -15,9 +16,6 @@ LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
 
 SEPARATORS = "_-. "
 """Characters that end the label of a file directly in the folder: ``circle-1.mp4``."""
-
-SAVED_RECORDING = ".npz"
-"""Ending of what `Recording.save` wrote, which is a take beside those of the clip sources."""
 
 _FIELDS = {
     "{label}": r"(?P<label>[^/]+?)",
@@ -91,7 +89,7 @@ def _readable(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
-        if is_take(path) or (path.is_file() and path.suffix.lower() == SAVED_RECORDING):
+        if is_take(path) or (path.is_file() and path.suffix.lower() == RECORDING_ENDING):
             yield path
         elif path.is_dir():
             yield from _readable(path)

@@ -8,18 +8,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from platformdirs import user_data_path
-
-from app import __version__
 from app.clip_sources import ReadOptions, source_of
-from app.evaluation.labelled_files import SAVED_RECORDING, LabelledFile
+from app.evaluation.kept_recordings import RECORDING_ENDING, kept_recording, recordings_dir
+from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
 from app.recognition.estimation import PoseEstimator, create_estimator
-from app.recognition.recording.recording import FILE_VERSION
-from app.recognition.text.hashing import hash_file
 
 Progress = Callable[[int, int, str], None]
 """``progress(done, total, name)``: frames of the file of that name."""
@@ -40,12 +36,6 @@ class Collection:
 
     takes: tuple[LabelledTake, ...]
     problems: dict[str, str]
-
-
-def recordings_dir() -> Path:
-    """Return the cache folder of recordings in the user's data."""
-    kept: Path = user_data_path("osg-studio", appauthor=False) / "recordings"
-    return kept
 
 
 def collect_takes(
@@ -100,12 +90,12 @@ class _Extractor:
         self._estimator: PoseEstimator | None = None
 
     def recording(self, path: Path) -> Recording:
-        if path.suffix.lower() == SAVED_RECORDING:
+        if path.suffix.lower() == RECORDING_ENDING:
             return Recording.load(path)
         source = source_of(path)
         if not source.shows_pictures(path, self._options):
             return source.record(path, self._options).recording
-        kept = self._folder / f"{_content_key(path)}.npz"
+        kept = kept_recording(path, self._folder)
         if kept.is_file():
             return Recording.load(kept)
         if self._estimator is None:
@@ -127,11 +117,6 @@ class _Extractor:
     @staticmethod
     def _advance(name: str, progress: Progress, done: int, total: int) -> None:
         progress(done, total, name)
-
-
-def _content_key(path: Path) -> str:
-    """Return the cache key of a clip: its content's hash and the versions of program and file."""
-    return f"{hash_file(path)}-{__version__}-{FILE_VERSION}"
 
 
 def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:

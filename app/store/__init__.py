@@ -6,6 +6,7 @@ from app.store.database import Database
 from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
 from app.store.folder_lock import FolderLock
+from app.store.identity import identity_of
 from app.store.jobs import JobStore
 from app.store.labelled_takes import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.languages import Draft, LanguageState, LanguageStore
@@ -63,4 +64,5 @@ __all__ = [
     "TokenFile",
     "Upload",
     "UploadStore",
+    "identity_of",
 ]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from sqlalchemy import ColumnElement
 from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, func, select
 
@@ -104,14 +105,15 @@ class ClipStore:
             clip = session.get(Clip, clip_id)
             if clip is None or clip.deleted is not None:
                 raise NotFound(f"there is no clip {clip_id!r}")
-            return ClipWithJob(clip, _newest_jobs([clip_id], session)[clip_id])
+            return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip_id, session)[clip_id])
 
     def all(self) -> list[ClipWithJob]:
         """Return the clips that are not deleted, newest first."""
         with self._database.reading() as session:
             query = select(Clip).where(col(Clip.deleted).is_(None))
             clips = session.exec(query.order_by(col(Clip.created).desc(), col(Clip.id))).all()
-            jobs = _newest_jobs([clip.id for clip in clips], session)
+            # Not by their ids: a statement has 32 766 values at most.
+            jobs = _newest_jobs(col(Clip.deleted).is_(None), session)
             return [ClipWithJob(clip, jobs[clip.id]) for clip in clips]
 
     def by_idempotency_key(self, key: str) -> ClipWithJob | None:
@@ -120,7 +122,7 @@ class ClipStore:
             clip = session.exec(select(Clip).where(Clip.idempotency_key == key)).first()
             if clip is None:
                 return None
-            return ClipWithJob(clip, _newest_jobs([clip.id], session)[clip.id])
+            return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip.id, session)[clip.id])
 
     def usage(self, owner: str) -> tuple[int, int]:
         """Return the number of clips that somebody keeps, and their bytes."""
@@ -194,8 +196,11 @@ class ClipStore:
             shutil.rmtree(self._home(clip.id), ignore_errors=True)
         return len(gone)
 
-    def sweep(self) -> int:
-        """Remove files that no row refers to, left by a crash; return how many went."""
+    def sweep(self, before: datetime) -> int:
+        """Remove files that no row refers to, left by a crash; return how many went.
+
+        Only those last changed `before` that moment.
+        """
         with self._database.reading() as session:
             sources = dict(session.exec(select(Clip.id, Clip.source)).all())
         orphans = [path for path in self.folder.iterdir() if path.name not in sources]
@@ -204,13 +209,17 @@ class ClipStore:
             for path in self.folder.glob("*/*")
             if path.name not in (sources.get(path.parent.name), VIDEO, RECORDING, POSTER, FILMSTRIP)
         ]
+        removed = 0
         for path in orphans:
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                with suppress(OSError):
+            with suppress(OSError):
+                if path.stat().st_mtime > before.timestamp():
+                    continue
+                if path.is_dir():
+                    shutil.rmtree(path)
+                else:
                     path.unlink()
-        return len(orphans)
+                removed += 1
+        return removed
 
     def received(self, clip: Clip) -> Path:
         """Return where the file is that a clip came as."""
@@ -240,7 +249,7 @@ class ClipStore:
         return self.folder / clip_id
 
 
-def _newest_jobs(clip_ids: list[str], session: Session) -> dict[str, Job]:
-    """Return the newest job of each clip."""
-    query = select(Job).where(col(Job.clip_id).in_(clip_ids)).order_by(col(Job.created))
+def _newest_jobs(which: ColumnElement[bool], session: Session) -> dict[str, Job]:
+    """Return the newest job of each clip for which `which` is true."""
+    query = select(Job).join(Clip).where(which).order_by(col(Job.created))
     return {job.clip_id: job for job in session.exec(query)}

@@ -1,4 +1,4 @@
-"""Database access: SQLite with durable settings, or another URL; migrated at start."""
+"""Database access: SQLite for one server, PostgreSQL for several; migrated at start."""
 
 from __future__ import annotations
 
@@ -12,15 +12,25 @@ from threading import Lock
 from alembic import command
 from alembic.config import Config
 from alembic.util import CommandError
-from sqlalchemy import Connection, Engine, create_engine, event, text
+from sqlalchemy import URL, Connection, Engine, create_engine, event, text, update
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import DBAPIError, OperationalError
-from sqlmodel import Session
+from sqlalchemy.exc import (
+    ArgumentError,
+    DataError,
+    DBAPIError,
+    NoSuchModuleError,
+    OperationalError,
+)
+from sqlmodel import Session, func, select
 
-from app.store.errors import StoreUnavailable
+from app.store.errors import NotFound, StoreUnavailable
+from app.store.models import ChangeCount
 
 BUSY_TIMEOUT_SECONDS = 5
 """How long a writer waits for another one; transactions here take milliseconds."""
+
+WRITE_LOCK = 0x0F3C_57D1
+"""Number of PostgreSQL's advisory lock that writers hold, in place of SQLite's lock of the file."""
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 
@@ -28,47 +38,82 @@ MIGRATIONS = Path(__file__).parent / "migrations"
 class Database:
     """Sessions on one database.
 
+    Whatever the kind, writers come one after the other, and what a session reads is one state.
+
     Parameters
     ----------
     url
-        SQLAlchemy URL. For SQLite the folder of the file is made.
+        SQLAlchemy URL of SQLite or PostgreSQL. For SQLite the folder of the file is made.
+
+    Raises
+    ------
+    StoreUnavailable
+        When the URL is of another kind, or the driver is not installed.
 
     Attributes
     ----------
-    changes
-        Grows with every committed change: what was read while it said the same is still true. It
-        starts at the present moment, in nanoseconds, so that no later run repeats a number.
+    shared
+        Whether several servers may use it.
+    engine
+        SQLAlchemy's engine.
 
     """
 
     def __init__(self, url: str) -> None:
-        parsed = make_url(url)
-        self.changes = time.time_ns()
+        try:
+            parsed = make_url(url)
+        except ArgumentError as error:
+            raise StoreUnavailable(
+                "OSG_DATABASE_URL is no URL of a database; give postgresql+psycopg://USER@HOST/NAME"
+            ) from error
+        self._changes = time.time_ns()
         self._counting = Lock()
-        self._sqlite = parsed.get_backend_name() == "sqlite"
-        if self._sqlite and parsed.database:
+        kind = parsed.get_backend_name()
+        if kind not in ("sqlite", "postgresql"):
+            raise StoreUnavailable(
+                f"there is no support for {kind}; give postgresql+psycopg://USER@HOST/NAME, or "
+                "leave OSG_DATABASE_URL out for SQLite"
+            )
+        self.shared = kind == "postgresql"
+        if not self.shared and parsed.database:
             Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-        self.engine: Engine = create_engine(
-            parsed, connect_args={"timeout": BUSY_TIMEOUT_SECONDS} if self._sqlite else {}
-        )
-        if self._sqlite:
-            event.listen(self.engine, "connect", _make_durable)
-            event.listen(self.engine, "begin", _begin)
+        self.engine: Engine = _open_postgres(parsed) if self.shared else _open_sqlite(parsed)
+        self._readers = self.engine
+        if self.shared:
+            self._readers = self.engine.execution_options(isolation_level="REPEATABLE READ")
+
+    @property
+    def file(self) -> Path | None:
+        """The file of SQLite; None where several servers may use the database."""
+        name = self.engine.url.database
+        return None if self.shared or not name else Path(name).absolute()
+
+    @property
+    def changes(self) -> int:
+        """Number that grows with every committed change, by any server.
+
+        What was read while it said the same is still true. It is about the present moment in
+        nanoseconds, so that neither a later run nor a restored backup repeats a number.
+        """
+        if not self.shared:
+            return self._changes
+        with self.reading() as session:
+            return session.exec(select(ChangeCount.changes)).one()
 
     def migrate(self) -> None:
-        """Check the file and bring its tables to this version's.
+        """Check the database and bring its tables to this version's.
 
         Raises
         ------
         StoreUnavailable
-            When the file is damaged, not a database, or made by a newer version.
+            When it is damaged, not a database, cannot be reached, or made by a newer version.
 
         """
         try:
             self._check()
             config = Config()
             config.set_main_option("script_location", MIGRATIONS.as_posix().replace("%", "%%"))
-            with self.engine.begin() as connection:
+            with self.engine.execution_options(writing=True).begin() as connection:
                 config.attributes["connection"] = connection
                 command.upgrade(config, "head")
         except CommandError as error:
@@ -77,23 +122,26 @@ class Database:
                 f"({error}); install that version, or start with another data directory"
             ) from error
         except DBAPIError as error:
+            remedy = "restore a backup or start with another data directory"
+            if self.shared:
+                remedy = "look whether it runs, and whether OSG_DATABASE_URL is right"
+            reason = " ".join(str(error.orig).split())
             raise StoreUnavailable(
-                f"the database {self._name} cannot be used: {error.orig}; "
-                "restore a backup or start with another data directory"
+                f"the database {self._name} cannot be used: {reason}; {remedy}"
             ) from error
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that sees one consistent state and changes nothing."""
-        with _convert_errors(), Session(self.engine, expire_on_commit=False) as session:
+        with _convert_errors(), Session(self._readers, expire_on_commit=False) as session:
             yield session
 
     @contextmanager
-    def writing(self) -> Iterator[Session]:
+    def writing(self, *, counted: bool = True) -> Iterator[Session]:
         """Open a session that holds the write lock from the start and commits at the end.
 
         Taking the lock first lets two writers wait for each other; taking it after reading would
-        make SQLite refuse the second one at once.
+        make SQLite refuse the second one at once. `counted` is False for what no list shows.
         """
         engine = self.engine.execution_options(writing=True)
         with (
@@ -103,8 +151,12 @@ class Database:
         ):
             yield session
             session.flush()
-        with self._counting:
-            self.changes += 1
+            if counted and self.shared:
+                number = func.greatest(ChangeCount.changes + 1, time.time_ns())
+                session.execute(update(ChangeCount).values(changes=number))
+        if counted:
+            with self._counting:
+                self._changes += 1
 
     def close(self) -> None:
         """Close every connection."""
@@ -116,7 +168,7 @@ class Database:
         return self.engine.url.render_as_string()
 
     def _check(self) -> None:
-        if not self._sqlite:
+        if self.shared:
             return
         with self.engine.connect() as connection:
             verdict = connection.execute(text("PRAGMA quick_check(1)")).scalar_one()
@@ -129,13 +181,48 @@ class Database:
 
 @contextmanager
 def _convert_errors() -> Iterator[None]:
-    """Turn what the database refuses to do for now into `StoreUnavailable`."""
+    """Turn what the database refuses for now into `StoreUnavailable`, else into `NotFound`."""
     try:
         yield
     except OperationalError as error:
         raise StoreUnavailable(
             f"the database cannot answer now: {error.orig}; nothing was changed, try again"
         ) from error
+    except DataError as error:
+        # PostgreSQL has no text with NUL and no integer beyond its type; SQLite finds none either.
+        raise NotFound("there is nothing of that name or number") from error
+
+
+def _open_sqlite(url: URL) -> Engine:
+    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_SECONDS})
+    event.listen(engine, "connect", _make_durable)
+    event.listen(engine, "begin", _begin)
+    return engine
+
+
+def _open_postgres(url: URL) -> Engine:
+    options = f"-c lock_timeout={round(BUSY_TIMEOUT_SECONDS * 1000)} -c timezone=UTC"
+    try:
+        engine = create_engine(
+            url,
+            connect_args={"options": options, "connect_timeout": BUSY_TIMEOUT_SECONDS},
+            # A connection that the database closed, as when it is restarted, is replaced unseen.
+            pool_pre_ping=True,
+        )
+    except (NoSuchModuleError, ModuleNotFoundError) as error:
+        raise StoreUnavailable(
+            f"the driver of {url.drivername} is not installed ({error}); "
+            'install it with: pip install "osg-studio[postgres]"'
+        ) from error
+    event.listen(engine, "begin", _take_turn)
+    return engine
+
+
+def _take_turn(connection: Connection) -> None:
+    """Wait until no other server writes; the lock ends with the transaction."""
+    if connection.get_execution_options().get("writing", False):
+        # Every statement after it sees what was committed before (PostgreSQL's READ COMMITTED).
+        connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({WRITE_LOCK})")
 
 
 def _make_durable(connection: sqlite3.Connection, _record: object) -> None:

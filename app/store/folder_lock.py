@@ -17,6 +17,8 @@ class FolderLock:
     ----------
     folder
         Made when missing.
+    remedy
+        What to do when another process holds it.
 
     Raises
     ------
@@ -25,8 +27,13 @@ class FolderLock:
 
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        remedy: str = "end that one, or choose another folder with --data-dir",
+    ) -> None:
         self._folder = folder
+        self._remedy = remedy
         self._lock = FileLock(folder / "lock", mode=0o600)
 
     def __enter__(self) -> Self:
@@ -36,8 +43,7 @@ class FolderLock:
             self._lock.acquire(blocking=False)
         except Timeout as error:
             raise StoreUnavailable(
-                f"the data folder {self._folder} is in use by another OSG Studio; "
-                "end that one, or choose another folder with --data-dir"
+                f"the data folder {self._folder} is in use by another OSG Studio; {self._remedy}"
             ) from error
         except OSError as error:
             raise StoreUnavailable(

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from datetime import UTC, datetime, timedelta
 
-from sqlmodel import col, func, select
+from sqlalchemy import ColumnElement, or_
+from sqlmodel import Session, col, func, select
 
 from app.store.database import Database
 from app.store.errors import NotFound
@@ -14,14 +16,36 @@ from app.store.models import Clip, Job, JobStatus, now
 MAX_ATTEMPTS = 3
 """Starts after which a job that never came to an end is given up: it may be what ends us."""
 
+_RUNNING = col(Job.status) == JobStatus.RUNNING.value
 _OPEN = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
 
 
-class JobStore:
-    """Keeps jobs in `database`; every change of status is one transaction."""
+LEASE = timedelta(seconds=45)
+"""How long a server has a job that it starts, unless it renews it (`JobStore.renew`): a database
+that does not answer for some seconds, or a busy server, must not cost it its jobs."""
 
-    def __init__(self, database: Database) -> None:
+MOST_RESUMED = 1000
+"""Waiting jobs that are read at once; the next ones are when these have begun."""
+
+
+class JobStore:
+    """Keeps jobs; every change of status is one transaction.
+
+    A running job belongs to the server that started it, which renews its lease. When the lease is
+    over, any server may queue the job again; what the former one finds then has no effect.
+
+    Parameters
+    ----------
+    database
+        Where they are.
+    server
+        Id of this server.
+
+    """
+
+    def __init__(self, database: Database, server: str = "") -> None:
         self._database = database
+        self._server = server
 
     def get(self, job_id: str) -> Job:
         """Return a job whose clip is not deleted.
@@ -53,26 +77,42 @@ class JobStore:
         return {status: counts.get(status, 0) for status in _OPEN}
 
     def resume(self) -> list[Job]:
-        """Queue again what was running when the server ended; return all that waits, oldest first.
+        """Queue again what this server ran when it ended; return what waits, oldest first.
 
         A job that was started `MAX_ATTEMPTS` times without coming to an end fails instead.
         """
         with self._database.writing() as session:
-            jobs = session.exec(
-                select(Job).where(col(Job.status).in_(_OPEN)).order_by(col(Job.created))
-            ).all()
-            for job in jobs:
-                if job.attempts >= MAX_ATTEMPTS:
-                    job.status, job.finished = JobStatus.FAILED.value, now()
-                    job.error_code = "interrupted"
-                    job.error = (
-                        f"the server ended {job.attempts} times while it read this clip; "
-                        "delete the clip, or convert it to another format and try again"
-                    )
-                else:
-                    job.status = JobStatus.QUEUED.value
+            mine = or_(col(Job.server) == self._server, col(Job.server).is_(None))
+            for job in session.exec(select(Job).where(_RUNNING, or_(mine, _overdue(session)))):
+                _queue_again(session, job)
+            session.flush()
+            return _waiting(session)
+
+    def take_over(self) -> list[Job]:
+        """Queue again what other servers left running; return what waits, oldest first."""
+        with self._database.reading() as session:
+            left = select(Job.id).where(_RUNNING, Job.server != self._server, _overdue(session))
+            if session.exec(left).first() is None:
+                return _waiting(session)
+        with self._database.writing() as session:
+            others = Job.server != self._server
+            for job in session.exec(select(Job).where(_RUNNING, others, _overdue(session))):
+                _queue_again(session, job)
+            session.flush()
+            return _waiting(session)
+
+    def renew(self, job_ids: Collection[str]) -> set[str]:
+        """Go on having some running jobs; return those that this server still has."""
+        with self._database.writing(counted=False) as session:
+            until = _moment(session) + LEASE
+            query = select(Job).where(
+                col(Job.id).in_(job_ids), _RUNNING, Job.server == self._server
+            )
+            kept = session.exec(query).all()
+            for job in kept:
+                job.lease = until
                 session.add(job)
-        return [job for job in jobs if job.status == JobStatus.QUEUED]
+            return {job.id for job in kept}
 
     def start(self, job_id: str) -> Job | None:
         """Mark a waiting job as running; ``None`` when it was cancelled or removed meanwhile."""
@@ -81,27 +121,27 @@ class JobStore:
             if job is None or job.status != JobStatus.QUEUED:
                 return None
             job.status, job.started = JobStatus.RUNNING.value, now()
+            job.server, job.lease = self._server, _moment(session) + LEASE
             job.attempts += 1
             session.add(job)
             return job
 
     def is_running(self, job_id: str) -> bool:
-        """Return whether a job was started and is neither over nor removed."""
+        """Return whether this server runs a job, which is neither over nor removed."""
         with self._database.reading() as session:
-            job = session.get(Job, job_id)
-            return job is not None and job.status == JobStatus.RUNNING
+            return self._has(session.get(Job, job_id))
 
     def requeue(self, job_id: str) -> None:
         """Put a running job back, because the server stops in good order."""
         with self._database.writing() as session:
             job = session.get(Job, job_id)
-            if job is not None and job.status == JobStatus.RUNNING:
+            if job is not None and self._has(job):
                 job.status = JobStatus.QUEUED.value
                 job.attempts -= 1
                 session.add(job)
 
     def complete(self, job_id: str, frames: int, warnings: Sequence[str]) -> bool:
-        """End a job that found what it looked for; return whether it was still open.
+        """End a job that found what it looked for; return whether this server still had it.
 
         Parameters
         ----------
@@ -115,7 +155,7 @@ class JobStore:
         """
         with self._database.writing() as session:
             job = session.get(Job, job_id)
-            if job is None or JobStatus(job.status).final:
+            if job is None or not self._has(job):
                 return False
             job.status, job.finished, job.frames = JobStatus.DONE.value, now(), frames
             job.warnings = json.dumps(list(warnings), ensure_ascii=False)
@@ -140,6 +180,8 @@ class JobStore:
     ) -> bool:
         """End a job that found nothing; return whether it was still open.
 
+        Anybody may cancel a job; one that another server runs does not fail by this one.
+
         Parameters
         ----------
         job_id
@@ -156,7 +198,41 @@ class JobStore:
             job = session.get(Job, job_id)
             if job is None or JobStatus(job.status).final:
                 return False
+            lost = job.status == JobStatus.RUNNING and not self._has(job)
+            if lost and status is not JobStatus.CANCELLED:
+                return False
             job.status, job.finished = status.value, now()
             job.error_code, job.error = code, error
             session.add(job)
             return True
+
+    def _has(self, job: Job | None) -> bool:
+        return job is not None and job.status == JobStatus.RUNNING and job.server == self._server
+
+
+def _moment(session: Session) -> datetime:
+    """Return the database's present moment: the servers' clocks may differ."""
+    moment: datetime = session.execute(select(func.current_timestamp())).scalar_one()
+    return moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
+
+
+def _overdue(session: Session) -> ColumnElement[bool]:
+    return or_(col(Job.lease).is_(None), col(Job.lease) < _moment(session))
+
+
+def _queue_again(session: Session, job: Job) -> None:
+    if job.attempts >= MAX_ATTEMPTS:
+        job.status, job.finished = JobStatus.FAILED.value, now()
+        job.error_code = "interrupted"
+        job.error = (
+            f"the server ended {job.attempts} times while it read this clip; "
+            "delete the clip, or convert it to another format and try again"
+        )
+    else:
+        job.status = JobStatus.QUEUED.value
+    session.add(job)
+
+
+def _waiting(session: Session) -> list[Job]:
+    query = select(Job).where(Job.status == JobStatus.QUEUED.value).order_by(col(Job.created))
+    return list(session.exec(query.limit(MOST_RESUMED)))

@@ -6,7 +6,15 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from uuid import uuid4
 
-from sqlalchemy import CheckConstraint, Column, DateTime, Text, UniqueConstraint
+from sqlalchemy import (
+    BigInteger,
+    CheckConstraint,
+    Column,
+    DateTime,
+    Integer,
+    Text,
+    UniqueConstraint,
+)
 from sqlalchemy.types import TypeDecorator
 from sqlmodel import Field, SQLModel
 
@@ -39,6 +47,10 @@ class UtcDateTime(TypeDecorator[datetime]):
         return None if value is None else value.replace(tzinfo=UTC)
 
 
+ByteCount = BigInteger().with_variant(Integer(), "sqlite")
+"""Type of a number of bytes: SQLite's integers have 64 bits anyhow."""
+
+
 class JobStatus(StrEnum):
     """Where a job stands; the last three are final."""
 
@@ -66,7 +78,7 @@ class Clip(SQLModel, table=True):
     name: str = Field(max_length=200)
     """The name shown; never used as a path."""
     media_type: str = Field(max_length=64)
-    size: int
+    size: int = Field(sa_type=ByteCount)
     """Bytes."""
     width: int
     """Pixels, upright."""
@@ -127,6 +139,10 @@ class Job(SQLModel, table=True):
     """What the user should know about the clip, as a JSON array of sentences."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     started: datetime | None = Field(default=None, sa_type=UtcDateTime)
+    server: str | None = Field(default=None, max_length=32)
+    """The server that runs it, see `JobStore`."""
+    lease: datetime | None = Field(default=None, sa_type=UtcDateTime)
+    """Until when that server has it, unless it says that it goes on."""
     finished: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
 
@@ -288,3 +304,12 @@ class AuditEntry(SQLModel, table=True):
     """What was answered."""
     request_id: str = Field(max_length=64)
     """The same as in the log."""
+
+
+class ChangeCount(SQLModel, table=True):
+    """The one row that counts the changes, where several servers share the database."""
+
+    __tablename__ = "change_count"
+
+    id: int = Field(default=1, primary_key=True)
+    changes: int = Field(sa_type=ByteCount)

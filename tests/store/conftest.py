@@ -1,4 +1,4 @@
-"""A real store: SQLite on disk, migrated, in a folder of the test's own."""
+"""A real store: SQLite on disk and PostgreSQL, migrated, each test with one of its own."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,10 +6,29 @@ from pathlib import Path
 import pytest
 
 from app.store import Clip, ClipStore, ClipWithJob, Database, JobStore, LanguageStore
+from tests.postgres import Cluster
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Return the URL of an empty database; a test that uses it runs once for each kind."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'studio.db'}"
+    cluster: Cluster = request.getfixturevalue("postgres")
+    return cluster.new_database()
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
+def database(database_url: str) -> Iterator[Database]:
+    database = Database(database_url)
+    database.migrate()
+    yield database
+    database.close()
+
+
+@pytest.fixture
+def sqlite(tmp_path: Path) -> Iterator[Database]:
+    """Return a database in a file, where it is the file that is looked at."""
     database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
     database.migrate()
     yield database

@@ -1,8 +1,11 @@
 """Jobs: each moves along its states once, and survives the server."""
 
+from datetime import timedelta
+from pathlib import Path
+
 import pytest
 
-from app.store import ClipStore, JobStatus, JobStore, NotFound
+from app.store import ClipStore, Database, JobStatus, JobStore, NotFound, identity_of
 from app.store.jobs import MAX_ATTEMPTS
 from tests.store.conftest import add_clip
 
@@ -73,6 +76,54 @@ def test_stopping_in_good_order_is_no_attempt(jobs: JobStore, job_id: str) -> No
         assert jobs.start(job_id)
         jobs.requeue(job_id)
     assert jobs.get(job_id).status == JobStatus.QUEUED
+
+
+def test_a_server_that_renews_keeps_its_job(
+    database: Database, jobs: JobStore, job_id: str
+) -> None:
+    other = JobStore(database, "other")
+    jobs.start(job_id)
+    assert other.take_over() == []
+    assert other.resume() == []
+    assert jobs.renew([job_id, "no such job"]) == {job_id}
+    assert other.renew([job_id]) == set()
+    assert jobs.is_running(job_id)
+    assert not other.is_running(job_id)
+
+
+def test_the_job_of_a_server_that_vanished_is_run_by_another_and_has_its_effect_once(
+    database: Database, jobs: JobStore, job_id: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = JobStore(database, "other")
+    with monkeypatch.context() as vanishing:
+        vanishing.setattr("app.store.jobs.LEASE", timedelta(seconds=-2))
+        jobs.start(job_id)
+    assert jobs.take_over() == []  # Its own: it runs, or it is resumed at the next start.
+    assert [job.id for job in other.take_over()] == [job_id]
+    assert other.start(job_id) is not None
+    # The first one was only slow.
+    assert jobs.renew([job_id]) == set()
+    assert not jobs.complete(job_id, 7, [])
+    assert not jobs.finish(job_id, JobStatus.FAILED, code="decoder", error="broke")
+    jobs.requeue(job_id)
+    assert jobs.resume() == []
+    assert other.complete(job_id, 9, [])
+    assert (jobs.get(job_id).frames, jobs.get(job_id).attempts) == (9, 2)
+
+
+def test_anybody_may_cancel_a_job(database: Database, jobs: JobStore, job_id: str) -> None:
+    jobs.start(job_id)
+    assert JobStore(database, "other").finish(job_id, JobStatus.CANCELLED)
+    assert jobs.renew([job_id]) == set()
+
+
+def test_a_server_takes_up_its_jobs_at_once_after_a_restart(
+    database: Database, jobs: JobStore, job_id: str, tmp_path: Path
+) -> None:
+    first = JobStore(database, identity_of(tmp_path))
+    first.start(job_id)
+    again = JobStore(database, identity_of(tmp_path))
+    assert [job.id for job in again.resume()] == [job_id]
 
 
 def test_open_jobs_count_per_client(clips: ClipStore, jobs: JobStore) -> None:

@@ -1,4 +1,4 @@
-"""Worker process: ``python -m app.api.extraction.worker probe|record|session|import|check ...``.
+"""Worker process: ``python -m app.api.extraction.worker COMMAND ...``, see `_arguments`.
 
 It opens one clip or language file, writes one JSON object per line to stdout (see `messages`), and
 ends as soon as its stdin is closed, which happens when the server dies.
@@ -14,8 +14,11 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
+
+import cv2
 
 from app.api.extraction.clip_files import ClipFiles
 from app.api.extraction.language_files import check_language, import_language
@@ -34,6 +37,7 @@ from app.api.extraction.session_request import SessionRequest
 from app.bags.session_writer import write_session as write_mcap
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
 from app.recognition.errors import LanguageError, ModelError, OsgError, VideoError
+from app.recognition.estimation import create_estimator
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import VideoFrame
@@ -69,13 +73,36 @@ def record(
     else:
         # First of all: a card with a picture says more than one without.
         write_poster(file, files.poster)
-    steps = _Steps(files, report, poster=source.makes_video)
+    steps = _Steps(report)
+    pictures = _Pictures(files, poster=source.makes_video)
+
+    def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+        steps.observe(frame, found)
+        pictures.add(frame)
+
     recorded = source.record(
-        file, options, video=partial, progress=steps.progress, observer=steps.observe
+        file, options, video=partial, progress=steps.progress, observer=observe
     )
     if partial is not None:
         partial.replace(files.video)
-    steps.save(recorded.recording)
+    pictures.write()
+    steps.save(recorded.recording, files.recording)
+
+
+def find_landmarks(
+    source: ClipSource,
+    file: Path,
+    options: ReadOptions,
+    target: Path,
+    threads: int,
+    report: Report,
+) -> None:
+    """Write a clip's recording alone, with so many threads for the models."""
+    steps = _Steps(report)
+    cv2.setNumThreads(threads)
+    with closing(create_estimator(threads=threads)) as estimator:
+        found = source.record(file, options, estimator=estimator, progress=steps.progress)
+    steps.save(found.recording, target)
 
 
 def write_session(request: Path, session: Path, files: ClipFiles, report: Report) -> None:
@@ -100,31 +127,15 @@ def write_session(request: Path, session: Path, files: ClipFiles, report: Report
 
 
 class _Steps:
-    """Takes the frames of a clip one by one, and reports how far the work is.
+    """Takes the frames of a clip one by one, and calls `report` with how far the work is."""
 
-    Parameters
-    ----------
-    files
-        What to write.
-    report
-        Called with every message.
-    poster
-        Whether the still picture is still to be written.
-
-    """
-
-    def __init__(self, files: ClipFiles, report: Report, *, poster: bool) -> None:
-        self._files, self._report = files, report
+    def __init__(self, report: Report) -> None:
+        self._report = report
         self._reported = 0.0
         self._newest: tuple[VideoFrame, Body | None] | None = None
-        self._thumbnails = Thumbnails()
-        self._poster = Poster(files.poster) if poster else None
 
     def observe(self, frame: VideoFrame, found: FrameLandmarks) -> None:
         self._newest = frame, found.body
-        self._thumbnails.add(frame.index, frame.image)
-        if self._poster is not None:
-            self._poster.add(frame.time, frame.image)
 
     def progress(self, done: int, total: int) -> None:
         if (now := time.monotonic()) - self._reported < PROGRESS_SECONDS and done != total:
@@ -138,14 +149,30 @@ class _Steps:
             pose = pose_in(body.xy, width, height) if body else None
         self._report(Progressed(stage="poses", done=done, total=total, time=seconds, pose=pose))
 
-    def save(self, recorded: Recording) -> None:
+    def save(self, recorded: Recording, target: Path) -> None:
         frames = len(recorded.poses)
         self._report(Progressed(stage="saving", done=frames, total=frames))
+        recorded.save(target)
+        self._report(Finished(frames=frames, warnings=recorded.warnings))
+
+
+class _Pictures:
+    """Collects the pictures of a clip from its frames; `poster` where it has no poster yet."""
+
+    def __init__(self, files: ClipFiles, *, poster: bool) -> None:
+        self._files = files
+        self._thumbnails = Thumbnails()
+        self._poster = Poster(files.poster) if poster else None
+
+    def add(self, frame: VideoFrame) -> None:
+        self._thumbnails.add(frame.index, frame.image)
+        if self._poster is not None:
+            self._poster.add(frame.time, frame.image)
+
+    def write(self) -> None:
         if self._poster is not None:
             self._poster.write()
         self._thumbnails.write(self._files.filmstrip)
-        recorded.save(self._files.recording)
-        self._report(Finished(frames=frames, warnings=recorded.warnings))
 
 
 def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> None:
@@ -224,9 +251,12 @@ def _arguments() -> argparse.Namespace:
     )
     commands = parser.add_subparsers(dest="command", required=True)
     probing, recording = commands.add_parser("probe"), commands.add_parser("record")
-    for command in (probing, recording):
+    finding = commands.add_parser("landmarks")
+    for command in (probing, recording, finding):
         command.add_argument("source", type=source_named)
         command.add_argument("file", type=Path)
+    finding.add_argument("target", type=Path, help="the recording to write")
+    finding.add_argument("--threads", type=int, required=True)
     exporting = commands.add_parser("session")
     exporting.set_defaults(source=VIDEO)
     exporting.add_argument("request", type=Path)
@@ -249,6 +279,10 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
             probe(chosen.source, chosen.file, chosen.options, report)
         case "record":
             record(chosen.source, chosen.file, chosen.options, _files(chosen), report)
+        case "landmarks":
+            find_landmarks(
+                chosen.source, chosen.file, chosen.options, chosen.target, chosen.threads, report
+            )
         case "session":
             write_session(chosen.request, chosen.file, _files(chosen), report)
         case "import":

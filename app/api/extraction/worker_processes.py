@@ -1,21 +1,21 @@
-"""Worker processes: one per clip that is probed, recorded or exported."""
+"""Workers: one process per clip that is probed, recorded or exported, by an executor."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import sys
+import logging
 import tempfile
-from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncGenerator, AsyncIterator, Iterator
-from contextlib import aclosing, asynccontextmanager
+from collections.abc import AsyncGenerator, Iterator
+from contextlib import aclosing
 from pathlib import Path
 
 from app.api.extraction.clip_files import ClipFiles
+from app.api.extraction.executor import Executor, ExecutorLost, Lines, LocalProcesses
 from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.api.observation.metrics import Metrics
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
-from app.settings import Settings
+from app.settings import DASK, Settings
 
 Step = Progressed | Finished | Failed
 
@@ -36,7 +36,10 @@ one of a thousand two minutes."""
 CHECK_SILENCE_SECONDS = 600.0
 """Most seconds between two reports of a check: its recogniser is prepared without one."""
 
-_PACKAGE_PARENT = Path(__file__).resolve().parents[3]
+AGAIN_SECONDS = 2.0
+"""Before a job whose executor was lost is run again."""
+
+logger = logging.getLogger(__name__)
 
 _DECODER_HANGS = Failed(
     code="decoder",
@@ -53,7 +56,7 @@ _TOO_LONG = Failed(
 
 
 class Workers:
-    """Starts worker processes with the limits of the settings.
+    """Starts worker processes with the limits of the settings, by the executor of the settings.
 
     Parameters
     ----------
@@ -67,13 +70,22 @@ class Workers:
     def __init__(self, settings: Settings, metrics: Metrics | None = None) -> None:
         self._settings = settings
         self._metrics = metrics or Metrics()
+        self._here = LocalProcesses()
+        self._executor = _executor_of(settings, self._here)
         self._short = asyncio.Semaphore(MOST_SHORT_WORKERS)
         self._checks = asyncio.Semaphore(MOST_CHECKS)
+
+    async def close(self) -> None:
+        """Release the connections to other machines."""
+        await self._executor.close()
 
     async def probe(self, source: ClipSource, file: Path, options: ReadOptions) -> Probed | Failed:
         """Probe a received file; see `ClipSource.probe`."""
         command = ["probe", source.name, str(file)]
-        messages = self._run(command, file.parent, source.probe_seconds, options)
+        # Here: the sender waits for it, and the file may be on this machine alone.
+        messages = self._run(
+            command, file.parent, source.probe_seconds, options, executor=self._here
+        )
         async with self._short, aclosing(messages):
             async for message in messages:
                 if isinstance(message, Probed | Failed):
@@ -88,6 +100,20 @@ class Workers:
         command = ["record", source.name, str(file), *files.arguments]
         silence = self._settings.worker_silence_seconds
         messages = self._run(command, file.parent, silence, options)
+        async with aclosing(_steps(messages)) as steps:
+            async for step in steps:
+                yield step
+
+    async def find_landmarks(
+        self, source: ClipSource, file: Path, options: ReadOptions, recording: Path, threads: int
+    ) -> AsyncGenerator[Step, None]:
+        """Write a clip's recording alone; the last message says how it ended.
+
+        `threads` bounds those of the models, where several processes share a machine.
+        """
+        command = ["landmarks", source.name, str(file), str(recording), f"--threads={threads}"]
+        silence = self._settings.worker_silence_seconds
+        messages = self._run(command, recording.parent, silence, options)
         async with aclosing(_steps(messages)) as steps:
             async for step in steps:
                 yield step
@@ -155,50 +181,46 @@ class Workers:
         *,
         cpu_seconds: int | None = None,
         hangs: Failed = _DECODER_HANGS,
+        executor: Executor | None = None,
     ) -> AsyncGenerator[Message, None]:
-        """Run a worker, which unpacks archives in `folder`, and yield its messages."""
-        given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
-        with _scratch_folder(folder) as scratch:
-            command = [f"--scratch={scratch}", f"--options={given}", *command]
-            if cpu_seconds is not None:
-                command = [f"--cpu-seconds={cpu_seconds}", *command]
-            async with self._process(command) as process:
-                assert process.stdout is not None
-                while True:
-                    try:
-                        line = await asyncio.wait_for(process.stdout.readline(), silence_seconds)
-                        if not line:
-                            return
-                        yield parse(line)
-                    except TimeoutError:
-                        self._metrics.stalls.inc()
-                        yield hangs
-                        return
-                    except ValueError:
-                        return  # A line torn by a crash.
+        """Run a worker, which unpacks archives in `folder`, and yield its messages.
 
-    @asynccontextmanager
-    async def _process(self, command: list[str]) -> AsyncIterator[Process]:
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "app.api.extraction.worker",
-            f"--memory-bytes={self._settings.worker_memory_bytes}",
-            f"--cpu-seconds={self._settings.worker_cpu_seconds}",
-            f"--file-bytes={self._settings.worker_file_bytes}",
-            *command,
-            stdin=PIPE,
-            stdout=PIPE,
-            cwd=_PACKAGE_PARENT,
-            # Ctrl-C in the terminal is for the server, which then ends its workers in order.
-            start_new_session=True,
-        )
+        One whose executor is lost is run again, from its beginning.
+        """
+        given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
+        limits = {
+            "memory-bytes": self._settings.worker_memory_bytes,
+            "cpu-seconds": cpu_seconds or self._settings.worker_cpu_seconds,
+            "file-bytes": self._settings.worker_file_bytes,
+        }
+        arguments = [f"--{name}={value}" for name, value in limits.items()]
+        executor = executor or self._executor
+        while True:
+            with _scratch_folder(folder) as scratch:
+                own = [f"--scratch={scratch}", f"--options={given}"]
+                try:
+                    async with executor.start([*arguments, *own, *command]) as lines:
+                        async with aclosing(_messages(lines, silence_seconds)) as messages:
+                            async for message in messages:
+                                yield message
+                        return
+                except TimeoutError:
+                    self._metrics.stalls.inc()
+                    yield hangs
+                    return
+                except ExecutorLost as error:
+                    logger.warning("a job is run again: %s", error)
+            await asyncio.sleep(AGAIN_SECONDS)
+
+
+async def _messages(lines: Lines, silence_seconds: float) -> AsyncGenerator[Message, None]:
+    """Yield the messages of a process to its end; raise TimeoutError when it says nothing."""
+    while line := await asyncio.wait_for(lines.readline(), silence_seconds):
         try:
-            yield process
-        finally:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
+            message = parse(line)
+        except ValueError:
+            return  # A line torn by a crash.
+        yield message
 
 
 async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step, None]:
@@ -216,6 +238,14 @@ async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step
 
 def _failure(refusal: Refusal) -> Failed:
     return Failed(code=refusal.code, detail=refusal.detail)
+
+
+def _executor_of(settings: Settings, here: LocalProcesses) -> Executor:
+    if settings.executor is None:
+        return here
+    from app.api.extraction.dask_cluster import DaskCluster
+
+    return DaskCluster(settings.executor.removeprefix(DASK))
 
 
 @contextlib.contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import aclosing
+from dataclasses import asdict
 from typing import Literal
 
 from app.api.events.broadcast import Event
@@ -45,8 +46,9 @@ class ExtractionJob:
         return self._job.id
 
     def event(self, progress: Progress) -> Event:
-        """Return the event of a job, to which the stream adds how far it is."""
-        return job_event(self._job)
+        """Return the event of the job, with how far it is."""
+        event = job_event(self._job)
+        return Event(event.kind, {**event.data, "progress": asdict(progress)})
 
     async def run(self, report: Report) -> Failed | None:
         """Extract the clip, unless it was cancelled or deleted meanwhile; return why it failed."""

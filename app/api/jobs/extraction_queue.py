@@ -17,6 +17,9 @@ from app.api.jobs.persistence import persist
 from app.api.jobs.runner import JobRunner
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 
+RENEW_SECONDS = 10.0
+"""Between two renewals: a server may miss three before another one takes its jobs over."""
+
 logger = logging.getLogger(__name__)
 
 
@@ -56,12 +59,18 @@ class ExtractionQueue:
         self._waiting = FairQueue()
         self._running: set[str] = set()
         self._loops: list[asyncio.Task[None]] = []
+        self._look = asyncio.Event()
 
     async def start(self) -> None:
         """Queue again what an earlier server left open, and begin to work."""
         for job in await run_in_threadpool(self._jobs.resume):
             await self._waiting.put(job.client, job.id)
         self._loops = [asyncio.create_task(self._work()) for _ in range(self._count)]
+        self._loops.append(asyncio.create_task(self._keep_up()))
+
+    def look(self) -> None:
+        """Look soon whether other servers took, cancelled or queued jobs; on the event loop."""
+        self._look.set()
 
     async def stop(self) -> None:
         """End the workers; their jobs are queued again for the next start."""
@@ -98,6 +107,22 @@ class ExtractionQueue:
                 # One job's trouble, such as a full disk, must not end the loop for all others.
                 logger.exception("job %s could not be run", job_id)
                 await self._give_up(job_id)
+
+    async def _keep_up(self) -> None:
+        """Renew the leases of what runs here, and take over what other servers left."""
+        while True:
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._look.wait(), RENEW_SECONDS)
+            self._look.clear()
+            try:
+                if running := set(self._running):
+                    kept = await run_in_threadpool(self._jobs.renew, running)
+                    for job_id in running - kept:
+                        await self._runner.cancel(job_id)
+                for job in await run_in_threadpool(self._jobs.take_over):
+                    await self._waiting.put(job.client, job.id)
+            except StoreError as error:
+                logger.warning("the leases of jobs cannot be renewed now: %s", error)
 
     async def _run(self, job: Job) -> None:
         self._running.add(job.id)

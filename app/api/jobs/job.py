@@ -44,6 +44,12 @@ class Progress:
     pose: Pose | None = None
 
 
+def progress_of(event: Event) -> Progress | None:
+    """Return how far the job of an event is; None where the event does not say."""
+    told = event.data.get("progress")
+    return None if told is None else Progress(**told)
+
+
 Report = Callable[[Progress], None]
 """Takes the progress, from any thread; raises `JobCancelled` when the job is to end."""
 

@@ -53,6 +53,7 @@ class JobRunner:
         self._broadcast = broadcast
         self._metrics = metrics or Metrics()
         self._runs: dict[str, tuple[_Run, asyncio.Task[Any]]] = {}
+        self._elsewhere: dict[str, Progress] = {}
         self._closed = False
 
     async def run(self, job: Job[Result]) -> Result:
@@ -84,8 +85,17 @@ class JobRunner:
         return task.result()
 
     def progress(self, key: str) -> Progress | None:
-        """Return how far a job is, or None when it does not run."""
-        return self._runs[key][0].progress if key in self._runs else None
+        """Return how far a job is, here or on another server; None when it does not run."""
+        if key in self._runs:
+            return self._runs[key][0].progress
+        return self._elsewhere.get(key)
+
+    def note(self, key: str, progress: Progress | None) -> None:
+        """Note how far a job of another server is; None: it does not run there any more."""
+        if progress is None:
+            self._elsewhere.pop(key, None)
+        else:
+            self._elsewhere[key] = progress
 
     async def cancel(self, key: str) -> bool:
         """Cancel a job; return whether it ran. A job of the same key may begin at once."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
-from functools import lru_cache
+from functools import lru_cache, partial
 from threading import Event
 from typing import Annotated
 
@@ -17,10 +17,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from app.api.events.broadcast import Broadcast
+from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.extraction.worker_processes import Workers
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
+from app.api.jobs.job import progress_of
 from app.api.jobs.runner import JobRunner
+from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.sample_library import Samples
 from app.recognition import Language, Recognizer
@@ -40,7 +43,9 @@ from app.store import (
     RecognitionStore,
     SourceStore,
     UploadStore,
+    identity_of,
 )
+from app.store.messages import open_messages
 from app.store.models import now
 
 CACHED_LANGUAGES = 16
@@ -52,6 +57,13 @@ CACHED_RECORDINGS = 4
 MOST_COMPUTATIONS = 2
 """Previews and pair differences computed at the same time: of a large language one takes seconds,
 and the threads of all other requests must not be taken."""
+
+ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
+"""What to do when a second server is started on the file of a first one."""
+
+ABANDONED = timedelta(days=1)
+"""Age of a file without a row in a folder that several servers share, before it is removed: longer
+than an upload or an export takes."""
 
 logger = logging.getLogger(__name__)
 
@@ -176,29 +188,49 @@ async def open_studio(settings: Settings, metrics: Metrics | None = None) -> Asy
         When the data folder is another server's or cannot be used, or the database is damaged.
 
     """
-    with FolderLock(settings.data_dir):
-        async with _studio(settings, metrics or Metrics()) as studio:
+    with _opened(settings) as database:
+        async with _studio(settings, database, metrics or Metrics()) as studio:
             yield studio
 
 
 def check_store(settings: Settings) -> None:
     """Raise StoreUnavailable with one line for a person when the store cannot be opened."""
-    with FolderLock(settings.data_dir):
+    with _opened(settings) as database:
+        database.migrate()
+
+
+@contextmanager
+def _opened(settings: Settings) -> Iterator[Database]:
+    """Open the database; keep other servers out of the data folder, and out of SQLite's file."""
+    with ExitStack() as locks:
+        locks.enter_context(FolderLock(settings.data_dir))
         database = Database(settings.database)
-        try:
-            database.migrate()
-        finally:
-            database.close()
+        locks.callback(database.close)
+        if (file := database.file) is not None and file.parent != settings.data_dir:
+            locks.enter_context(FolderLock(file.parent, remedy=ONE_SERVER))
+        yield database
 
 
 @asynccontextmanager
-async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]:
-    database = Database(settings.database)
-    clips = ClipStore(database, settings.data_dir / "clips")
-    jobs, languages = JobStore(database), LanguageStore(database)
-    broadcast = Broadcast()
+async def _studio(
+    settings: Settings, database: Database, metrics: Metrics
+) -> AsyncIterator[Studio]:
+    clips = ClipStore(database, settings.clips)
+    jobs = JobStore(database, identity_of(settings.data_dir))
+    languages = LanguageStore(database)
+
+    def hear(event: BroadcastEvent) -> None:
+        """Note what another server does with a job."""
+        if event.kind == "jobs":
+            progress = progress_of(event)
+            runner.note(event.data["id"], progress)
+            if progress is None:
+                extractions.look()
+
+    broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
-    watching = asyncio.create_task(metrics.watch_loop())
+    extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
+    watching = [asyncio.create_task(each) for each in (metrics.watch_loop(), keep_trimmed())]
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -212,9 +244,7 @@ async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]
         practice=PracticeStore(database),
         workers=workers,
         runner=runner,
-        extractions=ExtractionQueue(
-            runner, clips, jobs, workers, broadcast, count=settings.workers
-        ),
+        extractions=extractions,
         broadcast=broadcast,
         samples=Samples(settings.samples_dir),
         metrics=metrics,
@@ -224,11 +254,13 @@ async def _studio(settings: Settings, metrics: Metrics) -> AsyncIterator[Studio]
         await studio.extractions.start()
         yield studio
     finally:
-        watching.cancel()
+        for each in watching:
+            each.cancel()
         broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
-        database.close()
+        await workers.close()
+        await run_in_threadpool(broadcast.leave)
 
 
 def _prepare(studio: Studio, database: Database) -> None:
@@ -237,7 +269,9 @@ def _prepare(studio: Studio, database: Database) -> None:
     before = now() - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(before) + studio.languages.purge(before)
     purged += studio.uploads.purge(before)
-    if (swept := studio.clips.sweep()) or purged:
+    # What another server is just writing to the same folder is no orphan.
+    abandoned = now() - ABANDONED if database.shared else now()
+    if (swept := studio.clips.sweep(abandoned)) or purged:
         logger.info("removed %d orphaned files and %d deleted or abandoned objects", swept, purged)
     studio.samples.seed(studio.languages)
 

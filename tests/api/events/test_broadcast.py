@@ -3,6 +3,8 @@
 import asyncio
 import threading
 
+import pytest
+
 from app.api.events.broadcast import MOST_UNREAD, Broadcast, Event
 
 
@@ -50,3 +52,26 @@ def test_publishing_after_the_loop_is_closed_does_nothing() -> None:
         return Broadcast()
 
     asyncio.run(make()).publish("clips", id="late")
+
+
+@pytest.mark.parametrize(("pause", "told"), [(0.0, [1, 2, 3, "end", 1]), (1000.0, [1, "end", 1])])
+def test_many_listeners_hear_less_often_how_far_a_job_is_and_always_of_its_end(
+    monkeypatch: pytest.MonkeyPatch, pause: float, told: list[object]
+) -> None:
+    monkeypatch.setattr("app.api.events.broadcast.SECONDS_PER_STREAM", pause)
+
+    async def listen() -> list[object]:
+        broadcast = Broadcast()
+        with broadcast.subscribe() as listener:
+            for done in (1, 2, 3):
+                broadcast.publish("jobs", id="a", progress={"stage": "poses", "done": done})
+            broadcast.publish("jobs", id="a")
+            broadcast.publish("jobs", id="a", progress={"stage": "poses", "done": 1})
+            await asyncio.sleep(0)
+            broadcast.close()
+            return [
+                news.data["progress"]["done"] if "progress" in news.data else "end"
+                async for news in listener
+            ]
+
+    assert asyncio.run(listen()) == told

@@ -36,7 +36,7 @@ def list_audit(
     studio: CurrentStudio,
     limit: Annotated[int, Query(ge=1, le=MOST_LISTED)] = 100,
     before: Annotated[
-        int | None, Query(ge=1, description="Only smaller ids: the next page")
+        int | None, Query(ge=1, le=2**31 - 1, description="Only smaller ids: the next page")
     ] = None,
     name: Annotated[str | None, Query(max_length=80, description="Only of this name")] = None,
 ) -> list[AuditView]:

@@ -1,0 +1,88 @@
+"""Executor: where the worker processes of jobs run, on this machine or on others."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import sys
+from asyncio.subprocess import PIPE
+from collections.abc import AsyncIterator, Sequence
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from pathlib import Path
+from typing import Final, Protocol
+
+COMMAND: Final = ("-m", "app.api.extraction.worker")
+"""Arguments of Python that start a worker process."""
+
+PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]
+
+
+class ExecutorLost(Exception):
+    """Raised when it is not known any more what became of a process; it may be started again.
+
+    A worker's command is a function of its files and arguments alone, and writes each file at once.
+    """
+
+
+class Lines(Protocol):
+    """The lines that a process writes."""
+
+    async def readline(self) -> bytes:
+        """Return the next line; empty at the end of the process.
+
+        Raises
+        ------
+        ExecutorLost
+            When the process cannot be heard any more.
+
+        """
+        ...
+
+
+class Executor(Protocol):
+    """Runs worker processes."""
+
+    def start(self, arguments: Sequence[str]) -> AbstractAsyncContextManager[Lines]:
+        """Run a worker process with these arguments; it is ended at the end of the context.
+
+        The context begins when the process does, which may have to wait for a place.
+
+        Raises
+        ------
+        ExecutorLost
+            On entering, when no process can be started now.
+
+        """
+        ...
+
+    async def close(self) -> None:
+        """Release what was opened."""
+        ...
+
+
+class LocalProcesses:
+    """Runs worker processes on this machine."""
+
+    @asynccontextmanager
+    async def start(self, arguments: Sequence[str]) -> AsyncIterator[Lines]:
+        """Run a process; see `Executor`."""
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            *COMMAND,
+            *arguments,
+            stdin=PIPE,
+            stdout=PIPE,
+            cwd=PACKAGE_PARENT,
+            # Ctrl-C in the terminal is for the server, which then ends its workers in order.
+            start_new_session=True,
+        )
+        assert process.stdout is not None
+        try:
+            yield process.stdout
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
+
+    async def close(self) -> None:
+        """Do nothing: every process ends with its context."""

@@ -1,0 +1,123 @@
+"""Command ``osg-studio extract``: finds the landmarks of a season's footage, in parallel."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.bags.staging import is_bag_archive
+from app.cli.data_folder import settings_of
+from app.cli.terminal import people, progress_bar
+from app.clip_sources import SOURCES
+from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
+from app.recognition.errors import OsgError
+
+if TYPE_CHECKING:
+    from app.api.extraction.footage import Extracted, Footage, FootageProgress
+    from app.api.extraction.worker_processes import Workers
+
+SOME_FAILED = 1
+"""Exit code when a clip could not be read; the others are done."""
+
+_KILOBYTE = 1000
+
+
+def extract(
+    folder: Annotated[
+        Path,
+        typer.Argument(
+            exists=True, file_okay=False, help="Folder of videos and dive recordings, at any depth."
+        ),
+    ],
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=64,
+            help="Clips at the same time, each by a process on one core; by default all cores.",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(help="Folder to copy the recordings to, named as their clips."),
+    ] = None,
+) -> None:
+    """Find the landmarks of all clips of a folder, once; what was done before is skipped."""
+    settings = settings_of(None)
+    from app.api.extraction.footage import Footage
+    from app.api.extraction.worker_processes import Workers
+
+    clips = list(_clips(folder.absolute()))
+    if not clips:
+        raise OsgError(f"{folder} holds no video and no dive recording; name the folder of clips")
+    with progress_bar("clips") as advance:
+
+        def show(progress: FootageProgress) -> None:
+            stage = f"{progress.clips} of {len(clips)} clips, kB"
+            advance(progress.done_bytes // _KILOBYTE, footage.total_bytes // _KILOBYTE, stage)
+
+        processes = Workers(settings)
+        footage = Footage(clips, recordings_dir(), processes, show)
+        ended = asyncio.run(_work(footage, processes, workers or _cores()))
+    _tell(folder.absolute(), ended, output)
+
+
+async def _work(footage: Footage, processes: Workers, count: int) -> list[Extracted]:
+    try:
+        return await footage.extract(count)
+    finally:
+        await processes.close()
+
+
+def _clips(folder: Path) -> Iterator[Path]:
+    """Yield the files that are clips with pictures by name and content, in order."""
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for name in sorted(names):
+            path = Path(place, name)
+            if not name.startswith(".") and _shows_diver(path):
+                yield path
+
+
+def _shows_diver(path: Path) -> bool:
+    """Return whether a file is a clip with pictures; a zip may hold anything else."""
+    ending = path.suffix.lower()
+    if not any(ending in source.endings for source in SOURCES if source.has_pictures):
+        return False
+    return is_bag_archive(path) if ending == ".zip" else True
+
+
+def _tell(folder: Path, ended: Sequence[Extracted], output: Path | None) -> None:
+    """Print clip and recording of each line by line, and what could not be read."""
+    failed = 0
+    for each in ended:
+        if each.recording is None:
+            failed += 1
+            people.print(f"{each.clip}: {each.problem}", markup=False, highlight=False)
+            continue
+        place = each.recording
+        if output is not None:
+            place = output / each.clip.relative_to(folder)
+            place = place.with_name(place.name + RECORDING_ENDING)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(each.recording, place)
+        typer.echo(f"{each.clip}\t{place}")
+    new = sum(each.new for each in ended)
+    people.print(
+        f"{new} clips extracted, {len(ended) - new - failed} known from before, {failed} failed"
+    )
+    if failed:
+        raise typer.Exit(SOME_FAILED)
+
+
+def _cores() -> int:
+    """Return the number of processor cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,35 @@
+"""Kept recordings: what was found in clips before, by the clips' content."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from platformdirs import user_data_path
+
+from app import __version__
+from app.recognition.recording.recording import FILE_VERSION
+from app.recognition.text.hashing import hash_file
+
+RECORDING_ENDING = ".npz"
+"""Ending of what `Recording.save` writes."""
+
+
+def recordings_dir() -> Path:
+    """Return the cache folder of recordings in the user's data."""
+    kept: Path = user_data_path("osg-studio", appauthor=False) / "recordings"
+    return kept
+
+
+def kept_recording(clip: Path, folder: Path) -> Path:
+    """Return the place of a clip's recording in a cache folder, whether it is there or not.
+
+    The name is the hash of the clip's content with the versions of program and file, so that a clip
+    may be renamed or moved, and nothing of another version is taken for this one's.
+
+    Raises
+    ------
+    OSError
+        When the clip cannot be read.
+
+    """
+    return folder / f"{hash_file(clip)}-{__version__}-{FILE_VERSION}{RECORDING_ENDING}"

@@ -1,0 +1,23 @@
+"""Identity of a server: the same after a restart, so that it knows the jobs that it ran before."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from app.store.atomic_files import PARTIAL_SUFFIX, publish
+from app.store.models import new_id
+
+FILE = "server"
+"""Name of the file in the data folder, which one server at a time uses."""
+
+
+def identity_of(folder: Path) -> str:
+    """Return the id of the server of a data folder, made at its first start."""
+    path = folder / FILE
+    if path.is_file() and re.fullmatch("[0-9a-f]{32}", known := path.read_text("ascii", "replace")):
+        return known
+    made, partial = new_id(), path.with_suffix(PARTIAL_SUFFIX)
+    partial.write_text(made, "ascii")
+    publish(partial, path)
+    return made

@@ -1,0 +1,30 @@
+"""Several servers on one database: which one runs a job, and how often anything changed."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0010"
+down_revision = "0009"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Add the columns, empty for jobs so far, and the table with its one row."""
+    op.add_column("job", sa.Column("server", sa.String(32), nullable=True))
+    op.add_column("job", sa.Column("lease", sa.DateTime(), nullable=True))
+    count = op.create_table(
+        "change_count",
+        sa.Column("id", sa.Integer(), nullable=False),
+        sa.Column("changes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), nullable=False),
+        sa.PrimaryKeyConstraint("id"),
+    )
+    op.bulk_insert(count, [{"id": 1, "changes": 0}])
+
+
+def downgrade() -> None:
+    """Drop them."""
+    op.drop_table("change_count")
+    with op.batch_alter_table("job") as table:
+        table.drop_column("lease")
+        table.drop_column("server")

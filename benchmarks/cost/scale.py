@@ -1,0 +1,164 @@
+"""Scale: what a library of a million clips and thousands of watchers cost one server.
+
+``python -m benchmarks.cost.scale`` fills a database of its own with rows of clips, as many as told,
+and measures what grows with them: the list, one clip, a new job and its start, a quota, the look
+for jobs that other servers left. With ``--database URL`` it does so in an empty PostgreSQL. Then it
+gives events to watchers, through the code that writes their streams, without a network.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from sqlalchemy import insert
+from starlette.types import Message
+
+from app.api.routes.events import follow_changes
+from app.api.services.studio import open_studio
+from app.settings import Settings
+from app.store import Clip, ClipStore, Database, Job, JobStatus, JobStore
+from app.store.models import now
+
+AT_ONCE = 10_000
+"""Rows written at a time."""
+
+REPEATS = 5
+
+CLIENTS = 100
+"""Addresses that the jobs come from."""
+
+
+def fill(database: Database, first: int, last: int) -> None:
+    """Add finished clips with these numbers."""
+    clip = Clip(
+        name="dive.mp4", media_type="video/mp4", size=5_000_000, width=1920, height=1080, frames=300
+    ).model_dump()
+    job = Job(clip_id="", client="", status=JobStatus.DONE.value, frames=300).model_dump()
+    for start in range(first, last, AT_ONCE):
+        numbers = range(start, min(start + AT_ONCE, last))
+        with database.writing() as session:
+            moment = {"created": now()}
+            session.execute(
+                insert(Clip),
+                [{**clip, **moment, "id": f"{n:032x}", "owner": f"{n % CLIENTS}"} for n in numbers],
+            )
+            session.execute(
+                insert(Job),
+                [
+                    {**job, **moment, "id": f"{n:032x}", "clip_id": f"{n:032x}"}
+                    | {"client": f"10.0.0.{n % CLIENTS}"}
+                    for n in numbers
+                ],
+            )
+
+
+def milliseconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Return the median time of some work."""
+    taken = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        work()
+        taken.append(time.perf_counter() - began)
+    return 1000 * median(taken)
+
+
+def measure_rows(database: Database, folder: Path, clips: int, longest_list: int) -> None:
+    """Print what each kind of access takes in a database of so many clips."""
+    store, jobs = ClipStore(database, folder), JobStore(database, "benchmark")
+    clip_id = f"{clips // 2:032x}"
+
+    def add() -> None:
+        partial = store.new_partial()
+        partial.write_bytes(b"video")
+        clip = Clip(name="new", media_type="video/mp4", size=5, width=64, height=48)
+        added = store.add(clip, partial, "10.0.0.1")
+        assert jobs.start(added.job.id) is not None
+        jobs.complete(added.job.id, 1, ())
+        store.delete(clip.id)
+
+    works: dict[str, Callable[[], object]] = {
+        "one clip": lambda: store.get(clip_id),
+        "add a clip, run and end its job, delete it": add,
+        "look for jobs that others left": jobs.take_over,
+        "open jobs of an address": lambda: jobs.count_open("10.0.0.1"),
+        "what an owner keeps": lambda: store.usage("1"),
+        "number of changes": lambda: store.changes,
+    }
+    for name, work in works.items():
+        print(f"{clips:9,d} clips: {name}: {milliseconds(work):.1f} ms")
+    if clips <= longest_list:
+        print(f"{clips:9,d} clips: the list: {milliseconds(store.all, 1) / 1000:.2f} s")
+
+
+async def measure_watchers(counts: list[int], events: int) -> None:
+    """Print the processor time of giving an event to watchers, a watcher and event."""
+    with tempfile.TemporaryDirectory() as folder:
+        settings = Settings(data_dir=Path(folder), samples_dir=Path(folder) / "none")
+        async with open_studio(settings) as studio:
+            for count in counts:
+                received, ready = 0, 0
+
+                async def send(message: Message) -> None:
+                    nonlocal received, ready
+                    body = message.get("body", b"")
+                    ready += b"listening" in body
+                    received += b"data:" in body
+
+                async def receive() -> Message:
+                    await asyncio.Event().wait()
+                    raise AssertionError("a watcher stays")
+
+                async def watch() -> None:
+                    stream = await follow_changes(studio)
+                    scope: dict[str, Any] = {"type": "http", "method": "GET", "headers": []}
+                    await stream(scope, receive, send)
+
+                watchers = [asyncio.create_task(watch()) for _ in range(count)]
+                while ready < count:
+                    assert not any(watcher.done() for watcher in watchers), "a watcher left"
+                    await asyncio.sleep(0.01)
+                before = time.process_time()
+                for number in range(events):
+                    studio.broadcast.publish("languages", id=f"{number}")
+                    while received < count * (number + 1):
+                        await asyncio.sleep(0)
+                spent = time.process_time() - before
+                for watcher in watchers:
+                    watcher.cancel()
+                await asyncio.gather(*watchers, return_exceptions=True)
+                print(
+                    f"{count:6,d} watchers: {1e6 * spent / events / count:.0f} us of a core each "
+                    f"and event, {1000 * spent / events:.0f} ms for all"
+                )
+
+
+def main() -> None:
+    """Measure rows, then watchers."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--clips", type=int, nargs="*", default=[1000, 10_000, 100_000, 1_000_000])
+    parser.add_argument("--longest-list", type=int, default=100_000)
+    parser.add_argument("--watchers", type=int, nargs="*", default=[100, 1000, 10_000])
+    parser.add_argument("--events", type=int, default=10)
+    parser.add_argument("--database", help="URL of an empty PostgreSQL; by default SQLite")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        database = Database(given.database or f"sqlite:///{folder}/studio.db")
+        database.migrate()
+        filled = 0
+        for clips in sorted(given.clips):
+            fill(database, filled, clips)
+            filled = clips
+            measure_rows(database, Path(folder) / "clips", clips, given.longest_list)
+        database.close()
+    asyncio.run(measure_watchers(given.watchers, given.events))
+
+
+if __name__ == "__main__":
+    main()

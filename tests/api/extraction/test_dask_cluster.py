@@ -1,0 +1,103 @@
+"""Jobs on a real Dask cluster: each has its effect once, whatever is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app.recognition import Recording
+from app.settings import Settings
+from tests.api.routes.clips.test_clips import upload
+from tests.api.running import Running, until
+from tests.api.workers import linux, workers_of
+from tests.dask_cluster import Cluster, dask_cluster
+from tests.recognition.damaged_clips import write_clip
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line
+
+pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("models")]
+
+JOBS = "/api/v1/jobs"
+FRAMES = 60
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    with dask_cluster(tmp_path_factory.mktemp("dask")) as cluster:
+        yield cluster
+
+
+@pytest.fixture
+def settings(tmp_path: Path, cluster: Cluster) -> Settings:
+    return Settings(
+        data_dir=tmp_path / "data",
+        samples_dir=tmp_path / "none",
+        executor=f"dask://{cluster.address}",
+        workers=2,
+    )
+
+
+def workers_at_work(cluster: Cluster, command: str = "record") -> dict[int, int]:
+    """Return the worker processes that do `command`, with the Dask workers that run them."""
+    return {child: dask.pid for dask in cluster.workers for child in workers_of(dask.pid, command)}
+
+
+def status(client: httpx.Client, job_id: str) -> str:
+    return str(client.get(f"{JOBS}/{job_id}").json()["status"])
+
+
+def test_jobs_run_on_the_cluster_and_a_check_too(
+    client: httpx.Client, cluster: Cluster, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", frames=FRAMES)
+    jobs = [upload(client, clip).json()["job_id"] for _ in range(2)]
+    until(lambda: len(set(workers_at_work(cluster).values())) == 2)  # one on each
+    assert workers_of(os.getpid()) == []
+    until(lambda: all(status(client, job) == "done" for job in jobs))
+    assert client.get(f"{JOBS}/{jobs[0]}").json()["done"] == FRAMES
+    content = pool(circle=circle, line=line).to_json()
+    language = client.post("/api/v1/languages/import", content=content).json()["id"]
+    assert client.get(f"/api/v1/languages/{language}/check").status_code == 200
+
+
+def test_a_cancelled_job_ends_where_it_runs(
+    client: httpx.Client, cluster: Cluster, tmp_path: Path
+) -> None:
+    job = upload(client, write_clip(tmp_path / "long.mp4", frames=2000)).json()["job_id"]
+    until(lambda: workers_at_work(cluster))
+    client.delete(f"{JOBS}/{job}")
+    until(lambda: not workers_at_work(cluster))
+    assert status(client, job) == "cancelled"
+
+
+def test_a_job_whose_machine_vanishes_is_done_by_another_one_once(
+    client: httpx.Client, server: Running, cluster: Cluster, tmp_path: Path
+) -> None:
+    job = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()["job_id"]
+    until(lambda: workers_at_work(cluster))
+    (child, machine) = next(iter(workers_at_work(cluster).items()))
+    cluster.add_worker()
+    for process in (machine, child):
+        os.kill(process, signal.SIGKILL)
+    until(lambda: status(client, job) == "done")
+    answer = server.studio.jobs.get(job)
+    assert (answer.attempts, answer.frames) == (1, FRAMES)
+    recording = server.studio.clips.recording(answer.clip_id)
+    assert len(Recording.load(recording).poses) == FRAMES
+    assert not list(recording.parent.glob(".*"))
+
+
+def test_a_job_whose_scheduler_vanishes_is_submitted_again(
+    client: httpx.Client, server: Running, cluster: Cluster, tmp_path: Path
+) -> None:
+    job = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()["job_id"]
+    until(lambda: workers_at_work(cluster))
+    cluster.restart_scheduler()
+    cluster.add_worker()  # a worker ends when its scheduler does not come back
+    until(lambda: status(client, job) == "done")
+    assert server.studio.jobs.get(job).attempts == 1

@@ -1,0 +1,144 @@
+"""Two servers on one PostgreSQL and one folder of clips: equal to a browser, whichever it asks."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from app.settings import Settings
+from app.store import Clip
+from app.store.jobs import JobStore
+from tests.api.languages import LANGUAGES
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.routes.clips.test_clips import CLIPS, upload
+from tests.api.running import Running, running, until
+from tests.api.workers import linux, workers_of
+from tests.postgres import Cluster
+from tests.recognition.damaged_clips import write_clip
+
+JOBS = "/api/v1/jobs"
+
+
+@pytest.fixture
+def servers(tmp_path: Path, postgres: Cluster) -> Iterator[tuple[Running, Running]]:
+    """Serve one database and one folder of clips twice."""
+    url = postgres.new_database()
+    with ExitStack() as stack:
+        one, two = (
+            stack.enter_context(
+                running(
+                    Settings(
+                        data_dir=tmp_path / name,
+                        samples_dir=tmp_path / "none",
+                        database_url=url,
+                        storage=tmp_path / "clips",
+                    )
+                )
+            )
+            for name in ("one", "two")
+        )
+        yield one, two
+
+
+@contextmanager
+def events(server: Running) -> Iterator[Iterator[tuple[str, dict[str, Any]]]]:
+    """Follow the events of a server."""
+    with httpx.stream("GET", f"{server.address}/api/v1/events", timeout=60) as stream:
+        lines = stream.iter_lines()
+        while "listening" not in next(lines):
+            pass
+
+        def read() -> Iterator[tuple[str, dict[str, Any]]]:
+            kind = ""
+            for line in lines:
+                kind = line.removeprefix("event:").strip() if line.startswith("event:") else kind
+                if line.startswith("data:"):
+                    yield kind, json.loads(line.removeprefix("data:"))
+
+        yield read()
+
+
+def test_a_change_on_one_server_reaches_the_pages_and_lists_of_the_other(
+    servers: tuple[Running, Running],
+) -> None:
+    one, two = servers
+    with httpx.Client(base_url=two.address, timeout=60) as client:
+        empty = client.get(LANGUAGES)
+        assert empty.json() == []
+        with events(two) as heard:
+            made = httpx.post(f"{one.address}{LANGUAGES}", json={"name": "pool"}).json()
+            assert next(heard) == ("languages", {"id": made["id"]})
+        listed = client.get(LANGUAGES, headers={"If-None-Match": empty.headers["etag"]})
+        assert [each["name"] for each in listed.json()] == ["pool"]
+        tag = {"If-None-Match": listed.headers["etag"]}
+        assert httpx.get(f"{one.address}{LANGUAGES}", headers=tag).status_code == 304
+        stale = client.patch(f"{LANGUAGES}/{made['id']}", json={"name": "sea"})
+        assert stale.status_code == 200
+        answer = httpx.patch(
+            f"{one.address}{LANGUAGES}/{made['id']}",
+            json={"name": "lake"},
+            headers={"If-Match": '"1"'},
+        )
+        assert answer.status_code == 412
+
+
+def test_a_clip_of_one_server_is_recognised_on_the_other(
+    servers: tuple[Running, Running],
+) -> None:
+    one, two = servers
+    clip = add_recorded_clip(one.studio, recording_of("circle"))
+    takes = httpx.get(f"{two.address}{CLIPS}/{clip}/takes").json()
+    assert len(takes) == 1
+    assert httpx.get(f"{two.address}{CLIPS}/{clip}/video").status_code == 200
+
+
+@pytest.mark.slow
+@linux
+def test_a_job_is_seen_and_cancelled_from_any_server(
+    servers: tuple[Running, Running], tmp_path: Path
+) -> None:
+    one, two = servers
+    clip = write_clip(tmp_path / "long.mp4", frames=2000)
+    with httpx.Client(base_url=two.address, timeout=60) as client:
+        job_id = upload(httpx.Client(base_url=one.address, timeout=60), clip).json()["job_id"]
+        until(lambda: workers_of(os.getpid()))
+        (worker,) = workers_of(os.getpid())
+        until(lambda: client.get(f"{JOBS}/{job_id}").json()["stage"] in ("starting", "poses"))
+        running_here = one if job_id in one.studio.extractions._running else two
+        elsewhere = two if running_here is one else one
+        with httpx.Client(base_url=elsewhere.address, timeout=60) as other:
+            assert other.get(f"{JOBS}/{job_id}").json()["stage"] != "running"
+            assert other.delete(f"{JOBS}/{job_id}").json()["status"] == "cancelled"
+        until(lambda: worker not in workers_of(os.getpid()))
+        assert client.get(f"{JOBS}/{job_id}").json()["status"] == "cancelled"
+
+
+@pytest.mark.slow
+@linux
+def test_the_job_of_a_server_that_vanished_is_run_by_the_other(
+    servers: tuple[Running, Running], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one, two = servers
+    monkeypatch.setattr("app.api.jobs.extraction_queue.RENEW_SECONDS", 0.2)
+    partial = one.studio.clips.new_partial()
+    write_clip(tmp_path / "clip.mp4", frames=3).rename(partial)
+    clip = Clip(name="dive", media_type="video/mp4", size=5, width=64, height=48)
+    job_id = one.studio.clips.add(clip, partial, "diver").job.id
+    # A third server began it, and its power went.
+    with monkeypatch.context() as vanishing:
+        vanishing.setattr("app.store.jobs.LEASE", timedelta(seconds=-2))
+        assert JobStore(one.studio.jobs._database, "vanished").start(job_id) is not None
+    for server in servers:
+        loop = server.studio.broadcast._loop
+        loop.call_soon_threadsafe(server.studio.extractions.look)
+    with httpx.Client(base_url=two.address, timeout=60) as client:
+        until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] in ("done", "failed"))
+    assert one.studio.jobs.get(job_id).attempts == 2

@@ -1,0 +1,51 @@
+"""``osg-studio extract``, run as a user runs it."""
+
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from app.evaluation.labelled_files import labelled_files
+from app.evaluation.labelled_takes import collect_takes
+from tests.command_line import OsgStudio
+from tests.recognition.damaged_clips import write_clip
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed_models")
+def test_a_folder_is_extracted_for_evaluate_and_copied_by_name(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = tmp_path / "kept"
+    monkeypatch.setattr("app.cli.extract.recordings_dir", lambda: kept)
+    season = tmp_path / "season"
+    (season / "circle").mkdir(parents=True)
+    clip = write_clip(season / "circle" / "1.mp4", frames=3)
+    with zipfile.ZipFile(season / "circle" / "notes.zip", "w") as archive:
+        archive.writestr("notes.txt", "no dive recording")
+    (season / ".trash.mp4").write_bytes(b"\0\0\0\x18ftypmp42")
+    ended = osg_studio("extract", season, "--workers", 1, "--output", tmp_path / "copies")
+    assert ended.code == 0, ended.error
+    copy = tmp_path / "copies" / "circle" / "1.mp4.npz"
+    assert ended.out == f"{clip}\t{copy}\n"
+    assert "1 clips extracted, 0 known" in ended.error
+    (recording,) = kept.iterdir()
+    assert copy.read_bytes() == recording.read_bytes()
+    written = recording.stat().st_mtime_ns
+    (take,) = collect_takes(labelled_files(season), keep_in=kept).takes
+    assert (take.label, len(take.poses)) == ("circle", 3)
+    assert recording.stat().st_mtime_ns == written
+    (season / "circle" / "2.mp4").write_bytes(b"\0\0\0\x18ftypmp42")
+    ended = osg_studio("extract", season)
+    assert ended.code == 1
+    assert "2.mp4: the clip" in "".join(ended.error.splitlines())
+    assert "0 clips extracted, 1 known from before, 1 failed" in ended.error
+
+
+def test_a_folder_without_clips_is_refused_in_one_line(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    ended = osg_studio("extract", tmp_path)
+    assert ended.code == 2
+    assert "holds no video" in ended.error
+    assert ended.error.count("\n") == 1
