@@ -12,8 +12,8 @@ from app.recognition import Recording
 from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
-from tests.short_clips import thinned
 from tests.postgres import Cluster, postgres_cluster
+from tests.short_clips import thinned
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDINGS = ROOT / "tests" / "recordings"
