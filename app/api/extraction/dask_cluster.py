@@ -83,6 +83,8 @@ class DaskCluster:
 
         async with self._connecting:
             if self._client is not None and self._client.status == "running":
+                # One that has connected again by itself is subscribed to nothing.
+                self._client.subscribe_topic(self._topic, self._hear)
                 return self._client
             await self.close()
             try:

@@ -1,23 +1,24 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
-import { statusText } from "../clips/clip-store.js";
-import { h, iconButton, WRITES } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
-import { address, go, here } from "../core/views.js";
+import { go } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
-import { cancelTestRun, changeWords, labelTake, runTestSet } from "../languages/test-set.js";
+import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./clip-test-results.js";
 import {
-  addLibraryClips,
-  addTestClips,
-  candidates,
-  leaveOut,
-  leaveWaiting,
-  means,
-  waitingClips,
-  workOff,
-} from "./clip-test.js";
+  advance,
+  labels,
+  placeOf,
+  readAs,
+  REFUSED,
+  takeRow,
+  uploadRow,
+  uploadsHere,
+  waitingRow,
+} from "./clip-test-rows.js";
+import { addLibraryClips, addTestClips, candidates, waitingClips, workOff } from "./clip-test.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
 import { rateText } from "./rates.js";
@@ -26,14 +27,7 @@ import { rateText } from "./rates.js";
 
 /** @import { TestedTake } from "./clip-test-results.js" */
 
-/** @typedef {ReturnType<typeof waitingClips>[number]} WaitingClip */
-
-const REFUSED = "refused";
 const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.
-
-const labels = () => state.gestures?.labels ?? [];
-/** @param {Pick<TestedTake, "label">} take */
-const readAs = ({ label }) => label ?? REFUSED;
 
 function drop() {
   const input = h("input", {
@@ -61,210 +55,6 @@ function drop() {
         {},
         "or choose files. \u201ccircle-2.mp4\u201d is labelled circle; you can change the label.",
       ),
-    ),
-  );
-}
-
-/**
- * @param {string} name
- * @param {string} value
- * @param {(label: string) => void} onchange
- */
-function labelSelect(name, value, onchange) {
-  const known = value && !labels().includes(value) ? [value] : [];
-  const select = h(
-    "select",
-    { "aria-label": `What ${name} shows`, ...WRITES, onchange: () => onchange(select.value) },
-    value ? null : h("option", { value: "" }, "choose\u2026"),
-    [...labels(), ...known].map((label) =>
-      h("option", { value: label, selected: label === value }, label),
-    ),
-  );
-  return select;
-}
-
-const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded);
-
-/** What is not in the test yet, as `{ key, text, total, done }`: how far each is. */
-function advances() {
-  const uploads = uploadsHere().map(({ key, status, error, total, loaded }) => ({
-    key: `upload ${key}`,
-    text:
-      status === "failed"
-        ? error
-        : status === "waiting"
-          ? "Waiting for the other uploads"
-          : "Uploading",
-    total: Math.max(1, total),
-    done: loaded,
-  }));
-  const clips = waitingClips().map(({ clip, expected }) => {
-    const job = state.jobs.get(clip.job_id);
-    return {
-      key: clip.id,
-      text:
-        clip.status === "done"
-          ? expected
-            ? "Recognising"
-            : "Choose its label"
-          : statusText(clip, job),
-      total: job?.total,
-      done: job?.done,
-    };
-  });
-  return [...uploads, ...clips];
-}
-
-/**
- * Move texts and bars on in the rows that are there: what is just being pressed stays where it is.
- *
- * @param {HTMLElement} content
- */
-function advance(content) {
-  const rows = new Map(
-    /** @type {HTMLElement[]} */ ([...content.querySelectorAll("tr.waiting")]).map((row) => [
-      row.dataset.key,
-      row,
-    ]),
-  );
-  for (const { key, text, total, done } of advances()) {
-    const row = rows.get(key);
-    if (!row) continue;
-    row.querySelector(".stage-text")?.replaceChildren(text ?? "");
-    const bar = row.querySelector("progress");
-    if (bar && total) Object.assign(bar, { max: total, value: done });
-  }
-}
-
-/** @param {WaitingClip} waiting */
-function waitingRow({ clip, expected, busy }) {
-  return h(
-    "tr",
-    { className: "waiting", "data-key": clip.id },
-    h("td", {}, clip.name),
-    h(
-      "td",
-      {},
-      labelSelect(clip.name, expected, (label) => means(clip.id, label)),
-    ),
-    h(
-      "td",
-      { colSpan: 2 },
-      h("span", { className: "stage-text" }),
-      busy ? h("progress", { "aria-label": `Poses of ${clip.name}` }) : null,
-    ),
-    h(
-      "td",
-      {},
-      iconButton("close", `Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
-    ),
-  );
-}
-
-/** @param {Upload} upload */
-function uploadRow({ key, file, status, cancel }) {
-  return h(
-    "tr",
-    { className: "waiting", "data-key": `upload ${key}` },
-    h("td", {}, file.name),
-    h("td", {}),
-    h(
-      "td",
-      { colSpan: 2 },
-      h("span", { className: "stage-text" }),
-      status === "failed" ? null : h("progress", { "aria-label": `Upload of ${file.name}` }),
-    ),
-    h(
-      "td",
-      {},
-      status === "uploading" && cancel ? iconButton("close", `Cancel ${file.name}`, cancel) : null,
-    ),
-  );
-}
-
-/**
- * Where a take and its recognition are shown.
- *
- * @param {TestedTake} take
- * @param {TestedTake[]} takes
- */
-function placeOf(take, takes) {
-  const alone = takes.filter((each) => each.clip_id === take.clip_id).length === 1;
-  return {
-    clip: take.clip_id,
-    recognition: take.recognition_id,
-    take: null,
-    start: alone ? null : take.start,
-    end: alone ? null : take.end,
-    frame: null,
-    pair: null,
-  };
-}
-
-/**
- * How a take was recognised, and whether that is better or worse than before.
- *
- * @param {TestedTake} take
- */
-function outcomeOf(take) {
-  if (!take.known) return [h("span", { className: "dim" }, "not recognised yet")];
-  const extra = [
-    take.fault,
-    take.demonstration ? "a demonstration" : null,
-    take.label === null && take.nearest ? `nearest ${take.nearest}` : null,
-  ].filter(Boolean);
-  return [
-    h(
-      "span",
-      { className: "outcome-sign", "aria-hidden": "true" },
-      take.right ? "\u2713" : "\u2260",
-    ),
-    h("span", {}, take.right ? "right: " : "wrong: "),
-    h("b", {}, readAs(take)),
-    extra.length ? h("small", { className: "dim" }, `, ${extra.join(", ")}`) : null,
-    take.change ? h("span", { className: `tag ${take.change}` }, take.change) : null,
-  ];
-}
-
-/**
- * @param {TestedTake} take
- * @param {TestedTake[]} takes
- */
-function takeRow(take, takes) {
-  const several = takes.filter((each) => each.clip_id === take.clip_id);
-  const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
-  const place = placeOf(take, takes);
-  return h(
-    "tr",
-    { className: take.demonstration || !take.known ? "demonstration" : take.right ? "" : "wrong" },
-    h(
-      "td",
-      {},
-      h(
-        "a",
-        {
-          href: address("studio", place),
-          title: "Show the clip and why",
-          onclick: here(() => go("studio", place)),
-        },
-        name,
-      ),
-    ),
-    h(
-      "td",
-      {},
-      labelSelect(name, take.expected, (label) => labelTake(take.id, label)),
-    ),
-    h("td", {}, outcomeOf(take)),
-    h(
-      "td",
-      { className: "num" },
-      take.recognition_id ? `${Math.round(100 * take.confidence)} %` : "",
-    ),
-    h(
-      "td",
-      {},
-      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name), WRITES),
     ),
   );
 }
