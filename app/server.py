@@ -65,9 +65,9 @@ from app.api.routes.samples import sample_clips, sample_languages
 from app.api.services.studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
-from app.service_manager import ServiceManager
 from app.settings import Settings
 from app.store import StoreUnavailable
+from app.system.service_manager import ServiceManager
 from app.ui.workspace_registry import WorkspaceRegistry
 
 API = "/api/v1"

@@ -11,7 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.archive import (
+from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
+from app.recognition.errors import BagError
+from app.system.zip_archive import (
     UnpackedTooLarge,
     listed_files,
     names_in,
@@ -20,8 +22,6 @@ from app.archive import (
     unpack,
     visible_files,
 )
-from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
-from app.recognition.errors import BagError
 
 MOST_ENTRIES = 1000
 """Of an archive. A recording split every minute for a whole day has 1440 files; nobody uploads a

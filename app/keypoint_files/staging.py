@@ -11,11 +11,18 @@ from pathlib import Path
 from typing import Final
 from zipfile import ZipFile, ZipInfo
 
-from app.archive import UnpackedTooLarge, names_in, open_archive, plain_name, unpack, visible_files
 from app.keypoint_files.file_kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.video_limits import VideoLimits
+from app.system.zip_archive import (
+    UnpackedTooLarge,
+    names_in,
+    open_archive,
+    plain_name,
+    unpack,
+    visible_files,
+)
 
 MOST_BYTES: Final = 1024 * 1024 * 1024
 """Unpacked. The most frames there may be, of three people with face and hands at 6 kB each."""

@@ -22,9 +22,9 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.carried_sets import CARRIED, carried_sets
 from benchmarks.sets.one_shot_draws import Draw, draws
 from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
+from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
 
 STEPS, BAND = 32, 8

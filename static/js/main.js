@@ -37,7 +37,7 @@ import {
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
-import { drawFlat, drawRatio } from "./studio/stage-view.js";
+import { drawFlat, drawRatio } from "./studio/stage-picture.js";
 import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";

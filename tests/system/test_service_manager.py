@@ -14,7 +14,7 @@ import pytest
 
 from app.cli.robots.supervision import report_event
 from app.robot import Heartbeat, SourceEnded, SourceLost, SourceOpened
-from app.service_manager import ServiceManager
+from app.system.service_manager import ServiceManager
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip

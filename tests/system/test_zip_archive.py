@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.archive import UnpackedTooLarge, names_in, open_archive, unpack, visible_files
 from app.recognition.errors import OsgError
+from app.system.zip_archive import UnpackedTooLarge, names_in, open_archive, unpack, visible_files
 
 METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
 

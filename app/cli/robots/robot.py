@@ -42,7 +42,7 @@ from app.robot.publishing.publisher import Network, Publisher, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES
 from app.robot.watched_language import WatchedLanguage
-from app.service_manager import ServiceManager
+from app.system.service_manager import ServiceManager
 
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""

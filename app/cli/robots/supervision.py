@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.cli.robots.events import describe_event
 from app.robot import Event, SourceEnded, SourceOpened
-from app.service_manager import ServiceManager
+from app.system.service_manager import ServiceManager
 
 
 def report_event(manager: ServiceManager, event: Event) -> None:

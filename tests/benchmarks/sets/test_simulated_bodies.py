@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from benchmarks.sets.carried_sets import FIGURES, PEOPLE, TAKES, simulate_figures
+from benchmarks.sets.simulated_bodies import FIGURES, PEOPLE, TAKES, simulate_figures
 
 
 def test_every_person_draws_every_figure_with_arms_of_one_length() -> None:

@@ -188,7 +188,7 @@ def card_of(label: str) -> str:
 
 
 def press(page: Page, name: str) -> None:
-    """Press a button by the keyboard: the message of the last change may lie over it for a while."""
+    """Press a button by the keyboard: the last message may lie over it for a while."""
     page.get_by_role("button", name=name, exact=True).focus()
     page.keyboard.press("Enter")
 

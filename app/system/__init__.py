@@ -1,0 +1,1 @@
+"""What the operating system gives: archives of files, and the manager of services."""

@@ -1,0 +1,1 @@
+"""Tests of archives and of the service manager."""
