@@ -13,7 +13,7 @@ from app.recognition import Language, OsgError, PoseError, PoseSequence, Recogni
 from app.recognition.gestures.demonstration import condense
 from app.recognition.language.schema import MAX_GESTURES
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.variation import Person, draw_variants
+from app.recognition.simulation.variation import Person, draw_variants, take_turns
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)``, after every query."""
@@ -35,7 +35,7 @@ def recognize_variants(
     language
         Language whose gestures all have a demonstration.
     count
-        Variants of each gesture.
+        Variants of each gesture, from its demonstrations in turn.
     profile
         Profile of the recogniser.
     seed
@@ -61,10 +61,11 @@ def recognize_variants(
                 "variants: define it again from a clip"
             )
         # The same seed would give all gestures the same variation.
-        drawn = draw_variants(
-            gesture.trajectory, count, seed=seed * MAX_GESTURES + number, person=person
-        )
-        for variant in drawn:
+        drawn = [
+            draw_variants(each, count, seed=seed * MAX_GESTURES + number, person=person)
+            for each in gesture.trajectories
+        ]
+        for variant in take_turns(drawn):
             shown.append(gesture.label)
             read.append(recognize_label(recognizer, variant))
             if progress is not None:

@@ -216,6 +216,12 @@ class Gesture:
         first = replace(self, further=())
         return (first, *(first._with_shown((each,)) for each in self.further))
 
+    @property
+    def trajectories(self) -> tuple[Trajectory, ...]:
+        """The trajectories of all demonstrations; empty where only an image was imported."""
+        shown = self.single_demonstrations() if self.trajectory is not None else ()
+        return tuple(each.trajectory for each in shown if each.trajectory is not None)
+
     def with_demonstration(
         self, poses: PoseSequence, diver: str = "", *, salient: Sequence[str] | None = None
     ) -> Gesture:

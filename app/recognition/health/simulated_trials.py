@@ -21,7 +21,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variant_bias import VARIANT_BIASES, VariantBias
-from app.recognition.simulation.variation import Person, draw_variants
+from app.recognition.simulation.variation import Person, draw_variants, take_turns
 
 WIDEST_MARGIN = 4.0
 """Largest margin; exp(4) is fifty times as far, also used for takes that cannot be compared."""
@@ -142,7 +142,7 @@ def simulate_trials(
     recognizer
         Of the language.
     count
-        Takes of each gesture, at least 2.
+        Takes of each gesture, at least 2, of its demonstrations in turn.
     gestures
         Indices of the gestures; all that have a demonstration when not given.
     seed
@@ -168,11 +168,10 @@ def simulate_trials(
     scores = np.full((len(performed), count, rivals.shape[1]), np.inf)
     novelty = np.full((len(performed), count), np.nan)
     for row, index in enumerate(performed):
-        demonstration = language.gestures[index].trajectory
-        assert demonstration is not None  # gestures without one are left out above
         among = vote if rivals.shape[1] == len(every) else vote.among(rivals[row])
         own = int(np.searchsorted(rivals[row], index))
-        takes = _perform(demonstration, count, seed, person)
+        demonstrations = language.gestures[index].trajectories
+        takes = take_turns([_perform(each, count, seed, person) for each in demonstrations])
         if turned:
             takes = _turn(takes, turned, seed)
         for take, performed_take in enumerate(takes):

@@ -163,6 +163,12 @@ def draw_variants(
     return vary(trajectory, count, SPREADS[person], seed=seed)
 
 
+def take_turns(performances: Sequence[Sequence[Trajectory]]) -> tuple[Trajectory, ...]:
+    """Return as many takes as the shortest performance has, from each performance in turn."""
+    count = min(map(len, performances))
+    return tuple(performances[take % len(performances)][take] for take in range(count))
+
+
 def vary(
     trajectory: Trajectory, count: int, spread: Spread, *, seed: int = 0
 ) -> tuple[Trajectory, ...]:

@@ -213,3 +213,11 @@ def test_of_another_set_of_landmarks_the_hands_are_kept_that_do_not_move() -> No
     gesture = Gesture.from_demonstration("circle", tracked)
     assert gesture.trajectory is not None
     assert gesture.trajectory.landmarks == tracked.landmarks
+
+
+def test_a_gesture_lists_the_trajectories_of_all_its_demonstrations() -> None:
+    once = Gesture.from_demonstration("circle", recording(circle))
+    twice = once.with_demonstration(recording(circle, jitter=0.01))
+    assert once.trajectories == (once.trajectory,)
+    assert len(twice.trajectories) == 2
+    assert twice.trajectories[0] is once.trajectory

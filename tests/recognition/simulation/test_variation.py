@@ -14,8 +14,15 @@ from app.recognition.errors import OsgError
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory, Unit
-from app.recognition.simulation.variation import SPREADS, Person, Spread, draw_variants, vary
-from tests.recognition.strategies import SHAPES, recording, recordings
+from app.recognition.simulation.variation import (
+    SPREADS,
+    Person,
+    Spread,
+    draw_variants,
+    take_turns,
+    vary,
+)
+from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
 
 PEOPLE = tuple(SPREADS)
 SAMPLE_LANGUAGE = Path(__file__).resolve().parents[3] / "languages" / "osg-table-2.json"
@@ -192,3 +199,11 @@ def test_most_variants_of_the_sample_gestures_are_recognised(person: Person, sha
             result = vote.recognize(condense(variant))
             named.append(result is not None and result.nearest == gesture.label)
     assert np.mean(named) >= share
+
+
+def test_takes_are_of_all_demonstrations_in_turn() -> None:
+    one, other = (Trajectory.from_poses(recording(shape)) for shape in (circle, line))
+    first, second = (draw_variants(each, 3, seed=4) for each in (one, other))
+    taken = take_turns([first, second])
+    assert list(map(id, taken)) == list(map(id, (first[0], second[1], first[2])))
+    assert take_turns([first]) == first
