@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -154,22 +153,23 @@ def test_a_stream_that_begins_anew_ends_the_take_that_was_begun(
 
 
 @pytest.mark.withstands(row="H27")
-def test_keypoints_without_stamps_are_timed_by_their_arrival(
-    bench: Bench, recogniser: RecognitionNode
-) -> None:
+def test_keypoints_without_stamps_are_timed_by_their_arrival(bench: Bench, two_signs: Path) -> None:
+    node = bench.active(RecognitionNode, language=str(two_signs), use_sim_time=True)
     recognitions = bench.subscribe(GestureRecognition, "recognition")
+    clock = bench.speaker(Clock, "/clock")
     bodies, hands = bench.speaker(BodyKeypoints, "body_keypoints"), bench.speaker(Hands, "hands")
     recording = recording_of("circle")
-    began = time.monotonic()
     for seconds, (body, seen) in zip(
         recording.poses.time.tolist(), messages_of(recording), strict=True
     ):
-        time.sleep(max(began + seconds - time.monotonic(), 0))
+        now = stamped(seconds)
+        clock.publish(Clock(clock=to_stamp(now)))
+        bench.wait(lambda now=now: node.get_clock().now().nanoseconds == now, "time")  # type: ignore[misc]
         body.header.stamp = seen.header.stamp = to_stamp(0)
-        before = recogniser.health.inputs
+        before = node.health.inputs
         bodies.publish(body)
         hands.publish(seen)
-        wait_for_inputs(bench, recogniser, before + 1)
+        wait_for_inputs(bench, node, before + 1)
     bench.wait(lambda: bool(recognitions), "recognition")
     assert recognitions[0].label == "circle"
 
