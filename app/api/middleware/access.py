@@ -54,7 +54,7 @@ autocomplete="current-password"></label> <button>Sign in</button></p>
 """
 """Page shown to a browser that has no session; it works without scripts and styles."""
 
-_SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 class SameOrigin:
@@ -98,7 +98,7 @@ class SameOrigin:
         site = headers.get("sec-fetch-site", "none")
         if site in ("none", "same-origin"):
             return None
-        changes = scope["type"] == "websocket" or scope["method"] not in _SAFE_METHODS
+        changes = scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
         if changes or not _is_navigation(headers):
             return "another site asked for this; only this server's pages may"
         return None

@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api.middleware.access import SAFE_METHODS
 from app.api.middleware.identities import identity_of
 from app.api.middleware.roles import needed_role
 from app.api.observation.logs import FIELDS, request_id
@@ -35,7 +36,7 @@ class Audit:
         """Pass on, and note what is answered."""
         if scope["type"] != "http" or needed_role(scope["method"], scope["path"]) is Role.READ:
             return await self._app(scope, receive, send)
-        if scope["method"] in ("GET", "HEAD", "OPTIONS"):
+        if scope["method"] in SAFE_METHODS:
             return await self._app(scope, receive, send)
 
         async def send_after_noting(message: Message) -> None:

@@ -8,10 +8,9 @@ from typing import Final
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
+from app.api.middleware.access import SAFE_METHODS
 from app.api.middleware.identities import identity_of
 from app.store import Role
-
-SAFE_METHODS: Final = frozenset({"GET", "HEAD", "OPTIONS"})
 
 ADMIN_PATHS: Final = frozenset({"/metrics", "/api/v1/audit"})
 

@@ -10,7 +10,8 @@ import httpx
 import pytest
 from pydantic import SecretStr
 
-from app.api.middleware.roles import READING, SAFE_METHODS, needed_role
+from app.api.middleware.access import SAFE_METHODS
+from app.api.middleware.roles import READING, needed_role
 from app.server import create_app
 from app.settings import Settings
 from app.store import Role, TokenFile
