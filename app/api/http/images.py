@@ -1,14 +1,23 @@
-"""Response with a JPEG that a job has written, or 404 before that."""
+"""Responses with a JPEG that a job has written, or 404 before that."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from fastapi import Request
 from fastapi.responses import FileResponse
 
-from app.api.http.problems import ProblemError
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
+
+
+def picture_responses(description: str) -> dict[int | str, dict[str, Any]]:
+    """Describe in OpenAPI what a route answers that ends in `send_picture`."""
+    return {
+        **problem_responses(404, 416),
+        200: {"description": description, "content": {"image/jpeg": {}}},
+    }
 
 
 def send_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:

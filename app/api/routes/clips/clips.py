@@ -12,7 +12,7 @@ from fastapi.responses import FileResponse
 from pydantic import TypeAdapter
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.images import send_picture
+from app.api.http.images import picture_responses, send_picture
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
@@ -225,10 +225,7 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
 @router.get(
     "/{clip_id}/poster",
     response_class=FileResponse,
-    responses={
-        **problem_responses(404, 416),
-        200: {"description": "A small still picture", "content": {"image/jpeg": {}}},
-    },
+    responses=picture_responses("A small still picture"),
 )
 def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send a still picture of the clip, once its job has begun."""

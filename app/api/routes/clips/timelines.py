@@ -10,7 +10,7 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, Field
 
 from app.api.extraction.pictures import thumbnails_in
-from app.api.http.images import send_picture
+from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
 from app.api.services.studio import CurrentStudio
 from app.recognition import PoseError, Recording
@@ -61,10 +61,7 @@ def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
 @router.get(
     "/{clip_id}/filmstrip",
     response_class=FileResponse,
-    responses={
-        **problem_responses(404, 416),
-        200: {"description": "Thumbnails side by side", "content": {"image/jpeg": {}}},
-    },
+    responses=picture_responses("Thumbnails side by side"),
 )
 def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send the thumbnails along the clip, once its poses are found."""
