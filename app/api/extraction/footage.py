@@ -79,7 +79,8 @@ class Footage:
         self._workers = workers
         self._progress = progress
         self._sizes = {clip: clip.stat().st_size for clip in clips}
-        self._read = dict.fromkeys(clips, 0.0)
+        self._read = dict.fromkeys(clips, 0)
+        self._done_bytes = 0
         self._locks: dict[Path, asyncio.Lock] = {}
         self._ended: list[Extracted] = []
 
@@ -123,6 +124,7 @@ class Footage:
         return Extracted(clip, recording, new=True)
 
     def _advance(self, clip: Path, share: float) -> None:
-        self._read[clip] = share
-        done = sum(self._sizes[each] * read for each, read in self._read.items())
-        self._progress(FootageProgress(len(self._ended), round(done)))
+        read = round(share * self._sizes[clip])
+        self._done_bytes += read - self._read[clip]
+        self._read[clip] = read
+        self._progress(FootageProgress(len(self._ended), self._done_bytes))
