@@ -279,7 +279,8 @@ class FusedVote:
             slower = self._tempo & np.isfinite(distances[_TEMPO])
             shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
             scores = shares.sum(axis=0)
-        chosen = self._sides_nearest(scores + turned)
+        compared = scores + turned
+        chosen = self._sides_nearest(compared)
         return ScoreTable(
             voters=VOTER_NAMES,
             distances=distances.take(chosen, axis=1),
@@ -293,7 +294,7 @@ class FusedVote:
             views=view.turns[chosen],
             facing=trajectory.facing,
             novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1)
-            * measure_clearness((scores + turned)[chosen]),
+            * measure_clearness(compared[chosen]),
         )
 
     def fuse(self, distances: FloatArray) -> FloatArray:
