@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
-from app.clip_sources import ReadOptions, source_of
-from app.evaluation.kept_recordings import RECORDING_ENDING, kept_recording, recordings_dir
+from app.evaluation.clip_recorder import ClipRecorder, Progress
 from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
-from app.recognition.estimation import PoseEstimator, create_estimator
-
-Progress = Callable[[int, int, str], None]
-"""``progress(done, total, name)``: frames of the file of that name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,56 +61,15 @@ def collect_takes(
     """
     takes: list[LabelledTake] = []
     problems: dict[str, str] = {}
-    with closing(_Extractor(keep_in or recordings_dir(), keypoints, progress)) as extractor:
+    with closing(ClipRecorder(keep_in, keypoints=keypoints, progress=progress)) as recorder:
         for file in files:
             try:
-                takes += _takes(file, extractor.recording(file.path))
+                takes += _takes(file, recorder.record(file.path))
             except ModelError:
                 raise
             except (OsgError, OSError) as error:
                 problems[str(file.path)] = str(error)
     return Collection(tuple(takes), problems)
-
-
-class _Extractor:
-    """Extractor with a cache: reads the recording of a file and loads models when needed."""
-
-    def __init__(
-        self, folder: Path, keypoints: KeypointOptions | None, progress: Progress | None
-    ) -> None:
-        self._folder = folder
-        self._options = ReadOptions.of_keypoints(keypoints or KeypointOptions())
-        self._progress = progress
-        self._estimator: PoseEstimator | None = None
-
-    def recording(self, path: Path) -> Recording:
-        if path.suffix.lower() == RECORDING_ENDING:
-            return Recording.load(path)
-        source = source_of(path)
-        if not source.shows_pictures(path, self._options):
-            return source.record(path, self._options).recording
-        kept = kept_recording(path, self._folder)
-        if kept.is_file():
-            return Recording.load(kept)
-        if self._estimator is None:
-            self._estimator = create_estimator()
-        progress = None
-        if self._progress is not None:
-            progress = partial(self._advance, path.name, self._progress)
-        recording = source.record(
-            path, self._options, estimator=self._estimator, progress=progress
-        ).recording
-        self._folder.mkdir(parents=True, exist_ok=True)
-        recording.save(kept)
-        return recording
-
-    def close(self) -> None:
-        if self._estimator is not None:
-            self._estimator.close()
-
-    @staticmethod
-    def _advance(name: str, progress: Progress, done: int, total: int) -> None:
-        progress(done, total, name)
 
 
 def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:
