@@ -19,6 +19,11 @@ def samples_dir() -> Path:
     return _installed_or_checked_out("samples", "languages")
 
 
+def known_signs_file() -> Path:
+    """Return the language file of the signs that divers know; the health check looks for them."""
+    return samples_dir() / "divers-signs.json"
+
+
 def _installed_or_checked_out(in_wheel: str, in_checkout: str) -> Path:
     installed = _PACKAGE / in_wheel
     return installed if installed.is_dir() else _PACKAGE.parent / in_checkout

@@ -17,6 +17,7 @@ from app.recognition.health.ambiguity import find_ambiguities
 from app.recognition.health.embedding import embed_gestures
 from app.recognition.health.false_alarms import FalseAlarm, find_false_alarms
 from app.recognition.health.finding import Finding, check_demonstration, measure_visible_share
+from app.recognition.health.known_signs import find_known_signs
 from app.recognition.health.neighbours import (
     MOST_TOGETHER,
     find_neighbours,
@@ -73,6 +74,7 @@ def check_health(
     takes: int = TAKES,
     seed: int = 0,
     progress: Progress = lambda _stage, _done, _total: None,
+    known_signs: Language | None = None,
 ) -> HealthReport:
     """Check a language before the dive.
 
@@ -91,6 +93,9 @@ def check_health(
         Of all random numbers.
     progress
         Called with stage, steps done and their number; may raise to cancel.
+    known_signs
+        Signs that divers know, with their meaning; gestures that look like one are found. None:
+        they are not looked for.
 
     """
     if not language.gestures:
@@ -135,6 +140,9 @@ def check_health(
     ]
     if person == "another":
         findings += advise_second_divers(language, gestures)
+    if known_signs is not None:
+        compare = _count_steps(progress, "known signs", len(gestures))
+        findings += find_known_signs(language, known_signs, compare)
     findings += _profile_findings(language)
     compared = neighbours.shape[1] - 1
     if compared + 1 < len(gestures):

@@ -42,8 +42,9 @@ class Finding:
     code
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``one_diver``, ``blind_angle``, ``unrejecting``, ``more_confused``, ``neighbours_only``,
-        ``empty``, and of the grammar ``phrases_`` with one of `ambiguity.AmbiguityKind`.
+        ``one_diver``, ``blind_angle``, ``known_sign``, ``unrejecting``, ``more_confused``,
+        ``neighbours_only``, ``empty``, and of the grammar ``phrases_`` with one of
+        `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures concerned; none for phrases.
     message
