@@ -10,6 +10,7 @@ import threading
 import webbrowser
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from typing import Any
 from urllib.parse import quote
 
@@ -18,6 +19,7 @@ from fastapi import APIRouter, FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
+from starlette.routing import BaseRoute
 
 from app import __version__, resources
 from app.api.http import problems
@@ -116,7 +118,21 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.connections = ConnectionGuard(settings.idle_seconds, settings.max_connections)
     app.state.workspaces = registry
     app.state.live_places = asyncio.Semaphore(live.MOST_VIEWS)
-    api = APIRouter(prefix=API)
+    app.router.routes.extend(_build_routes())
+    _serve_page(app)
+    problems.install(app)
+    _describe(app)
+    _guard(app, settings, metrics)
+    return app
+
+
+@cache
+def _build_routes() -> tuple[BaseRoute, ...]:
+    """Return the routes of the interface, built once: FastAPI looks at each one's parameters.
+
+    They hold nothing of an app, so that all apps of a process share them.
+    """
+    every, api = APIRouter(), APIRouter(prefix=API)
     for router in (
         health.router,
         clips.router,
@@ -149,15 +165,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         live.router,
     ):
         api.include_router(router)
-    app.include_router(api)
-    app.include_router(health.router, include_in_schema=False)
-    app.include_router(metrics_routes.router)
-    app.include_router(relay.router)
-    _serve_page(app)
-    problems.install(app)
-    _describe(app)
-    _guard(app, settings, metrics)
-    return app
+    every.include_router(api)
+    every.include_router(health.router, include_in_schema=False)
+    every.include_router(metrics_routes.router)
+    every.include_router(relay.router)
+    return tuple(every.routes)
 
 
 def run(settings: Settings, *, open_browser: bool) -> None:
