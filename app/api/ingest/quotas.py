@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+from weakref import WeakValueDictionary
+
 from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
@@ -11,6 +14,17 @@ from app.api.services.studio import Studio
 
 CLOSE = {"Connection": "close"}
 """What is left of the body stays unread, so the connection cannot be used again."""
+
+
+_turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+
+
+def turn_of(request: Request, studio: Studio) -> asyncio.Lock:
+    """Return the lock under which a name's quota is checked and then used.
+
+    Without it, uploads that end at the same time would all be told that there is place for one.
+    """
+    return _turns.setdefault(f"{owner_of(request)}\n{studio.clips.folder}", asyncio.Lock())
 
 
 def owner_of(request: Request) -> str:

@@ -20,7 +20,7 @@ from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeVi
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
-from app.api.ingest.quotas import require_quota
+from app.api.ingest.quotas import require_quota, turn_of
 from app.api.services.clip_views import view_clip
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
@@ -96,8 +96,9 @@ async def upload_clip(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         clip.idempotency_key = idempotency_key
-        await require_quota(request, studio, upload.size)
-        return await store(clip, partial, studio, request)
+        async with turn_of(request, studio):
+            await require_quota(request, studio, upload.size)
+            return await store(clip, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)
 

@@ -27,7 +27,7 @@ from app.api.ingest.intake import (
     store,
 )
 from app.api.ingest.multipart import display_name, require_space
-from app.api.ingest.quotas import owner_of, require_quota
+from app.api.ingest.quotas import owner_of, require_quota, turn_of
 from app.api.middleware.body_limit import too_large
 from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -89,7 +89,8 @@ async def begin_upload(
     fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
     # One at a time: between the check and the file that reserves the space nobody else may begin.
-    async with _beginning.setdefault(str(studio.clips.folder), asyncio.Lock()):
+    beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
+    async with beginning, turn_of(request, studio):
         reserved = await require_place_in_queue(request, studio)
         await require_quota(request, studio, upload_length)
         require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)

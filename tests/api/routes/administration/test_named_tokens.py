@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
@@ -170,6 +173,25 @@ def test_a_quota_of_clips_is_kept_and_deleting_makes_room(
         assert upload(editor, small_clip).status_code == 202
     with client_with(guarded, ADMIN) as admin:
         assert upload(admin, small_clip).status_code == 202
+
+
+def test_uploads_at_the_same_time_share_one_quota(
+    guarded: Running, tokens: TokenFile, small_clip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = guarded.studio.clips.add
+
+    def store_slowly(*clip: Any) -> Any:
+        time.sleep(0.2)
+        return store(*clip)
+
+    monkeypatch.setattr(guarded.studio.clips, "add", store_slowly)
+    with (
+        client_with(guarded, tokens.add("Jo", Role.EDIT, quota_clips=1)) as editor,
+        ThreadPoolExecutor(6) as uploaders,
+    ):
+        answers = list(uploaders.map(lambda _: upload(editor, small_clip).status_code, range(6)))
+        assert sorted(answers) == [202, 507, 507, 507, 507, 507]
+        assert len(editor.get(CLIPS).json()) == 1
 
 
 def test_a_quota_of_bytes_counts_what_is_kept_and_what_is_under_way(
