@@ -1,8 +1,9 @@
-"""Recordings: extracts the landmarks of all sample clips, rounded for the repository.
+"""Recordings: extracts the landmarks of clips, rounded for the repository.
 
 Pose models round differently on other processors, and tracking carries that along. The tests read
 the recordings of two (`tests/recordings`), so that nothing holds for one processor alone. Run
-``python -m languages.record FOLDER`` from the repository's root.
+``python -m languages.record FOLDER`` from the repository's root; ``--clips`` names other clips than
+the samples, such as those of signs by other divers, which are rendered for the tests alone.
 """
 
 from __future__ import annotations
@@ -58,10 +59,11 @@ def main() -> None:
     """Write one file a clip into the folder given; clips that have one already are passed over."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("folder", type=Path, help="made when missing")
-    folder = parser.parse_args().folder
-    folder.mkdir(parents=True, exist_ok=True)
-    for clip in sorted((FOLDER / "clips").glob("*.mp4")):
-        file = folder / f"{clip.stem}.npz"
+    parser.add_argument("--clips", type=Path, default=FOLDER / "clips", help="folder of the clips")
+    given = parser.parse_args()
+    given.folder.mkdir(parents=True, exist_ok=True)
+    for clip in sorted(given.clips.glob("*.mp4")):
+        file = given.folder / f"{clip.stem}.npz"
         if not file.exists():
             round_recording(record(clip)).save(file)
             print(file)

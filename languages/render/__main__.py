@@ -10,24 +10,28 @@ from typing import Any
 
 import numpy as np
 
-from languages.render.cast import CLIPS, DIVERS, WATERS, Clip
+from languages.render.cast import CLIPS, DIVERS, SIGN_CLIPS, TESTS_OF_SIGNS, WATERS, Clip
 from languages.render.encode import encode_within_limit
 from languages.render.gestures import DRAWINGS
-from languages.render.performance import Performance, move_about, perform
+from languages.render.performance import Performance, move_about, perform, perform_sign
 from languages.render.posture import hand_points, pose_body
 from languages.render.scene import Scene
+from languages.render.signs import SIGNS
 from languages.render.water import Bubble, breath
 
 RATE = 25
 """Frames per second of every clip."""
 
 OUTPUT = Path(__file__).resolve().parents[1] / "clips"
+OUTPUT_OF_SIGNS = OUTPUT.parent / "signs"
 
 
 def performance_of(clip: Clip) -> Performance:
     """Compose what the diver does in a clip."""
     if clip.gesture is None:
         return move_about(clip.manner, RATE, clip.seed)
+    if clip.is_sign:
+        return perform_sign(SIGNS[clip.gesture], clip.manner, RATE, clip.seed)
     return perform(DRAWINGS[clip.gesture], clip.manner, RATE, clip.seed)
 
 
@@ -85,20 +89,23 @@ def _breaths(performance: Performance, seed: int) -> list[Bubble]:
 def main() -> None:
     """Render the clips named on the command line, or all of them."""
     parser = argparse.ArgumentParser(prog="python -m languages.render", description=__doc__)
-    parser.add_argument("names", nargs="*", help="clips without suffix; all when none is given")
-    parser.add_argument("--out", type=Path, default=OUTPUT, help="folder for the clips")
+    parser.add_argument("names", nargs="*", help="clips without suffix; all that are kept if none")
+    parser.add_argument("--out", type=Path, help="folder for the clips")
     parser.add_argument("--truth", type=Path, help="folder for where the hands truly are, as JSON")
     arguments = parser.parse_args()
-    if unknown := set(arguments.names) - {clip.name for clip in CLIPS}:
+    known = {clip.name: clip for clip in (*CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS)}
+    if unknown := set(arguments.names) - known.keys():
         parser.error(
             f"no clip is called {', '.join(sorted(unknown))}; see languages/render/cast.py"
         )
-    chosen = [clip for clip in CLIPS if not arguments.names or clip.name in arguments.names]
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    write_phases(arguments.out / "phases.json")
+    chosen = [known[name] for name in arguments.names] or [*CLIPS, *SIGN_CLIPS]
+    if arguments.out is None:
+        write_phases(OUTPUT / "phases.json")
     for clip in chosen:
         file, truth = render(clip)
-        (arguments.out / f"{clip.name}.mp4").write_bytes(file)
+        folder = arguments.out or (OUTPUT_OF_SIGNS if clip.is_sign else OUTPUT)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{clip.name}.mp4").write_bytes(file)
         if arguments.truth:
             arguments.truth.mkdir(parents=True, exist_ok=True)
             (arguments.truth / f"{clip.name}.json").write_text(json.dumps(truth))

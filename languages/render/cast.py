@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from languages.render.gear import Kit
 from languages.render.performance import Manner
 from languages.render.scene import Diver, View
+from languages.render.signs import SIGNS, name_clip
 from languages.render.suit import Suit
 from languages.render.water import Water
 
@@ -115,13 +116,15 @@ class Clip:
     name
         File name without suffix.
     gesture
-        A label of `DRAWINGS`; None for ordinary movement without a gesture.
+        A label of `DRAWINGS` or, of a sign, of `SIGNS`; None for ordinary movement.
     diver, water
         Names in `DIVERS` and `WATERS`.
     view, manner
         Where the camera is, and how the gesture is performed.
     seed
         Of everything left to chance.
+    is_sign
+        Whether the gesture is a divers' sign.
 
     """
 
@@ -132,9 +135,12 @@ class Clip:
     view: View
     manner: Manner
     seed: int
+    is_sign: bool = False
 
 
 UPPER_BODY = View(1.72, aim=(0, -0.06))
+NEAR = View(1.5, aim=(-0.02, 0.0))
+"""Near enough to tell fingers."""
 WIDE = View(1.8)
 """Room for both arms stretched out."""
 
@@ -148,6 +154,24 @@ def _demonstration(gesture: str, seed: int, view: View = UPPER_BODY) -> Clip:
 def _test(gesture: str, take: int, who: str, where: str, view: View, manner: Manner) -> Clip:
     seed = 100 * take + len(gesture)
     return Clip(f"{gesture}-test-{take}", gesture, who, where, view, manner, seed)
+
+
+def _sign(label: str, number: int) -> Clip:
+    """Return a divers' sign, shown by the one who shows all demonstrations."""
+    return Clip(
+        name_clip(label), label, "instructor", "lagoon", NEAR, Manner(), 200 + number, is_sign=True
+    )
+
+
+def _sign_test(label: str, number: int) -> Clip:
+    """Return a sign by another diver elsewhere; who and where goes round by the number."""
+    who = ("biologist", "surveyor", "student", "archaeologist", "engineer")[number % 5]
+    where = ("reef", "pool", "open sea", "lagoon")[number % 4]
+    yaw = (-12, -6, 6, 12)[number // 5 % 4]
+    manner = Manner(tempo=(0.9, 1.0, 1.15)[number % 3], lean=(-8, 0, 8)[number // 3 % 3])
+    name = f"{name_clip(label)}-test"
+    view = View(1.6, yaw=yaw, aim=(0, -0.02))
+    return Clip(name, label, who, where, view, manner, 300 + number, is_sign=True)
 
 
 CLIPS = (
@@ -311,3 +335,9 @@ CLIPS = (
     ),
 )
 """Table 2 of the paper, its first three gestures being Table 1, and one clip without a gesture."""
+
+SIGN_CLIPS = tuple(_sign(label, number) for number, label in enumerate(SIGNS))
+"""Divers' signs, the demonstrations of the starter language."""
+
+TESTS_OF_SIGNS = tuple(_sign_test(label, number) for number, label in enumerate(SIGNS))
+"""Each sign by another diver. What is found in these clips is kept for the tests, not the clips."""

@@ -10,6 +10,7 @@ from languages.render.body import Array
 from languages.render.gestures import Drawing
 from languages.render.motion import along_curve, minimum_jerk, tremor, wander
 from languages.render.posture import HAND_SHAPES, ArmTarget, BodyMotion
+from languages.render.signs import Sign
 
 UP = np.array([0.0, 0.0, 1.0])
 DOWN = np.array([0.1, -0.2, -1.0])
@@ -174,6 +175,33 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
     return _animate(timeline, manner, random)
 
 
+def perform_sign(sign: Sign, manner: Manner, rate: float, seed: int) -> Performance:
+    """Compose a take of a divers' sign; parameters are those of `perform`.
+
+    Of the manner tempo, lean of the fingers, drift and hold are used.
+    """
+    timeline = Timeline(rate)
+    still = [REST] * timeline.frames(0.4)
+    timeline.add("rest", still, still)
+    timeline.move("raise", 0.75 / manner.tempo, SALUTE, REST)
+    timeline.hold("salute", manner.hold)
+    first = sign.postures[0]
+    right, left = _lean(first.right, manner), first.left or REST
+    timeline.move("transit", _transit_time(SALUTE, right, manner), right, left)
+    if first.hold:
+        timeline.hold("stroke", first.hold / manner.tempo)
+    for posture in sign.postures[1:]:
+        right, left = _lean(posture.right, manner), posture.left or REST
+        timeline.move("stroke", posture.seconds / manner.tempo, right, left)
+        if posture.hold:
+            timeline.hold("stroke", posture.hold / manner.tempo)
+    timeline.move("transit", _transit_time(SALUTE, right, manner), SALUTE, REST)
+    timeline.hold("salute", manner.hold)
+    timeline.move("lower", 0.75 / manner.tempo, REST, REST)
+    timeline.hold("rest", 0.3)
+    return _animate(timeline, manner, np.random.default_rng(seed))
+
+
 def move_about(manner: Manner, rate: float, seed: int) -> Performance:
     """Compose what divers do between gestures: see to the mask, wave, point; nothing is meant.
 
@@ -277,6 +305,15 @@ def _target(point: Array, drawing: Drawing, manner: Manner) -> ArmTarget:
         lean = np.radians(manner.lean)
         pointing = np.array([-np.sin(lean), -0.15, np.cos(lean)])
     return ArmTarget(np.array([x, -depth, z]), pointing, TO_CAMERA, HAND_SHAPES[manner.hand])
+
+
+def _lean(arm: ArmTarget, manner: Manner) -> ArmTarget:
+    """Lean a hand in the frontal plane."""
+    angle = np.radians(manner.lean)
+    turn = np.array(
+        [[np.cos(angle), 0, -np.sin(angle)], [0, 1, 0], [np.sin(angle), 0, np.cos(angle)]]
+    )
+    return replace(arm, pointing=turn @ arm.pointing, palm=turn @ arm.palm)
 
 
 def _left_of(right: ArmTarget, drawing: Drawing) -> ArmTarget:
