@@ -122,6 +122,8 @@ class Clip:
         Where the camera is, and how the gesture is performed.
     seed
         Of everything left to chance.
+    mittens
+        Whether mittens hide the fingers.
 
     """
 
@@ -132,6 +134,7 @@ class Clip:
     view: View
     manner: Manner
     seed: int
+    mittens: bool = False
 
 
 UPPER_BODY = View(1.72, aim=(0, -0.06))
@@ -311,3 +314,18 @@ CLIPS = (
     ),
 )
 """Table 2 of the paper, its first three gestures being Table 1, and one clip without a gesture."""
+
+
+def _posed(name: str, gesture: str, who: str, where: str, view: View, closing: str) -> Clip:
+    manner = Manner(tempo=1.2, wobble=0.01, opening="belly", closing=closing)
+    return Clip(name, gesture, who, where, view, manner, len(name), mittens=True)
+
+
+POSED_CLIPS = (
+    _posed("circle-by-belly", "circle", "instructor", "lagoon", UPPER_BODY, "belly"),
+    _posed("circle-by-belly-2", "circle", "biologist", "reef", View(1.7, yaw=8), "belly"),
+    _posed("wedge-by-belly", "wedge", "surveyor", "open sea", View(1.8, yaw=-6), "belly"),
+    _posed("wedge-by-belly-and-head", "wedge", "instructor", "lagoon", UPPER_BODY, "head"),
+)
+"""Divers in mittens who hold the left forearm across the belly instead of a salute, for the tests
+of triggers; in the last one, the left hand on the head ends the take."""

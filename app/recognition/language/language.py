@@ -24,11 +24,13 @@ from app.recognition.language.schema import (
     VERSION,
     LanguageDocument,
 )
+from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_entry
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
@@ -65,6 +67,8 @@ class Language:
         The profile that recognises it, one of `profile.PROFILES`.
     tuning
         The author's changes to that profile. Thresholds do not depend on it.
+    trigger
+        What begins and ends a take; by default a salute.
 
     Raises
     ------
@@ -83,6 +87,7 @@ class Language:
     grammar: Grammar | None = None
     profile: ProfileName = DEFAULT_PROFILE
     tuning: Tuning = AS_THE_PROFILE
+    trigger: Trigger = SALUTE
 
     def __post_init__(self) -> None:
         """Validate and normalise the fields."""
@@ -236,6 +241,7 @@ class Language:
             grammar=None if self.grammar is None else grammar_to_entry(self.grammar),
             profile=self.profile,
             tuning=tuning_to_entry(self.tuning),
+            trigger=trigger_to_entry(self.trigger),
             gestures=[gesture_to_entry(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -268,6 +274,7 @@ class Language:
             grammar=None if document.grammar is None else entry_to_grammar(document.grammar),
             profile=document.profile,
             tuning=entry_to_tuning(document.tuning),
+            trigger=entry_to_trigger(document.trigger),
         )
 
     def save(self, path: str | Path) -> None:
