@@ -59,6 +59,7 @@ from app.api.routes.languages import (
     revisions,
     slates,
     test_sets,
+    triggers,
 )
 from app.api.routes.recognitions import recognition_pages, recognitions
 from app.api.routes.samples import sample_clips, sample_languages
@@ -132,6 +133,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         practice.router,
         slates.router,
         language_settings.router,
+        triggers.router,
         pair_differences.router,
         gestures.router,
         demonstrations.router,

@@ -109,9 +109,14 @@ class ArmPose:
         Raises
         ------
         TriggerError
-            When the arms are not seen, never still, or hang whenever they are still.
+            When the arms are not seen, never still for so long, or hang whenever they are still.
 
         """
+        if poses.duration < STILL_SECONDS:
+            raise TriggerError(
+                f"a pose must be held for {STILL_SECONDS:g} s, and this lasts "
+                f"{poses.duration:.2f} s: mark a longer range"
+            )
         places, time = locate_arms(poses), poses.time
         best: tuple[float, ArmPose | None] = (math.inf, None)
         hung = seen = False
@@ -250,7 +255,7 @@ def _explain_no_pose(poses: PoseSequence, *, seen: bool, hung: bool) -> str:
         )
     return (
         f"both arms are never seen for {STILL_SECONDS:g} s in {poses.duration:.1f} s: film the "
-        "diver from the front with elbows and wrists in the picture, or mark a longer range"
+        "diver from the front with elbows and wrists in the picture, or mark another range"
     )
 
 

@@ -105,8 +105,10 @@ def test_arms_out_of_the_picture_show_no_pose() -> None:
     poses = held(left_wrist=(0.1, -1.0))
     with pytest.raises(TriggerError, match=r"never seen.*from the front"):
         ArmPose.from_poses(replace(poses, xy=np.full_like(poses.xy, np.nan)))
-    with pytest.raises(TriggerError, match="mark a longer range"):
+    with pytest.raises(TriggerError, match=r"this lasts 0\.\d+ s: mark a longer range"):
         ArmPose.from_poses(poses.between(0, 0.2))
+    with pytest.raises(TriggerError, match="mark a longer range"):
+        ArmPose.from_poses(poses.between(90, 91))
 
 
 def test_numbers_that_are_none_are_refused() -> None:
