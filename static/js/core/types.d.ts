@@ -43,6 +43,7 @@ export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
 export type TestSet = Schemas["TestSetView"];
 export type LabelledTake = Schemas["LabelledTakeView"];
+export type TriggerDraft = Schemas["TriggerDraft"];
 export type Tuning = Schemas["TuningEntry"];
 export type Problem = Partial<Schemas["Problem"]>;
 export type PhrasePart = GesturesPart | SlotPart | GroupPart;
