@@ -33,6 +33,7 @@ from app.recognition.health.report import (
 )
 from app.recognition.health.second_divers import advise_second_divers
 from app.recognition.health.simulated_trials import SimulatedTrials
+from app.recognition.health.trigger_health import check_trigger, list_trigger_findings
 from app.recognition.health.viewing_angles import check_angles, find_blind_angles
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
@@ -135,6 +136,8 @@ def check_health(
     ]
     if person == "another":
         findings += advise_second_divers(language, gestures)
+    trigger = check_trigger(language.trigger, seed=seed)
+    findings += list_trigger_findings(language.trigger, trigger, language.gestures)
     findings += _profile_findings(language)
     compared = neighbours.shape[1] - 1
     if compared + 1 < len(gestures):
@@ -151,6 +154,7 @@ def check_health(
         findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
         places=embed_gestures(_estimate_far_distances(recognizer, distances)),
         neighbours=None if compared + 1 == len(gestures) else compared,
+        trigger=trigger,
     )
 
 
@@ -341,7 +345,7 @@ def _gesture_findings(
     """Return the findings about single gestures; `explained` ones have a finding as a pair."""
     findings: list[Finding] = []
     for gesture, health in zip(language.gestures, gestures, strict=True):
-        findings += check_demonstration(gesture)
+        findings += check_demonstration(gesture, salutes=language.trigger.kind == "salute")
         explained_by_pair = health.label in explained
         if not explained_by_pair and health.missed is not None and health.missed.rate > MOST_MISSED:
             message = f"{health.label} is not recognised in {health.missed.words}"

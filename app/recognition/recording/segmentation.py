@@ -119,8 +119,8 @@ class TakeMachine:
         """Create the machine for a language's trigger."""
         if trigger.start is None:
             return cls()
-        stop = None if trigger.stop is None else _held_pose()
-        return cls(trigger=_held_pose(), stop=stop)
+        stop = None if trigger.stop is None else create_held_pose()
+        return cls(trigger=create_held_pose(), stop=stop)
 
     @property
     def held(self) -> bool:
@@ -252,7 +252,8 @@ class TakeMachine:
         return Bracket(first_salute=Span(self._began, released), last_salute=None, end=end)
 
 
-def _held_pose() -> HeldTrigger:
+def create_held_pose() -> HeldTrigger:
+    """Create what detects that a pose of the arms is held."""
     return HeldTrigger(hold=POSE_SECONDS, leave=POSE_LEAVE_SCORE)
 
 
