@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
-import { percent, plural } from "../core/format.js";
+import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
