@@ -17,10 +17,10 @@ from app.robot.take_result import judge_take, reject_take
 def explain_unclosed(trigger: Trigger) -> str:
     """Return why a take has no end, in words."""
     again = "" if trigger.stop is None else ", or what begins a take came again"
-    return (
-        f"no {trigger.noun} ended it within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver "
-        f"swam away{again}"
-    )
+    why = f"within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver swam away{again}"
+    if trigger.kind == "pose":
+        return f"no pose of the arms ended it {why}"
+    return f"no salute ended it {why}"
 
 
 class LandmarkListener(Protocol):
