@@ -16,6 +16,7 @@ from app.keypoint_files import KeypointOptions
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
 from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 Progress = Callable[[int, int, str], None]
 """``progress(done, total, name)``: frames of the file of that name."""
@@ -43,6 +44,7 @@ def collect_takes(
     *,
     keep_in: Path | None = None,
     keypoints: KeypointOptions | None = None,
+    trigger: Trigger = SALUTE,
     progress: Progress | None = None,
 ) -> Collection:
     """Read all files and collect their takes; unreadable files become problems.
@@ -56,6 +58,8 @@ def collect_takes(
         clip may be renamed or moved.
     keypoints
         Values that keypoint files do not contain.
+    trigger
+        What begins and ends a take.
     progress
         Called after every extracted frame; an exception in it stops the extraction.
 
@@ -70,7 +74,7 @@ def collect_takes(
     with closing(_Extractor(keep_in or recordings_dir(), keypoints, progress)) as extractor:
         for file in files:
             try:
-                takes += _takes(file, extractor.recording(file.path))
+                takes += _takes(file, extractor.recording(file.path), trigger)
             except ModelError:
                 raise
             except (OsgError, OSError) as error:
@@ -119,9 +123,9 @@ class _Extractor:
         progress(done, total, name)
 
 
-def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:
-    """Return the takes between salutes, or the whole recording where there are none."""
-    found = [take.poses for take in takes_in(recording)] or [recording.poses]
+def _takes(file: LabelledFile, recording: Recording, trigger: Trigger) -> list[LabelledTake]:
+    """Return the takes between triggers, or the whole recording where there are none."""
+    found = [take.poses for take in takes_in(recording, trigger=trigger)] or [recording.poses]
     sources = [f"{file.path}, take {number}" for number in range(1, len(found) + 1)]
     if len(found) == 1:
         sources = [str(file.path)]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from app.evaluation.labelled_files import LAYOUTS
 from app.recognition import Language, PoseSequence
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from tests.command_line import OsgStudio
@@ -106,6 +107,23 @@ def test_a_clip_without_the_pose_says_what_was_looked_for(
     ended = osg_studio("recognize", clip, "--language", pool, *RATE)
     assert ended.code == 1
     assert f"no take {BY_BELLY.words} found" in " ".join(ended.error.split())
+
+
+def test_labelled_clips_are_evaluated_by_the_trigger_of_a_language(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    pool = tmp_path / "pool.json"
+    posed_language().save(pool)
+    names = {"circle": ("circle-by-belly", "circle-by-belly-2"), "wedge": ("wedge-by-belly",)}
+    for label, shown in names.items():
+        (tmp_path / "takes" / label).mkdir(parents=True)
+        for name in shown:
+            posed_recording(name).save(tmp_path / "takes" / label / f"{name}.npz")
+    asked = ("evaluate", tmp_path / "takes", "--profile", "full", "--layout", LAYOUTS[1])
+    ended = osg_studio(*asked, "--language", pool)
+    assert "100.0%" in ended.out, ended.error
+    ended = osg_studio(*asked, "--trigger", pool)
+    assert ended.code == 0, ended.error
 
 
 @pytest.mark.slow
