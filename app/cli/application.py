@@ -332,6 +332,8 @@ def convert(
             f"{', '.join(several)}",
             markup=False,
         )
+    if language.trigger != SALUTE and file_format is not FileFormat.OSG_STUDIO:
+        people.print(f"{target}: {file_format.value} knows no trigger; tell it on the slate")
     if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
     else:

@@ -378,9 +378,14 @@ def read_clip(
         read = _read_pictures(source, path, options, how, language)
     else:
         read = _read_keypoints(source, path, options, language)
-    for warning in read.recording.warnings:
+    recording = read.recording
+    if how.trigger.kind != "salute":
+        # Nobody salutes, and nobody needs to.
+        kept = tuple(each for each in recording.warnings if "salute" not in each)
+        recording = replace(recording, warnings=kept)
+    for warning in recording.warnings:
         people.print(f"{clip}: {warning}", markup=False)
-    return replace(read, trigger=how.trigger)
+    return replace(read, recording=recording, trigger=how.trigger)
 
 
 def _read_keypoints(

@@ -53,6 +53,7 @@ def test_a_language_with_an_arm_trigger_is_made_and_used_without_any_hand(
     assert ended.code == 0, ended.error
     (take,) = json.loads(ended.out)["takes"]
     assert take["label"] == "circle"
+    assert "salute" not in ended.error
     ended = osg_studio("demonstrations", "add", pool, f"circle={clips['circle-by-belly-2']}", *RATE)
     assert ended.code == 0, ended.error
 
@@ -124,6 +125,18 @@ def test_labelled_clips_are_evaluated_by_the_trigger_of_a_language(
     assert "100.0%" in ended.out, ended.error
     ended = osg_studio(*asked, "--trigger", pool)
     assert ended.code == 0, ended.error
+
+
+def test_a_file_that_cannot_hold_a_trigger_is_said_to_lack_it(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    pool = tmp_path / "pool.json"
+    posed_language().save(pool)
+    ended = osg_studio("convert", pool, tmp_path / "pool.ldf")
+    assert "proteus knows no trigger" in " ".join(ended.error.split())
+    ended = osg_studio("convert", pool, tmp_path / "copy.json")
+    assert "knows no trigger" not in ended.error
+    assert Language.load(tmp_path / "copy.json").trigger == BY_BELLY
 
 
 @pytest.mark.slow
