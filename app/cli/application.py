@@ -233,8 +233,8 @@ def recognize(
     if expected is not None:
         loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
     recognizer = Recognizer(loaded, profile)
-    without_salutes = without_salutes or loaded.trigger.kind == "none"
-    spotter = Spotter(recognizer) if without_salutes else None
+    spots = without_salutes or loaded.trigger.spots
+    spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     reading = ClipReading(water, estimator, hands, topic, keypoints)
     if is_folder_of_clips(path):
@@ -252,7 +252,7 @@ def recognize(
             save_session(mcap, path, topic, recording, named, loaded.trigger)
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results:
-            explain_absence(path, recording, recognizer, without_salutes=without_salutes)
+            explain_absence(path, recording, recognizer, without_salutes=spots)
         recognised = sum(result.label is not None for _, result in results)
     if not recognised:
         raise typer.Exit(NOTHING_RECOGNISED)

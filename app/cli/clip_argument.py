@@ -167,8 +167,8 @@ class ReadClip:
             return list(takes_in(self.recording, trigger=self.trigger))
         poses = self.recording.poses
         if poses.duration > LONGEST_TAKE:
-            without = self.trigger.kind == "none"
-            lack = "without a trigger has nothing" if without else "without hands has no salutes"
+            spots = self.trigger.spots
+            lack = "has no trigger that is held" if spots else "without hands has no salutes"
             raise GestureError(
                 f"a recording of {poses.duration:.0f} s {lack} to cut it at, and a gesture lasts "
                 f"at most {LONGEST_TAKE:g} s; give the range by hand, CLIP@START-END, or find "

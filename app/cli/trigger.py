@@ -42,6 +42,13 @@ def trigger(
     stop: Annotated[
         str | None, typer.Option(metavar="CLIP", help="With --pose: another pose ends it.")
     ] = None,
+    gesture: Annotated[
+        str | None,
+        typer.Option(metavar="LABEL", help="A gesture of the language begins and ends a take."),
+    ] = None,
+    stop_gesture: Annotated[
+        str | None, typer.Option(metavar="LABEL", help="With --gesture: another one ends it.")
+    ] = None,
     salute: Annotated[bool, typer.Option("--salute", help="A Vulcan salute again.")] = False,
     none: Annotated[
         bool, typer.Option("--none", help="No trigger: gestures are found anywhere.")
@@ -56,10 +63,15 @@ def trigger(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Show what begins and ends a take of a language, or set it: salute, pose or nothing."""
-    if sum((pose is not None, salute, none)) > 1 or (stop is not None and pose is None):
-        raise OsgError("give one of --pose CLIP, --salute and --none; --stop CLIP needs --pose")
-    if pose is None and not salute and not none:
+    """Show what begins and ends a take of a language, or set it: salute, pose, gesture, nothing."""
+    given = sum((pose is not None, gesture is not None, salute, none))
+    lacking = (stop and not pose) or (stop_gesture and not gesture)
+    if given > 1 or lacking:
+        raise OsgError(
+            "give one of --pose CLIP, --gesture LABEL, --salute and --none; --stop CLIP needs "
+            "--pose, and --stop-gesture LABEL needs --gesture"
+        )
+    if not given:
         typer.echo(Language.load(language).trigger.words)
         return
     loaded = Language.load(language) if language.exists() else Language(name=language.stem)
@@ -69,6 +81,8 @@ def trigger(
         reading = ClipReading(water, estimator, hands, keypoints=keypoints)
         ends = None if stop is None else read_pose(stop, reading)
         chosen = Trigger("pose", read_pose(pose, reading), ends)
+    if gesture is not None:
+        chosen = Trigger("gesture", start_label=gesture, stop_label=stop_gesture or "")
     changed = replace(loaded, trigger=chosen, revision=loaded.revision + language.exists())
     target = output or language
     changed.save(target)

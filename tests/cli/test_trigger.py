@@ -74,6 +74,21 @@ def test_a_trigger_is_shown_and_changed(
     assert "trigger" not in json.loads(file.read_text())
 
 
+def test_gestures_between_a_trigger_gesture_are_found(
+    osg_studio: OsgStudio, tmp_path: Path, clips: dict[str, Path]
+) -> None:
+    pool = tmp_path / "pool.json"
+    posed_language().save(pool)
+    ended = osg_studio("trigger", pool, "--gesture", "wedge", "--stop-gesture", "circle")
+    assert ended.code == 0, ended.error
+    assert osg_studio("trigger", pool).out == "between the gestures 'wedge' and 'circle'\n"
+    asked = ("recognize", clips["circle-by-belly"], "--language", pool, *RATE)
+    assert osg_studio(*asked).code == 1
+    assert osg_studio(*asked, "--without-salutes").code == 0
+    ended = osg_studio("trigger", pool, "--gesture", "line")
+    assert (ended.code, "needs a gesture 'line'" in ended.error) == (2, True)
+
+
 def test_a_clip_that_holds_no_pose_is_refused_by_name(
     osg_studio: OsgStudio, tmp_path: Path, clips: dict[str, Path]
 ) -> None:

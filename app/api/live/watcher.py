@@ -217,7 +217,7 @@ class Watcher:
             skipped=frame.skipped,
         )
         moment = build_frame_sequence(found, frame.time, (width, height))
-        return (seen, *(self._spot(moment) if trigger.kind == "none" else self._recognize(sight)))
+        return (seen, *(self._spot(moment) if trigger.spots else self._recognize(sight)))
 
     def close(self) -> None:
         """Release the models."""
@@ -239,7 +239,7 @@ class Watcher:
             try:
                 recognizer = self._recognizer()
                 self._trigger = SALUTE if recognizer is None else recognizer.language.trigger
-                if recognizer is not None and self._trigger.kind == "none":
+                if recognizer is not None and self._trigger.spots:
                     self._renew_spotter(recognizer)
             except OsgError:  # no such language, or no gesture to spot in it
                 self._trigger, self._spotter = SALUTE, None

@@ -63,7 +63,7 @@ def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tup
     """
     recording = studio.recording(clip_id)
     trigger = SALUTE if state is None else studio.language(state).trigger
-    if state is not None and trigger.kind == "none":
+    if state is not None and trigger.spots:
         return _spot(str(studio.clips.recording(clip_id)), state.revision.document)
     return tuple(
         TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)

@@ -117,6 +117,12 @@ class Language:
             labels.add(gesture.label)
         if self.grammar is not None:
             self.grammar.require(labels)
+        if missing := sorted(self.trigger.labels - labels):
+            raise LanguageError(
+                f"the trigger needs a gesture {missing[0]!r}, which the language has not: choose "
+                "another trigger first",
+                "/trigger",
+            )
         _check_tuning(self.profile, self.tuning)
         object.__setattr__(self, "created", _utc_second(self.created))
 
@@ -198,7 +204,7 @@ class Language:
         Raises
         ------
         LanguageError
-            When there is none, or a phrase needs it.
+            When there is none, or a phrase or the trigger needs it.
 
         """
         unwanted = self.gesture(label)
@@ -223,7 +229,8 @@ class Language:
         gesture = replace(self.gesture(label), label=new)
         gestures = [gesture if each.label == label else each for each in self.gestures]
         grammar = self.grammar and self.grammar.renamed(label, gesture.label)
-        return replace(self, gestures=gestures, grammar=grammar)
+        trigger = self.trigger.renamed(label, gesture.label)
+        return replace(self, gestures=gestures, grammar=grammar, trigger=trigger)
 
     def to_json(self) -> str:
         """Return the language file's text; the same language gives the same text."""

@@ -13,7 +13,14 @@ def trigger_to_entry(trigger: Trigger) -> TriggerEntry | None:
     if trigger == SALUTE:
         return None
     start, stop = (_pose_to_entry(pose) for pose in (trigger.start, trigger.stop))
-    return TriggerEntry(kind=trigger.kind, start=start, stop=stop)
+    stop_label = "" if trigger.stop_label == trigger.start_label else trigger.stop_label
+    return TriggerEntry(
+        kind=trigger.kind,
+        start=start,
+        stop=stop,
+        start_label=trigger.start_label,
+        stop_label=stop_label,
+    )
 
 
 def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
@@ -29,7 +36,7 @@ def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
         return SALUTE
     try:
         start, stop = (_entry_to_pose(pose) for pose in (entry.start, entry.stop))
-        return Trigger(entry.kind, start, stop)
+        return Trigger(entry.kind, start, stop, entry.start_label, entry.stop_label)
     except TriggerError as error:
         raise LanguageError(str(error), "/trigger") from error
 

@@ -40,8 +40,8 @@ class TriggerEntry(_Model):
     kind: Annotated[
         TriggerKind,
         Field(
-            description="salute: a Vulcan salute. pose: a held pose of the arms. none: nothing, "
-            "gestures are found anywhere."
+            description="salute: a Vulcan salute. pose: a held pose of the arms. gesture: a "
+            "gesture of the language. none: nothing, gestures are found anywhere."
         ),
     ]
     start: Annotated[
@@ -51,3 +51,9 @@ class TriggerEntry(_Model):
         ArmPoseEntry | None,
         Field(description="The pose that ends it. Left out when it is the one that begins it."),
     ] = None
+    start_label: Annotated[
+        str, Field(description="Of kind gesture, the label of the gesture that begins a take.")
+    ] = ""
+    stop_label: Annotated[
+        str, Field(description="Label of the gesture that ends it. Left out when it is the same.")
+    ] = ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from app.recognition.poses.landmarks import SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.triggers.arm_pose import ARM_JOINTS, ArmPose, locate_arms
 
-TriggerKind = Literal["salute", "pose", "none"]
+TriggerKind = Literal["salute", "pose", "gesture", "none"]
 
 MOST_ALIKE = 0.1
 """Largest score of the stop pose as the start pose: between the two lie then a tolerance and more
@@ -26,26 +26,40 @@ class Trigger:
     Attributes
     ----------
     kind
-        ``salute``: a Vulcan salute. ``pose``: a held pose of the arms. ``none``: nothing; gestures
-        are found anywhere (`app.recognition.spotting`).
+        ``salute``: a Vulcan salute. ``pose``: a held pose of the arms. ``gesture``: a gesture of
+        the language; what is spotted between two counts (`app.recognition.spotting`). ``none``:
+        nothing; gestures are spotted anywhere.
     start
         Of kind ``pose``, the pose that begins a take.
     stop
         The pose that ends it; None: `start` ends it too.
+    start_label, stop_label
+        Of kind ``gesture``, the labels of the gestures that begin and end; empty for other kinds.
+        An empty `stop_label` becomes `start_label`.
 
     Raises
     ------
     TriggerError
-        When a pose is missing or superfluous, or start and stop are too much alike.
+        When a pose or label is missing or superfluous, or start and stop are too much alike.
 
     """
 
     kind: TriggerKind = "salute"
     start: ArmPose | None = None
     stop: ArmPose | None = None
+    start_label: str = ""
+    stop_label: str = ""
 
     def __post_init__(self) -> None:
-        """Validate the poses."""
+        """Validate the poses and labels."""
+        if bool(self.start_label) != (self.kind == "gesture"):
+            raise TriggerError(
+                f"a trigger of kind {self.kind!r} "
+                + ("needs a gesture" if self.kind == "gesture" else "has no gestures")
+            )
+        if self.stop_label and not self.start_label:
+            raise TriggerError(f"a trigger of kind {self.kind!r} has no gestures")
+        object.__setattr__(self, "stop_label", self.stop_label or self.start_label)
         if (self.start is not None) != (self.kind == "pose") or (self.stop and not self.start):
             raise TriggerError(
                 f"a trigger of kind {self.kind!r} "
@@ -64,11 +78,30 @@ class Trigger:
         """What is held, for people."""
         if self.kind == "none":
             return "without a trigger, gestures anywhere"
+        if self.kind == "gesture":
+            return f"between the gestures {self.start_label!r} and {self.stop_label!r}"
         if self.start is None:
             return "between two salutes"
         if self.stop is None:
             return f"between two poses of the arms ({self.start.words})"
         return f"between two poses of the arms ({self.start.words}; {self.stop.words})"
+
+    @property
+    def labels(self) -> frozenset[str]:
+        """Labels of the gestures that begin and end; none of other kinds."""
+        return frozenset({self.start_label, self.stop_label} - {""})
+
+    @property
+    def spots(self) -> bool:
+        """Whether gestures are spotted in continuous motion, for nothing held brackets them."""
+        return self.kind in ("gesture", "none")
+
+    def renamed(self, before: str, after: str) -> Trigger:
+        """Return the trigger in which a gesture has another label."""
+        start, stop = (
+            after if label == before else label for label in (self.start_label, self.stop_label)
+        )
+        return replace(self, start_label=start, stop_label=stop)
 
     @property
     def noun(self) -> str:

@@ -89,7 +89,9 @@ class TriggerListener:
         self._listener = following
 
     def _spots(self, language: ActiveLanguage) -> bool:
-        return self._always_spots or language.trigger.kind == "none"
+        return self._always_spots or language.trigger.spots
 
     def _create(self, language: ActiveLanguage) -> LandmarkListener:
-        return SpottingListener(language) if self._spots(language) else Listener(language)
+        if self._spots(language):
+            return SpottingListener(language, triggered=not self._always_spots)
+        return Listener(language)

@@ -94,6 +94,8 @@ def _trigger(trigger: Trigger, left: float, top: float, width: float) -> Iterato
     name, rule = "Vulcan salute", "Hold it for half a second before and after every gesture."
     if trigger.kind == "none":
         name, rule = "Without a trigger", "Rest for a second before and after every gesture."
+    if trigger.kind == "gesture":
+        name, rule = trigger.words, "Show them before and after every gesture, with a rest between."
     if trigger.start is None:
         if trigger.kind == "salute":
             yield from _salute(left, top, 14.0)

@@ -2021,11 +2021,23 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "salute" | "pose" | "none";
+            kind: "salute" | "pose" | "gesture" | "none";
             /** @description Of kind pose, the one that begins a take; null: the one that does already */
             start?: components["schemas"]["HeldPose"] | null;
             /** @description The pose that ends a take; null: the one that begins it */
             stop?: components["schemas"]["HeldPose"] | null;
+            /**
+             * Start Label
+             * @description Of kind gesture, which one begins
+             * @default
+             */
+            start_label: string;
+            /**
+             * Stop Label
+             * @description Which one ends; empty: the same
+             * @default
+             */
+            stop_label: string;
         };
         /**
          * TriggerEntry
@@ -2034,14 +2046,26 @@ export interface components {
         TriggerEntry: {
             /**
              * Kind
-             * @description salute: a Vulcan salute. pose: a held pose of the arms. none: nothing, gestures are found anywhere.
+             * @description salute: a Vulcan salute. pose: a held pose of the arms. gesture: a gesture of the language. none: nothing, gestures are found anywhere.
              * @enum {string}
              */
-            kind: "salute" | "pose" | "none";
+            kind: "salute" | "pose" | "gesture" | "none";
             /** @description Of kind pose, the pose that begins a take. */
             start?: components["schemas"]["ArmPoseEntry"] | null;
             /** @description The pose that ends it. Left out when it is the one that begins it. */
             stop?: components["schemas"]["ArmPoseEntry"] | null;
+            /**
+             * Start Label
+             * @description Of kind gesture, the label of the gesture that begins a take.
+             * @default
+             */
+            start_label: string;
+            /**
+             * Stop Label
+             * @description Label of the gesture that ends it. Left out when it is the same.
+             * @default
+             */
+            stop_label: string;
         };
         /**
          * TuningEntry

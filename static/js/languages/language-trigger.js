@@ -11,7 +11,10 @@ import { edit } from "./revision-edit.js";
 
 /** @import { State, TriggerDraft } from "../core/types.d.ts" */
 
-/** @typedef {{ name: string, text: string, more: string, draft: TriggerDraft | null }} Choice */
+/** @typedef {{ name: string, text: string, more: string, draft: TriggerDraft | null, labels?: string[] }} Choice */
+
+const SPOTTED = new Set(["gesture", "none"]); // Kinds of triggers that are not held.
+const NO_POSES = { start: null, stop: null, start_label: "", stop_label: "" };
 
 /**
  * What the takes of clips depend on; the page finds them anew when it changes.
@@ -21,7 +24,7 @@ import { edit } from "./revision-edit.js";
 export function triggerKey({ gestures }) {
   if (!gestures?.trigger) return "";
   // Without a trigger, every change of the gestures may change what is spotted.
-  const spotted = gestures.trigger.kind === "none" ? gestures.revision : 0;
+  const spotted = SPOTTED.has(gestures.trigger.kind) ? gestures.revision : 0;
   return JSON.stringify([takesLanguage(gestures), gestures.trigger, spotted]);
 }
 
@@ -50,13 +53,13 @@ function choices() {
       name: "salute",
       text: "A Vulcan salute",
       more: "Its fingers must be seen.",
-      draft: { kind: "salute", start: null, stop: null },
+      draft: { ...NO_POSES, kind: "salute" },
     },
     {
       name: "pose",
       text: "A held pose of the arms",
       more: `No hand needs to be seen. ${where}`,
-      draft: pose && { kind: "pose", start: pose, stop: null },
+      draft: pose && { ...NO_POSES, kind: "pose", start: pose },
     },
   ];
   if (currentLanguage().trigger?.kind === "pose")
@@ -64,13 +67,21 @@ function choices() {
       name: "stop",
       text: "Another pose of the arms at the end",
       more: `The pose of now begins a take, and this one ends it. ${where}`,
-      draft: pose && { kind: "pose", start: null, stop: pose },
+      draft: pose && { ...NO_POSES, kind: "pose", stop: pose },
     });
+  const labels = currentLanguage().gestures.map(({ label }) => label);
+  found.push({
+    name: "gesture",
+    text: "A gesture of the language",
+    more: labels.length ? "What is shown between two of them counts." : "It has no gesture yet.",
+    draft: labels.length ? { ...NO_POSES, kind: "gesture", start_label: labels[0] } : null,
+    labels,
+  });
   found.push({
     name: "none",
     text: "Nothing",
     more: "Gestures are found anywhere, with more false alarms.",
-    draft: { kind: "none", start: null, stop: null },
+    draft: { ...NO_POSES, kind: "none" },
   });
   return found;
 }
@@ -89,6 +100,23 @@ async function save(draft) {
   } catch (error) {
     complain(error, "Saving the trigger");
   }
+}
+
+/**
+ * The gesture that begins and ends a take.
+ *
+ * @param {Choice} choice
+ */
+function labelChoice({ labels = [], draft }) {
+  const select = h(
+    "select",
+    { "aria-label": "Gesture that begins and ends a take" },
+    labels.map((label) => h("option", { value: label }, label)),
+  );
+  select.onchange = () => {
+    if (draft) draft.start_label = select.value;
+  };
+  return select;
 }
 
 /** Open the dialog that sets the trigger of the language on display. */
@@ -112,6 +140,7 @@ function openTrigger() {
       {},
       input,
       h("span", {}, h("b", {}, choice.text), h("small", { className: "dim" }, choice.more)),
+      choice.labels?.length ? labelChoice(choice) : null,
     );
   });
   const form = h(

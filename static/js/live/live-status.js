@@ -37,7 +37,7 @@ function posed({ pose, salute, held, state }) {
  */
 function situation({ pose, salute, held, state }) {
   const trigger = page.gestures?.trigger;
-  if (trigger?.kind === "none") return pose ? ["gesture", "Show a gesture."] : NOBODY;
+  if (trigger && trigger.kind !== "pose") return pose ? ["gesture", "Show a gesture."] : NOBODY;
   if (trigger) return posed({ pose, salute, held, state });
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
   if (state === "recording" && held)

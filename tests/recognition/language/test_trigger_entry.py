@@ -8,7 +8,7 @@ import pytest
 
 from app.recognition import Language, LanguageError
 from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
-from tests.posed import BY_BELLY, BY_BELLY_AND_HEAD
+from tests.posed import BY_BELLY, BY_BELLY_AND_HEAD, posed_language
 
 
 @pytest.mark.parametrize("trigger", [BY_BELLY, BY_BELLY_AND_HEAD, NO_TRIGGER])
@@ -22,6 +22,19 @@ def test_a_trigger_is_read_as_it_was_written(trigger: Trigger) -> None:
 def test_a_salute_is_left_out_so_that_older_programs_read_the_file() -> None:
     assert "trigger" not in json.loads(Language("pool").to_json())
     assert Language.from_json(Language("pool").to_json()).trigger == SALUTE
+
+
+def test_a_trigger_gesture_is_kept_renamed_and_not_removed() -> None:
+    trigger = Trigger("gesture", start_label="circle", stop_label="wedge")
+    language = replace(posed_language(), trigger=trigger)
+    assert Language.from_json(language.to_json()).trigger == trigger
+    renamed = language.renamed("wedge", "vee")
+    assert renamed.trigger.stop_label == "vee"
+    with pytest.raises(LanguageError, match="the trigger needs a gesture 'circle'") as refused:
+        language.without("circle")
+    assert refused.value.pointer == "/trigger"
+    with pytest.raises(LanguageError, match="needs a gesture 'line'"):
+        replace(language, trigger=Trigger("gesture", start_label="line"))
 
 
 def damaged(**trigger: Any) -> str:

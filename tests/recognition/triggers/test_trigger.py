@@ -39,6 +39,19 @@ def test_poses_belong_to_the_kind_pose_alone() -> None:
         Trigger(stop=head_pose())
 
 
+def test_gestures_belong_to_the_kind_gesture_alone() -> None:
+    trigger = Trigger("gesture", start_label="circle")
+    assert trigger.stop_label == "circle"
+    assert trigger.renamed("circle", "ring") == Trigger("gesture", start_label="ring")
+    assert trigger.words == "between the gestures 'circle' and 'circle'"
+    with pytest.raises(TriggerError, match="'gesture' needs a gesture"):
+        Trigger("gesture")
+    with pytest.raises(TriggerError, match="'none' has no gestures"):
+        Trigger("none", start_label="circle")
+    with pytest.raises(TriggerError, match="'salute' has no gestures"):
+        Trigger(stop_label="circle")
+
+
 def test_start_and_stop_that_are_alike_are_refused() -> None:
     with pytest.raises(TriggerError, match=r"too much alike \(score 1\.00"):
         Trigger("pose", belly_pose(), belly_pose())

@@ -49,6 +49,15 @@ def test_a_language_without_trigger_is_heard_anywhere() -> None:
     assert "circle" in verdicts(events)
 
 
+def test_between_trigger_gestures_alone_gestures_are_heard() -> None:
+    frames = moments_of(posed_recording("circle-by-belly"))
+    unopened = active(Trigger("gesture", start_label="wedge", stop_label="circle"))
+    for spots, heard in ((False, False), (True, True)):
+        listener = create_listener(unopened, without_salutes=spots)
+        events = [event for frame in frames for event in listener.feed(*frame)]
+        assert ("circle" in verdicts([*events, *listener.finish()])) == heard
+
+
 def test_a_language_with_another_trigger_is_heard_from_the_next_frame_on() -> None:
     frames = moments_of(posed_recording("circle-by-belly"))
     listener = create_listener(active(SALUTE))

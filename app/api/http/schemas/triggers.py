@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import Field
 
 from app.api.http.schemas.values import Body, Identifier, Seconds
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.triggers.trigger import TriggerKind
 
 
@@ -27,3 +30,9 @@ class TriggerDraft(Body):
     stop: HeldPose | None = Field(
         default=None, description="The pose that ends a take; null: the one that begins it"
     )
+    start_label: Annotated[
+        str, Field(max_length=MAX_LABEL_LENGTH, description="Of kind gesture, which one begins")
+    ] = ""
+    stop_label: Annotated[
+        str, Field(max_length=MAX_LABEL_LENGTH, description="Which one ends; empty: the same")
+    ] = ""

@@ -36,7 +36,7 @@ def change_trigger(
     def change(language: Language) -> Trigger:
         kept = language.trigger.start if draft.kind == "pose" else None
         try:
-            return Trigger(draft.kind, start or kept, stop)
+            return Trigger(draft.kind, start or kept, stop, draft.start_label, draft.stop_label)
         except TriggerError as error:
             raise _refusal(str(error), "/stop" if stop else "/start") from error
 
