@@ -115,7 +115,6 @@ def robot(
         raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
         watched = opened.enter_context(WatchedLanguage(language, profile))
-        listener = create_listener(watched.first, without_salutes=without_salutes)
         frames = opened.enter_context(closing(open_source(source)))
         finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
         salutes = watched.first.trigger.kind == "salute" and not without_salutes
@@ -124,6 +123,9 @@ def robot(
                 f"--hands {hands} finds no hand and so no salute: choose other hands, give the "
                 "language another trigger, or add --without-salutes"
             )
+        listener = create_listener(
+            watched.first, without_salutes=without_salutes, hands=finds_hands(finder)
+        )
         if profile_stages:
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.recognition import PoseSequence
+from app.recognition.errors import EstimatorError
 from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import LONGEST_MEMORY
 from app.robot.active_language import ActiveLanguage
@@ -21,16 +22,22 @@ class TriggerListener:
         The language to recognise.
     without_salutes
         Spot gestures in continuous motion, whatever the trigger.
+    hands
+        Whether the stream shows hands, and so salutes.
 
     Raises
     ------
     OsgError
-        When the language cannot be spotted without triggers; see `SpottingListener`.
+        When the language cannot be spotted without triggers; see `SpottingListener`. When it
+        needs salutes, and no hand is seen.
 
     """
 
-    def __init__(self, language: ActiveLanguage, *, without_salutes: bool = False) -> None:
+    def __init__(
+        self, language: ActiveLanguage, *, without_salutes: bool = False, hands: bool = True
+    ) -> None:
         self._always_spots = without_salutes
+        self._hands = hands
         self._listener = self._create(language)
         self._left: tuple[Event, ...] = ()  # of the listener before a change
 
@@ -80,6 +87,7 @@ class TriggerListener:
             As for a new one; the previous language stays active.
 
         """
+        self._require_hands(language)
         if self._spots(language) == isinstance(self._listener, SpottingListener):
             self._listener.set_language(language)
             return
@@ -91,7 +99,16 @@ class TriggerListener:
     def _spots(self, language: ActiveLanguage) -> bool:
         return self._always_spots or language.trigger.spots
 
+    def _require_hands(self, language: ActiveLanguage) -> None:
+        if not (self._hands or self._spots(language)) and language.trigger.kind == "salute":
+            raise EstimatorError(
+                f"the language {language.name!r} waits for salutes, and without hands no salute "
+                "is seen: choose a hand model, give the language another trigger, or set "
+                "without_salutes"
+            )
+
     def _create(self, language: ActiveLanguage) -> LandmarkListener:
+        self._require_hands(language)
         if self._spots(language):
             return SpottingListener(language, triggered=not self._always_spots)
         return Listener(language)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from app.recognition.errors import EstimatorError
 from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
 from app.robot import (
     ActiveLanguage,
@@ -47,6 +48,17 @@ def test_a_language_without_trigger_is_heard_anywhere() -> None:
     listener = create_listener(active(NO_TRIGGER))
     events = [*run_listener(listener, posed_recording("circle-by-belly")), *listener.finish()]
     assert "circle" in verdicts(events)
+
+
+def test_a_stream_without_hands_refuses_salutes_at_once_and_later() -> None:
+    with pytest.raises(EstimatorError, match="without hands no salute is seen"):
+        create_listener(active(SALUTE), hands=False)
+    listener = create_listener(active(BY_BELLY), hands=False)
+    with pytest.raises(EstimatorError, match="waits for salutes"):
+        listener.set_language(active(SALUTE))
+    assert listener.language.trigger == BY_BELLY
+    spotting = create_listener(active(SALUTE), without_salutes=True, hands=False)
+    assert spotting.language.trigger == SALUTE
 
 
 def test_between_trigger_gestures_alone_gestures_are_heard() -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 from std_msgs.msg import Header
 
-from app.recognition.errors import EstimatorError
 from app.recognition.estimation import (
     FrameLandmarks,
     PoseEstimator,
@@ -126,14 +125,11 @@ class GestureNode(ManagedNode):
         landmarks = list_landmarks(self._estimator)
         require_landmarks(language.recognizer.language, landmarks, "the pose estimator")
         require_trigger(language.recognizer.language, landmarks, "the pose estimator")
-        salutes = language.trigger.kind == "salute" and not self._without_salutes
-        if salutes and not finds_hands(self._estimator):
-            raise EstimatorError(
-                f"parameter hands is {self.settings['hands']!r}, and without hands no salute is "
-                "seen; set without_salutes to true or hands to others, or give the language "
-                "another trigger"
-            )
-        return create_listener(language, without_salutes=self._without_salutes)
+        return create_listener(
+            language,
+            without_salutes=self._without_salutes,
+            hands=finds_hands(self._estimator),
+        )
 
     def _change_language(self, language: ActiveLanguage) -> None:
         if self._worker is not None:
