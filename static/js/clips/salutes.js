@@ -15,13 +15,14 @@ const OVERLAP = 0.1; // s; less of a salute in a range is the edge of the take.
  */
 export const takesLanguage = (language) => (language?.trigger ? language.id : null);
 
+const HELD = { salute: "Vulcan salute", pose: "arm pose", gesture: "gesture", none: "gesture" };
+
 /**
- * What a diver holds before and after a gesture of a language.
+ * What a diver holds before and after a gesture of a language; "gesture" where nothing is held.
  *
  * @param {Language | null} language
  */
-export const heldName = (language) =>
-  language?.trigger?.kind === "pose" ? "arm pose" : "Vulcan salute";
+export const heldName = (language) => HELD[language?.trigger?.kind ?? "salute"];
 
 /**
  * The salutes of which a range contains a part: `[start, end]` in seconds of the clip.

@@ -270,7 +270,9 @@ export function drawTimeline() {
     },
   });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
-  const salutes = state.takes.flatMap((take) => saluteMarks(take, duration));
+  // Gestures that are found anywhere have nothing held at their ends.
+  const marked = held() === "gesture" ? [] : state.takes;
+  const salutes = marked.flatMap((take) => saluteMarks(take, duration));
   const warning = range.take
     ? ""
     : saluteWarning(salutesIn(state.timeline, range.start, range.end), held());

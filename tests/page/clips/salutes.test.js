@@ -28,6 +28,8 @@ test("the salutes in a range are those of which it contains more than an edge", 
 
 test("only a range with salutes is warned of", () => {
   assert.equal(saluteWarning([]), "");
+  const bare = /** @type {any} */ ({ id: "c", trigger: { kind: "none" } });
+  assert.equal(heldName(bare), "gesture");
   assert.match(saluteWarning([[0, 1]]), /contains 1 Vulcan salute,/);
 });
 
