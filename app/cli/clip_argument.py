@@ -316,7 +316,7 @@ def spot_takes(
     poses = recording.poses.between(*span) if span else recording.poses
     return [
         (take_by_hand(recording, (found.start, found.end)), found.recognition)
-        for found in spotter.listen(poses)
+        for found in spotter.for_stream().listen(poses)
     ]
 
 

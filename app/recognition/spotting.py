@@ -248,6 +248,10 @@ class Spotter:
             found += self.feed(poses.between(moment, moment))
         return (*found, *self.finish())
 
+    def for_stream(self) -> Spotter:
+        """Return a spotter of the same gestures for another stream, whose time begins anew."""
+        return Spotter(self._recognizer, confident=self._confident, triggered=self._triggered)
+
     def for_language(self, recognizer: Recognizer) -> Spotter:
         """Return a spotter of another language that continues this stream.
 

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from app.cli.clip_argument import spot_takes
 from app.evaluation.labelled_files import LAYOUTS
-from app.recognition import Language, PoseSequence
+from app.recognition import Language, PoseSequence, Recognizer
 from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.spotting import Spotter
 from tests.command_line import OsgStudio
 from tests.keypoint_files.files import write_openpose
 from tests.posed import BY_BELLY, posed_clip, posed_language, posed_recording
@@ -152,6 +154,13 @@ def test_a_file_that_cannot_hold_a_trigger_is_said_to_lack_it(
     ended = osg_studio("convert", pool, tmp_path / "copy.json")
     assert "knows no trigger" not in ended.error
     assert Language.load(tmp_path / "copy.json").trigger == BY_BELLY
+
+
+def test_gestures_are_spotted_in_one_clip_after_another() -> None:
+    spotter = Spotter(Recognizer(posed_language()))
+    for name in ("circle-by-belly", "circle-by-belly-2"):
+        found = spot_takes(spotter, posed_recording(name), None)
+        assert "circle" in [recognition.label for _, recognition in found]
 
 
 @pytest.mark.slow
